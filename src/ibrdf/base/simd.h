@@ -1,0 +1,93 @@
+// Short-vector arithmetic for kernels that are compiled once per instruction
+// set (see simd_dispatch.h). Only such kernel files include this header; all
+// names have internal linkage so that no instruction set leaks into another.
+#pragma once
+#include <cstdint>
+#include <cstring>
+
+#if !defined(IBRDF_SIMD_NAMESPACE) || !defined(IBRDF_SIMD_WIDTH)
+#error "compile through ibrdf_add_simd_kernels()"
+#endif
+
+namespace ibrdf {
+namespace IBRDF_SIMD_NAMESPACE {
+namespace {
+
+constexpr int kLanes = IBRDF_SIMD_WIDTH;  // floats per vector
+using Vf [[gnu::vector_size(IBRDF_SIMD_WIDTH * 4), gnu::may_alias]] = float;
+using Vi [[gnu::vector_size(IBRDF_SIMD_WIDTH * 4), gnu::may_alias]] = int32_t;
+
+[[maybe_unused]] inline Vf Load(const float* p) {
+  Vf v;
+  std::memcpy(&v, p, sizeof(v));
+  return v;
+}
+[[maybe_unused]] inline void Store(float* p, Vf v) {
+  std::memcpy(p, &v, sizeof(v));
+}
+[[maybe_unused]] inline Vf Splat(float x) { return Vf{} + x; }
+[[maybe_unused]] inline Vi AsInt(Vf v) {
+  Vi r;
+  std::memcpy(&r, &v, sizeof(r));
+  return r;
+}
+[[maybe_unused]] inline Vf AsFloat(Vi v) {
+  Vf r;
+  std::memcpy(&r, &v, sizeof(r));
+  return r;
+}
+// m: all ones or zeros per lane (the result of a comparison).
+[[maybe_unused]] inline Vf Select(Vi m, Vf a, Vf b) {
+  return AsFloat((m & AsInt(a)) | (~m & AsInt(b)));
+}
+[[maybe_unused]] inline Vf Min(Vf a, Vf b) { return Select(a < b, a, b); }
+[[maybe_unused]] inline Vf Max(Vf a, Vf b) { return Select(a > b, a, b); }
+[[maybe_unused]] inline float Sum(Vf v) {
+  float s = 0.0f;
+  for (int i = 0; i < kLanes; ++i) s += v[i];
+  return s;
+}
+[[maybe_unused]] inline Vf Sqrt(Vf v) {
+  for (int i = 0; i < kLanes; ++i) v[i] = __builtin_sqrtf(v[i]);
+  return v;
+}
+
+// exp(x), relative error below 2e-7 on [-87, 88]; clamped outside.
+// Range reduction by log 2 in two parts, degree-6 polynomial on +-log(2)/2.
+[[maybe_unused]] inline Vf Exp(Vf x) {
+  x = Min(Max(x, Splat(-87.0f)), Splat(88.0f));
+  const Vf shift = Splat(12582912.0f);  // 1.5 * 2^23: rounds to nearest
+  const Vf t = x * 1.44269504f + shift;
+  const Vf n = t - shift;
+  const Vf r = x - n * 0.693359375f + n * 2.12194440e-4f;
+  Vf p = Splat(1.0f / 720.0f);
+  p = p * r + 1.0f / 120.0f;
+  p = p * r + 1.0f / 24.0f;
+  p = p * r + 1.0f / 6.0f;
+  p = p * r + 0.5f;
+  p = p * r + 1.0f;
+  p = p * r + 1.0f;
+  const Vi exponent = (AsInt(t) << 23);
+  return AsFloat(AsInt(p) + exponent);
+}
+
+// log(x) for finite x > 0, normal; error below 1.5e-7 max(1, |log x|).
+// x = 2^e m with m in [sqrt(1/2), sqrt(2)); atanh series in s = (m-1)/(m+1).
+[[maybe_unused]] inline Vf Log(Vf x) {
+  const Vi bits = AsInt(x);
+  const Vi e = (bits - 0x3f3504f3) >> 23;
+  const Vf m = AsFloat(bits - (e << 23));
+  const Vf s = (m - 1.0f) / (m + 1.0f);
+  const Vf s2 = s * s;
+  Vf p = Splat(2.0f / 9.0f);
+  p = p * s2 + 2.0f / 7.0f;
+  p = p * s2 + 2.0f / 5.0f;
+  p = p * s2 + 2.0f / 3.0f;
+  p = p * s2 + 2.0f;
+  const Vf ef = __builtin_convertvector(e, Vf);
+  return (p * s + ef * -2.12194440e-4f) + ef * 0.693359375f;
+}
+
+}  // namespace
+}  // namespace IBRDF_SIMD_NAMESPACE
+}  // namespace ibrdf

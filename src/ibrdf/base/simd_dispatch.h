@@ -1,0 +1,23 @@
+// Choice of the instruction set at run time.
+//
+// A kernel file is compiled once per instruction set by the CMake function
+// ibrdf_add_simd_kernels(), each time with another IBRDF_SIMD_NAMESPACE
+// (portable, avx2, avx512), and a caller picks a table of function pointers by
+// ActiveSimdLevel(). Kernels agree between levels to float rounding.
+#pragma once
+
+namespace ibrdf {
+
+enum class SimdLevel { kPortable = 0, kAvx2 = 1, kAvx512 = 2 };
+
+// The best level of this machine, or the one named by the environment variable
+// IBRDF_SIMD (portable, avx2, avx512) where the machine has it. Fixed at first
+// call.
+SimdLevel ActiveSimdLevel();
+
+// The levels this machine can run, ascending; kPortable is always one.
+bool SimdLevelSupported(SimdLevel level);
+
+const char* SimdLevelName(SimdLevel level);
+
+}  // namespace ibrdf

@@ -1,0 +1,71 @@
+#include "ibrdf/brdf/merl_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ibrdf {
+namespace {
+constexpr double kPi = 3.14159265358979323846;
+
+int Floor(double x, int n) {
+  return std::clamp(static_cast<int>(std::floor(x)), 0, n - 1);
+}
+}  // namespace
+
+double MerlThetaH(int i) {
+  const double x = (i + 0.5) / kMerlThetaH;
+  return x * x * (kPi / 2);
+}
+double MerlThetaD(int j) { return (j + 0.5) / kMerlThetaD * (kPi / 2); }
+double MerlPhiD(int k) { return (k + 0.5) / kMerlPhiD * kPi; }
+
+bool MerlBinAboveHorizon(int theta_h, int theta_d, int phi_d) {
+  const double th = MerlThetaH(theta_h), td = MerlThetaD(theta_d);
+  return std::cos(th) * std::cos(td) >
+         std::sin(th) * std::sin(td) * std::abs(std::cos(MerlPhiD(phi_d)));
+}
+
+Eigen::Array3d LookUpMerl(const MerlTable& table, double theta_h,
+                          double theta_d, double phi_d) {
+  const int i = Floor(
+      std::sqrt(std::max(theta_h, 0.0) / (kPi / 2)) * kMerlThetaH, kMerlThetaH);
+  const int j = Floor(theta_d / (kPi / 2) * kMerlThetaD, kMerlThetaD);
+  const int k = Floor(phi_d / kPi * kMerlPhiD, kMerlPhiD);
+  const int bin = MerlTable::Bin(i, j, k);
+  Eigen::Array3d f;
+  for (int c = 0; c < 3; ++c) {
+    f[c] = std::max(table.Raw(c, bin), 0.0) * kMerlScale[c];
+  }
+  return f;
+}
+
+Eigen::Array3d InterpolateMerl(const MerlTable& table, double theta_h,
+                               double theta_d, double phi_d) {
+  const double x =
+      std::sqrt(std::max(theta_h, 0.0) / (kPi / 2)) * kMerlThetaH - 0.5;
+  const double y = theta_d / (kPi / 2) * kMerlThetaD - 0.5;
+  const double z = phi_d / kPi * kMerlPhiD - 0.5;
+  const double x0 = std::floor(x), y0 = std::floor(y), z0 = std::floor(z);
+  const double fx = x - x0, fy = y - y0, fz = z - z0;
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  double weights = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const int di = corner & 1, dj = (corner >> 1) & 1, dk = corner >> 2;
+    const double w = (di ? fx : 1 - fx) * (dj ? fy : 1 - fy) *
+                     (dk ? fz : 1 - fz);
+    if (w <= 0.0) continue;
+    const int i = std::clamp(static_cast<int>(x0) + di, 0, kMerlThetaH - 1);
+    const int j = std::clamp(static_cast<int>(y0) + dj, 0, kMerlThetaD - 1);
+    const int k = (static_cast<int>(z0) + dk + kMerlPhiD) % kMerlPhiD;
+    const int bin = MerlTable::Bin(i, j, k);
+    if (table.Raw(0, bin) < 0.0) continue;
+    weights += w;
+    for (int c = 0; c < 3; ++c) {
+      sum[c] += w * std::max(table.Raw(c, bin), 0.0) * kMerlScale[c];
+    }
+  }
+  if (weights <= 0.0) return Eigen::Array3d::Zero();
+  return sum / weights;
+}
+
+}  // namespace ibrdf
