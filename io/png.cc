@@ -1,0 +1,192 @@
+#include "io/png.h"
+
+#include <png.h>
+
+#include <csetjmp>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <vector>
+
+#include "io/atomic_file.h"
+#include "io/image_limits.h"
+
+namespace ibrdf {
+namespace {
+
+// libpng reports errors by longjmp, which must not skip a destructor: the
+// functions that call setjmp own nothing, they work on the state of a caller.
+struct ReadState {
+  const char* bytes = nullptr;
+  size_t size = 0;
+  size_t position = 0;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  png_uint_32 width = 0;
+  png_uint_32 height = 0;
+  size_t row_bytes = 0;  // four channels, 8 or 16 bits each
+  bool sixteen_bits = false;
+  char message[128] = "";
+
+  ~ReadState() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
+struct WriteState {
+  std::string* bytes = nullptr;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  char message[128] = "";
+
+  ~WriteState() { png_destroy_write_struct(&png, &info); }
+};
+
+// error_ptr is the message buffer of the state.
+void OnError(png_structp png, png_const_charp message) {
+  char* buffer = static_cast<char*>(png_get_error_ptr(png));
+  std::strncpy(buffer, message, 127);
+  buffer[127] = '\0';
+  png_longjmp(png, 1);
+}
+
+void OnWarning(png_structp, png_const_charp) {}
+
+void ReadBytes(png_structp png, png_bytep out, size_t count) {
+  ReadState* state = static_cast<ReadState*>(png_get_io_ptr(png));
+  if (count > state->size - state->position) {
+    png_error(png, "unexpected end of file");
+  }
+  std::memcpy(out, state->bytes + state->position, count);
+  state->position += count;
+}
+
+void WriteBytes(png_structp png, png_bytep data, size_t count) {
+  WriteState* state = static_cast<WriteState*>(png_get_io_ptr(png));
+  bool appended = false;
+  try {
+    state->bytes->append(reinterpret_cast<const char*>(data), count);
+    appended = true;
+  } catch (const std::exception&) {
+  }
+  if (!appended) png_error(png, "out of memory");
+}
+
+void FlushBytes(png_structp) {}
+
+// Reads the header and asks for four channels a pixel.
+bool ReadHeader(ReadState* state) {
+  state->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, state->message,
+                                      OnError, OnWarning);
+  if (state->png == nullptr) return false;
+  if (setjmp(png_jmpbuf(state->png)) != 0) return false;
+  state->info = png_create_info_struct(state->png);
+  if (state->info == nullptr) return false;
+  png_set_user_limits(state->png, kMaxImageSide, kMaxImageSide);
+  png_set_read_fn(state->png, state, ReadBytes);
+  png_read_info(state->png, state->info);
+  state->width = png_get_image_width(state->png, state->info);
+  state->height = png_get_image_height(state->png, state->info);
+  state->sixteen_bits = png_get_bit_depth(state->png, state->info) == 16;
+  png_set_expand(state->png);  // palette, bits < 8 and tRNS
+  png_set_gray_to_rgb(state->png);
+  png_set_add_alpha(state->png, 0xffff, PNG_FILLER_AFTER);
+  png_set_interlace_handling(state->png);
+  png_read_update_info(state->png, state->info);
+  state->row_bytes = png_get_rowbytes(state->png, state->info);
+  return png_get_channels(state->png, state->info) == 4;
+}
+
+bool ReadRows(ReadState* state, png_bytepp rows) {
+  if (setjmp(png_jmpbuf(state->png)) != 0) return false;
+  png_read_image(state->png, rows);
+  png_read_end(state->png, nullptr);
+  return true;
+}
+
+bool WriteRows(WriteState* state, const Rgb8Image& image) {
+  state->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, state->message,
+                                       OnError, OnWarning);
+  if (state->png == nullptr) return false;
+  if (setjmp(png_jmpbuf(state->png)) != 0) return false;
+  state->info = png_create_info_struct(state->png);
+  if (state->info == nullptr) return false;
+  png_set_write_fn(state->png, state, WriteBytes, FlushBytes);
+  png_set_IHDR(state->png, state->info, static_cast<png_uint_32>(image.width),
+               static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(state->png, state->info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_write_info(state->png, state->info);
+  for (int y = 0; y < image.height; ++y) {
+    png_write_row(state->png, image.At(0, y));
+  }
+  png_write_end(state->png, nullptr);
+  return true;
+}
+
+Status DecodeError(const std::string& path, const ReadState& state) {
+  return InvalidInput(
+      path, std::string("expected a PNG image (") + state.message + ")");
+}
+
+StatusOr<Mask> Decode(const std::string& path, const std::string& bytes) {
+  ReadState state;
+  state.bytes = bytes.data();
+  state.size = bytes.size();
+  if (!ReadHeader(&state)) return DecodeError(path, state);
+  IBRDF_RETURN_IF_ERROR(CheckImageSize(path, state.width, state.height));
+  // Deflate shrinks at most 1032-fold (RFC 1951: 258 bytes in 2 bits), and
+  // expansion to four channels of 8 bits grows one-bit pixels 32-fold.
+  const size_t total = state.row_bytes * state.height;
+  constexpr size_t kMaxGrowth = 1032 * 32;
+  if (total / kMaxGrowth > bytes.size()) {
+    return InvalidInput(path, "truncated PNG, too few bytes for its size");
+  }
+  std::vector<uint8_t> pixels(total);
+  std::vector<png_bytep> rows(state.height);
+  for (size_t y = 0; y < rows.size(); ++y) {
+    rows[y] = pixels.data() + y * state.row_bytes;
+  }
+  if (!ReadRows(&state, rows.data())) return DecodeError(path, state);
+
+  Mask mask(static_cast<int>(state.width), static_cast<int>(state.height), 0);
+  const size_t channel_bytes = state.sixteen_bits ? 2 : 1;
+  const auto positive = [&](const uint8_t* pixel, size_t channel) {
+    const uint8_t* value = pixel + channel * channel_bytes;
+    return value[0] != 0 || (state.sixteen_bits && value[1] != 0);
+  };
+  for (size_t i = 0; i < mask.inside.size(); ++i) {
+    const uint8_t* pixel = pixels.data() + i * 4 * channel_bytes;
+    const bool lit =
+        positive(pixel, 0) || positive(pixel, 1) || positive(pixel, 2);
+    mask.inside[i] = lit && positive(pixel, 3) ? 1 : 0;
+  }
+  return mask;
+}
+
+}  // namespace
+
+StatusOr<Mask> ReadMask(const std::string& path) {
+  const StatusOr<std::string> bytes = ReadFile(path, kMaxImageFileBytes);
+  if (!bytes.ok()) return bytes.status();
+  try {
+    return Decode(path, *bytes);
+  } catch (const std::bad_alloc&) {
+    return InvalidInput(path, "expected an image that fits into memory");
+  }
+}
+
+Status WritePng(const Rgb8Image& image, const std::string& path) {
+  IBRDF_RETURN_IF_ERROR(
+      CheckWritable(path, image.width, image.height, image.rgb.size()));
+  std::string bytes;
+  WriteState state;
+  state.bytes = &bytes;
+  if (!WriteRows(&state, image)) {
+    return Status(StatusCode::kInternal,
+                  path + ": cannot encode (" + state.message + ")");
+  }
+  return WriteFileAtomically(path, bytes);
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,19 @@
+// PNG masks and previews.
+#pragma once
+#include <string>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/image/rgb8_image.h"
+
+namespace ibrdf {
+
+// Any PNG (1 to 16 bits; grey, RGB or palette; with or without alpha). A pixel
+// is inside where a colour channel is > 0 and alpha (1 where absent) is > 0.
+// Refuses damaged files and sizes over those of io/image_limits.h.
+StatusOr<Mask> ReadMask(const std::string& path);
+
+// 8-bit RGB. Whole or absent.
+Status WritePng(const Rgb8Image& image, const std::string& path);
+
+}  // namespace ibrdf

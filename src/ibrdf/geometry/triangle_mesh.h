@@ -1,0 +1,26 @@
+// Triangle meshes in memory.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace ibrdf {
+
+// Right-handed, counter-clockwise triangles seen from outside.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Eigen::Vector3f> normals;       // per vertex, unit; or empty
+  std::vector<std::array<int, 3>> triangles;  // indices of vertices
+};
+
+// Sets normals to the mean of the adjacent faces' normals weighted by the angle
+// of the face at the vertex (Thuermer and Wuethrich 1998). Triangles without
+// area are skipped; a vertex left without a normal gets (0, 0, 1).
+void ComputeVertexNormals(TriangleMesh* mesh);
+
+// Translates the centre of the bounding box to the origin and scales the
+// farthest vertex to distance 1; a mesh of one point is only translated.
+// Normals are unchanged.
+void FitUnitSphere(TriangleMesh* mesh);
+
+}  // namespace ibrdf

@@ -1,0 +1,77 @@
+#include "io/atomic_file.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+
+TEST(AtomicFile, RoundTripLeavesOneFile) {
+  const TempDir dir;
+  const std::string path = dir.File("a.bin");
+  std::string bytes(100000, '\0');
+  for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7);
+  ASSERT_TRUE(WriteFileAtomically(path, "old").ok());
+  ASSERT_TRUE(WriteFileAtomically(path, bytes).ok());
+  EXPECT_EQ(bytes, ReadFile(path, bytes.size()).value());
+  EXPECT_EQ(1, dir.CountFiles());
+}
+
+TEST(AtomicFile, EmptyFile) {
+  const TempDir dir;
+  ASSERT_TRUE(WriteFileAtomically(dir.File("a"), "").ok());
+  EXPECT_EQ("", ReadFile(dir.File("a"), 0).value());
+}
+
+TEST(AtomicFile, FailedWriteKeepsTheOldFile) {
+  const TempDir dir;
+  const std::string path = dir.File("a.txt");
+  ASSERT_TRUE(WriteFileAtomically(path, "old").ok());
+  const Status status = WriteAtomically(path, [](const std::string& temporary) {
+    WriteBytes(temporary, "half of the new");
+    return InvalidInput(temporary, "disk full");
+  });
+  EXPECT_FALSE(status.ok());
+  EXPECT_EQ("old", ReadBytes(path));
+  EXPECT_EQ(1, dir.CountFiles());
+}
+
+TEST(AtomicFile, TemporaryNameIsBesideAndKeepsTheExtension) {
+  const TempDir dir;
+  const std::string path = dir.File("a.exr");
+  std::string used;
+  ASSERT_TRUE(WriteAtomically(path, [&](const std::string& temporary) {
+                used = temporary;
+                WriteBytes(temporary, "x");
+                return OkStatus();
+              }).ok());
+  EXPECT_EQ(0u, used.find(dir.path() + "/"));
+  EXPECT_EQ(".exr", used.substr(used.size() - 4));
+  EXPECT_NE(path, used);
+}
+
+TEST(AtomicFile, UnwritableTargetsLeaveNothing) {
+  const TempDir dir;
+  const Status missing = WriteFileAtomically(dir.File("none/a"), "x");
+  EXPECT_EQ(StatusCode::kInvalidInput, missing.code());
+  EXPECT_EQ(0u, missing.message().find(dir.File("none/a") + ": "));
+  // The target is a folder that is not empty.
+  std::filesystem::create_directories(dir.File("folder/inside"));
+  EXPECT_FALSE(WriteFileAtomically(dir.File("folder"), "x").ok());
+  EXPECT_EQ(1, dir.CountFiles());
+}
+
+TEST(AtomicFile, ReadRefusesWhatIsNotAFileOrTooLong) {
+  const TempDir dir;
+  EXPECT_FALSE(ReadFile(dir.File("missing"), 10).ok());
+  EXPECT_FALSE(ReadFile(dir.path(), 1 << 20).ok());
+  WriteBytes(dir.File("long"), "12345");
+  EXPECT_FALSE(ReadFile(dir.File("long"), 4).ok());
+  EXPECT_TRUE(ReadFile(dir.File("long"), 5).ok());
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,254 @@
+#include "io/mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+#include <string>
+
+#include "tests/support/corruption.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+
+// Rounding of a float unit vector.
+constexpr float kUnitTolerance = 1e-6f;
+
+// A cube of quads in two groups, with texture coordinates that split vertices,
+// a vertex that no face uses, and a line.
+const char kCubeObj[] =
+    "mtllib none.mtl\no cube\n"
+    "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
+    "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\nv 9 9 9\n"
+    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "g first\nusemtl a\n"
+    "f 1/1 4/2 3/3 2/4\nf 5/2 6/1 7/3 8/4\nf 1/1 2/2 6/3 5/4\n"
+    "g second\nusemtl b\n"
+    "f 4/4 8/3 7/2 3/1\nf 1/3 5/2 8/1 4/4\nf 2/1 3/2 7/3 6/4\nl 1 2\n";
+
+const char kTetrahedronPly[] =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+    "property float y\nproperty float z\nelement face 4\n"
+    "property list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+    "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+void ExpectValid(const TriangleMesh& mesh) {
+  ASSERT_EQ(mesh.vertices.size(), mesh.normals.size());
+  EXPECT_FALSE(mesh.triangles.empty());
+  for (const auto& triangle : mesh.triangles) {
+    for (const int v : triangle) {
+      ASSERT_GE(v, 0);
+      ASSERT_LT(static_cast<size_t>(v), mesh.vertices.size());
+    }
+  }
+  for (const Eigen::Vector3f& v : mesh.vertices) ASSERT_TRUE(v.allFinite());
+  for (const Eigen::Vector3f& n : mesh.normals) {
+    ASSERT_NEAR(1.0f, n.norm(), kUnitTolerance);
+  }
+}
+
+// Every edge has one triangle on each side, in opposite directions.
+bool IsClosed(const TriangleMesh& mesh) {
+  std::multiset<std::pair<int, int>> edges;
+  for (const auto& t : mesh.triangles) {
+    for (size_t i = 0; i < 3; ++i) edges.insert({t[i], t[(i + 1) % 3]});
+  }
+  for (const auto& [a, b] : edges) {
+    if (edges.count({b, a}) != edges.count({a, b})) return false;
+  }
+  return true;
+}
+
+double SignedVolume(const TriangleMesh& mesh) {
+  double volume = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
+    const Eigen::Vector3d b = mesh.vertices[t[1]].cast<double>();
+    const Eigen::Vector3d c = mesh.vertices[t[2]].cast<double>();
+    volume += a.dot(b.cross(c)) / 6.0;
+  }
+  return volume;
+}
+
+TEST(Mesh, ObjCubeIsJoinedAcrossGroupsAndSeams) {
+  const TempDir dir;
+  const std::string path = dir.File("cube.OBJ");
+  WriteBytes(path, kCubeObj);
+  const StatusOr<TriangleMesh> mesh = ReadMesh(path);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  ExpectValid(*mesh);
+  EXPECT_EQ(8u, mesh->vertices.size());
+  EXPECT_EQ(12u, mesh->triangles.size());
+  EXPECT_TRUE(IsClosed(*mesh));
+  EXPECT_NEAR(8.0, SignedVolume(*mesh), 1e-12);
+  // Three right angles at every corner, however the quads are cut.
+  for (size_t v = 0; v < 8; ++v) {
+    EXPECT_NEAR(0.0f,
+                (mesh->normals[v] - mesh->vertices[v].normalized()).norm(),
+                kUnitTolerance);
+  }
+}
+
+TEST(Mesh, PlyAsciiAndBinary) {
+  const TempDir dir;
+  const std::string path = dir.File("t.ply");
+  WriteBytes(path, kTetrahedronPly);
+  const StatusOr<TriangleMesh> mesh = ReadMesh(path);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  ExpectValid(*mesh);
+  EXPECT_EQ(4u, mesh->vertices.size());
+  EXPECT_TRUE(IsClosed(*mesh));
+  EXPECT_NEAR(1.0 / 6, SignedVolume(*mesh), 1e-7);
+
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\n"
+      "property float x\nproperty float y\nproperty float z\n"
+      "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  const float coordinates[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  bytes.append(reinterpret_cast<const char*>(coordinates), sizeof(coordinates));
+  const int32_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  for (const auto& face : faces) {
+    bytes.push_back(3);
+    bytes.append(reinterpret_cast<const char*>(face), sizeof(face));
+  }
+  WriteBytes(path, bytes);
+  const StatusOr<TriangleMesh> binary = ReadMesh(path);
+  ASSERT_TRUE(binary.ok()) << binary.status().message();
+  EXPECT_EQ(mesh->triangles, binary->triangles);
+  EXPECT_EQ(mesh->vertices, binary->vertices);
+}
+
+TEST(Mesh, NormalsOfTheFileAreUsedWhenValid) {
+  const TempDir dir;
+  const std::string path = dir.File("t.obj");
+  const std::string head = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+  WriteBytes(path, head +
+                       "vn 0 3 4\nvn 1 0 0\nf 1//1 2//1 3//1\n"
+                       "f 2//2 4//2 3//2\n");
+  StatusOr<TriangleMesh> mesh = ReadMesh(path);
+  ASSERT_TRUE(mesh.ok());
+  ExpectValid(*mesh);
+  EXPECT_EQ(6u, mesh->vertices.size());  // a hard edge
+  EXPECT_NEAR(0.0f, (mesh->normals[0] - Eigen::Vector3f(0, 0.6f, 0.8f)).norm(),
+              kUnitTolerance);
+  // One normal without a length: all are computed.
+  WriteBytes(path, head +
+                       "vn 0 0 0\nvn 1 0 0\nf 1//1 2//1 3//1\n"
+                       "f 2//2 4//2 3//2\n");
+  mesh = ReadMesh(path);
+  ASSERT_TRUE(mesh.ok());
+  EXPECT_EQ(4u, mesh->vertices.size());
+  for (const Eigen::Vector3f& n : mesh->normals) {
+    EXPECT_NEAR(1.0f, n.z(), kUnitTolerance);
+  }
+}
+
+TEST(Mesh, BadMeshesAreRefused) {
+  const TempDir dir;
+  const std::string obj = dir.File("a.obj"), ply = dir.File("a.ply");
+  const auto refused = [](const std::string& path, const std::string& bytes) {
+    WriteBytes(path, bytes);
+    const Status status = ReadMesh(path).status();
+    EXPECT_EQ(StatusCode::kInvalidInput, status.code()) << bytes;
+    EXPECT_EQ(0u, status.message().find(path + ": ")) << status.message();
+  };
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  refused(obj, "");
+  refused(obj, "this is no mesh");
+  refused(obj, triangle);                // no faces
+  refused(obj, triangle + "f 1 2 4\n");  // out of range
+  refused(obj, triangle + "f 1 2 -9\n");
+  refused(obj, triangle + "f 1 2 0\n");
+  refused(obj, triangle + "f 1 2 99999999999\n");
+  refused(obj, "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  refused(obj, "v 0 inf 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  refused(obj, "v 0 1e99 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  refused(obj, triangle + "l 1 2\n");  // lines only
+  refused(obj, triangle + std::string("f 1 2 3\0\n", 9));
+  refused(ply, "");
+  refused(ply, "ply\n");
+  const std::string text = kTetrahedronPly;
+  const auto replaced = [&](const std::string& from, const std::string& to) {
+    std::string bytes = text;
+    bytes.replace(bytes.find(from), from.size(), to);
+    return bytes;
+  };
+  refused(ply, replaced("3 1 2 3", "3 1 2 4"));
+  refused(ply, replaced("3 1 2 3", "3 1 2 -1"));
+  refused(ply, replaced("vertex 4", "vertex 4000000000"));
+  refused(ply, replaced("vertex 4", "vertex 2000000000"));
+  refused(ply, replaced("face 4", "face 1000000"));
+  refused(ply, replaced("vertex 4", "vertex -1"));
+  refused(ply, replaced("face 4", "face 0"));
+  refused(ply, replaced("float x", "quaternion x"));
+  refused(ply, replaced("ascii", "morse"));
+  refused(ply, replaced("1 0 0\n", "nan 0 0\n"));
+}
+
+TEST(Mesh, WhatIsNotAMeshFile) {
+  const TempDir dir;
+  EXPECT_FALSE(ReadMesh(dir.File("missing.obj")).ok());
+  std::filesystem::create_directory(dir.File("folder.obj"));
+  EXPECT_FALSE(ReadMesh(dir.File("folder.obj")).ok());
+  WriteBytes(dir.File("a.stl"), "solid a\nendsolid a\n");
+  EXPECT_EQ(dir.File("a.stl") + ": extension: expected .obj or .ply",
+            ReadMesh(dir.File("a.stl")).status().message());
+}
+
+TEST(Mesh, DamagedFiles) {
+  const TempDir dir;
+  std::string path;
+  const auto check = [&] {
+    const StatusOr<TriangleMesh> mesh = ReadMesh(path);
+    if (mesh.ok()) {
+      ExpectValid(*mesh);
+    } else {
+      EXPECT_EQ(StatusCode::kInvalidInput, mesh.status().code());
+    }
+  };
+  for (const char* name : {"a.obj", "a.ply"}) {
+    path = dir.File(name);
+    const std::string bytes =
+        std::strcmp(name, "a.obj") == 0 ? kCubeObj : kTetrahedronPly;
+    ForEachTruncation(bytes, path, 200, check);
+    ForEachCorruption(bytes, path, 200, 2000, 7, check);
+  }
+  // Binary faces and vertices.
+  std::string bytes =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 3\n"
+      "property float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const size_t header = bytes.size();
+  bytes += std::string(36, '\0');
+  bytes[header + 12] = bytes[header + 28] = 0x3f;
+  bytes += std::string("\3\0\0\0\0\0\0\0\1\0\0\0\2", 13);
+  ForEachTruncation(bytes, path, 200, check);
+  ForEachCorruption(bytes, path, header, 2000, 8, check);
+}
+
+TEST(Mesh, SharedMeshesAreClosedAndOriented) {
+  IBRDF_REQUIRE_SHARED_DATA(data_dir);
+  for (const char* name :
+       {"armadillo", "bunny", "spot_low_resolution", "torus"}) {
+    StatusOr<TriangleMesh> mesh =
+        ReadMesh(data_dir + "/meshes/" + name + ".obj");
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    ExpectValid(*mesh);
+    EXPECT_GT(SignedVolume(*mesh), 0.0) << name;
+    FitUnitSphere(&*mesh);
+    float farthest = 0.0f;
+    for (const Eigen::Vector3f& v : mesh->vertices) {
+      farthest = std::max(farthest, v.norm());
+    }
+    EXPECT_NEAR(1.0f, farthest, kUnitTolerance) << name;
+  }
+}
+
+}  // namespace
+}  // namespace ibrdf
