@@ -14,7 +14,7 @@
 
 #include "io/atomic_file.h"
 #include "io/file_extension.h"
-#include "io/mesh_precheck.h"
+#include "io/mesh_clean.h"
 
 namespace ibrdf {
 namespace {
@@ -132,13 +132,13 @@ StatusOr<TriangleMesh> ReadMesh(const std::string& path) {
   }
   StatusOr<std::string> bytes = ReadFile(path, kMaxMeshFileBytes);
   if (!bytes.ok()) return bytes.status();
-  IBRDF_RETURN_IF_ERROR(extension == "obj" ? PrecheckObj(path, *bytes)
-                                           : PrecheckPly(path, *bytes));
+  bytes = extension == "obj" ? CleanObj(path, *bytes) : CleanPly(path, *bytes);
+  if (!bytes.ok()) return bytes.status();
   try {
     Assimp::Importer importer;
-    // From memory, so that no other file (a material library) is opened.
+    // What is imported is the OBJ text made of what was checked.
     const aiScene* scene = importer.ReadFileFromMemory(
-        bytes->data(), bytes->size(), aiProcess_Triangulate, extension.c_str());
+        bytes->data(), bytes->size(), aiProcess_Triangulate, "obj");
     if (scene == nullptr) {
       return InvalidInput(path, "expected a " + extension + " mesh (" +
                                     importer.GetErrorString() + ")");

@@ -1,0 +1,351 @@
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "io/mesh_clean.h"
+
+namespace ibrdf {
+namespace {
+
+enum class Type {
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kFloat,
+  kDouble
+};
+
+struct Property {
+  std::string name;
+  Type type = Type::kFloat;
+  bool is_list = false;
+  Type count_type = Type::kUint8;
+};
+
+struct Element {
+  std::string name;
+  int64_t count = 0;
+  std::vector<Property> properties;
+};
+
+enum class Format { kUnknown, kAscii, kLittleEndian, kBigEndian };
+
+struct Header {
+  Format format = Format::kUnknown;
+  std::vector<Element> elements;
+  size_t end = 0;  // first byte after the header
+};
+
+bool ParseType(const std::string& name, Type* type) {
+  static constexpr struct {
+    const char* name;
+    Type type;
+  } kNames[] = {{"char", Type::kInt8},     {"int8", Type::kInt8},
+                {"uchar", Type::kUint8},   {"uint8", Type::kUint8},
+                {"short", Type::kInt16},   {"int16", Type::kInt16},
+                {"ushort", Type::kUint16}, {"uint16", Type::kUint16},
+                {"int", Type::kInt32},     {"int32", Type::kInt32},
+                {"uint", Type::kUint32},   {"uint32", Type::kUint32},
+                {"float", Type::kFloat},   {"float32", Type::kFloat},
+                {"double", Type::kDouble}, {"float64", Type::kDouble}};
+  for (const auto& entry : kNames) {
+    if (name == entry.name) {
+      *type = entry.type;
+      return true;
+    }
+  }
+  return false;
+}
+
+size_t Bytes(Type type) {
+  switch (type) {
+    case Type::kInt8:
+    case Type::kUint8:
+      return 1;
+    case Type::kInt16:
+    case Type::kUint16:
+      return 2;
+    case Type::kInt32:
+    case Type::kUint32:
+    case Type::kFloat:
+      return 4;
+    case Type::kDouble:
+      return 8;
+  }
+  return 0;
+}
+
+// Keywords after the first line of the header; false where malformed.
+bool ParseHeaderLine(const std::string& line, Header* header) {
+  std::istringstream words(line);
+  std::string keyword, name;
+  words >> keyword;
+  if (keyword == "format") {
+    words >> name;
+    header->format = name == "ascii"                  ? Format::kAscii
+                     : name == "binary_little_endian" ? Format::kLittleEndian
+                     : name == "binary_big_endian"    ? Format::kBigEndian
+                                                      : Format::kUnknown;
+    return header->format != Format::kUnknown;
+  }
+  if (keyword == "element") {
+    Element element;
+    words >> element.name >> element.count;
+    header->elements.push_back(element);
+    return !words.fail() && element.count >= 0 && element.count <= INT32_MAX;
+  }
+  if (keyword == "property") {
+    Property property;
+    words >> name;
+    property.is_list = name == "list";
+    if (property.is_list) {
+      words >> name;
+      if (!ParseType(name, &property.count_type)) return false;
+      words >> name;
+    }
+    if (!ParseType(name, &property.type) || header->elements.empty()) {
+      return false;
+    }
+    words >> property.name;
+    header->elements.back().properties.push_back(property);
+    return !words.fail();
+  }
+  return keyword == "comment" || keyword == "obj_info" || keyword.empty();
+}
+
+StatusOr<Header> ParseHeader(const std::string& path,
+                             const std::string& bytes) {
+  Header header;
+  for (int line_number = 1; header.end < bytes.size(); ++line_number) {
+    const size_t newline = bytes.find('\n', header.end);
+    if (newline == std::string::npos) break;
+    std::string line = bytes.substr(header.end, newline - header.end);
+    header.end = newline + 1;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line_number == 1) {
+      if (line != "ply") break;
+    } else if (line == "end_header") {
+      if (header.format == Format::kUnknown) break;
+      return header;
+    } else if (!ParseHeaderLine(line, &header)) {
+      return InvalidInput(
+          path + ": header: line " + std::to_string(line_number),
+          "expected a format, element or property of PLY");
+    }
+  }
+  return InvalidInput(path + ": header",
+                      "expected \"ply\", a format and \"end_header\"");
+}
+
+// The numbers of the body, one after another.
+class NumberReader {
+ public:
+  NumberReader(std::string_view bytes, Format format)
+      : bytes_(bytes), format_(format) {}
+
+  size_t Left() const { return bytes_.size(); }
+
+  // False at the end of the bytes, or where ascii is not a number.
+  bool Next(Type type, double* value) {
+    return format_ == Format::kAscii ? NextWord(value)
+                                     : NextBinary(type, value);
+  }
+
+ private:
+  bool NextWord(double* value) {
+    constexpr char kSpace[] = " \t\r\n";
+    const size_t start = bytes_.find_first_not_of(kSpace);
+    if (start == std::string_view::npos) return false;
+    bytes_.remove_prefix(start);
+    std::string_view word = bytes_.substr(0, bytes_.find_first_of(kSpace));
+    bytes_.remove_prefix(word.size());
+    if (word.front() == '+') word.remove_prefix(1);
+    const char* end = word.data() + word.size();
+    const std::from_chars_result result =
+        std::from_chars(word.data(), end, *value);
+    return result.ec == std::errc() && result.ptr == end;
+  }
+
+  bool NextBinary(Type type, double* value) {
+    const size_t size = Bytes(type);
+    if (bytes_.size() < size) return false;
+    uint64_t bits = 0;
+    for (size_t i = 0; i < size; ++i) {
+      const size_t at = format_ == Format::kBigEndian ? i : size - 1 - i;
+      bits = bits << 8 | static_cast<uint8_t>(bytes_[at]);
+    }
+    bytes_.remove_prefix(size);
+    switch (type) {
+      case Type::kInt8:
+        *value = static_cast<int8_t>(bits);
+        break;
+      case Type::kInt16:
+        *value = static_cast<int16_t>(bits);
+        break;
+      case Type::kInt32:
+        *value = static_cast<int32_t>(bits);
+        break;
+      case Type::kFloat: {
+        const uint32_t word = static_cast<uint32_t>(bits);
+        float single = 0.0f;
+        std::memcpy(&single, &word, sizeof(single));
+        *value = single;
+        break;
+      }
+      case Type::kDouble:
+        std::memcpy(value, &bits, sizeof(*value));
+        break;
+      default:
+        *value = static_cast<double>(bits);
+    }
+    return true;
+  }
+
+  std::string_view bytes_;
+  Format format_;
+};
+
+// Bytes that `count` rows of the element take at least.
+bool FitsInto(const Element& element, Format format, size_t left) {
+  size_t row = 0;
+  for (const Property& p : element.properties) {
+    // Text: one character and a separator, which the last number may lack.
+    row +=
+        format == Format::kAscii ? 2 : Bytes(p.is_list ? p.count_type : p.type);
+  }
+  return row == 0 || static_cast<size_t>(element.count) <= (left + 1) / row;
+}
+
+struct Geometry {
+  int64_t vertices = 0;
+  bool normals = false;
+  std::string vertex_text;
+  std::string normal_text;
+  std::vector<std::vector<int64_t>> faces;
+};
+
+// Slots of x y z nx ny nz; -1 for other properties.
+int VertexSlot(const std::string& name) {
+  static constexpr const char* kSlots[] = {"x", "y", "z", "nx", "ny", "nz"};
+  for (int i = 0; i < 6; ++i) {
+    if (name == kSlots[i]) return i;
+  }
+  return -1;
+}
+
+Status ReadElement(const std::string& path, const Element& element,
+                   NumberReader* numbers, Geometry* geometry) {
+  const bool is_vertex = element.name == "vertex";
+  const bool is_face = element.name == "face";
+  unsigned slots_found = 0;
+  for (const Property& p : element.properties) {
+    const int slot = p.is_list ? -1 : VertexSlot(p.name);
+    if (slot >= 0) slots_found |= 1u << slot;
+  }
+  if (is_vertex && (slots_found & 7u) != 7u) {
+    return InvalidInput(path + ": vertex", "expected properties x, y and z");
+  }
+  if (is_vertex) {
+    geometry->vertices = element.count;
+    geometry->normals = (slots_found & 56u) == 56u;
+  }
+  if (element.properties.empty()) return OkStatus();
+  for (int64_t row = 0; row < element.count; ++row) {
+    const auto where = [&] {
+      return path + ": " + element.name + " " + std::to_string(row);
+    };
+    double slots[6] = {};
+    for (const Property& p : element.properties) {
+      double value = 0.0;
+      if (!numbers->Next(p.is_list ? p.count_type : p.type, &value)) {
+        return InvalidInput(where(), "expected a number for " + p.name);
+      }
+      const int slot = is_vertex && !p.is_list ? VertexSlot(p.name) : -1;
+      if (slot >= 0) slots[slot] = value;
+      if (!p.is_list) continue;
+      const bool corners =
+          is_face && (p.name == "vertex_indices" || p.name == "vertex_index");
+      const double longest = corners ? kMaxPolygonCorners : INT32_MAX;
+      if (!(value >= (corners ? 3 : 0) && value <= longest)) {
+        return InvalidInput(
+            where() + ": " + p.name,
+            "expected a list of " +
+                std::string(corners ? "3 to 4096" : "0 or more") + " numbers");
+      }
+      std::vector<int64_t> face;
+      for (int i = 0; i < static_cast<int>(value); ++i) {
+        double item = 0.0;
+        if (!numbers->Next(p.type, &item)) {
+          return InvalidInput(where(), "expected a number for " + p.name);
+        }
+        if (!corners) continue;
+        if (!(item >= 0.0 && item <= INT32_MAX && item == std::floor(item))) {
+          return InvalidInput(where(), "expected indices of vertices");
+        }
+        face.push_back(static_cast<int64_t>(item));
+      }
+      if (corners) geometry->faces.push_back(std::move(face));
+    }
+    if (!is_vertex) continue;
+    if (!AppendObjVector("v", slots, &geometry->vertex_text)) {
+      return InvalidInput(where(), "expected finite coordinates");
+    }
+    geometry->normals =
+        geometry->normals &&
+        AppendObjVector("vn", slots + 3, &geometry->normal_text);
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
+StatusOr<std::string> CleanPly(const std::string& path,
+                               const std::string& bytes) {
+  const StatusOr<Header> header = ParseHeader(path, bytes);
+  if (!header.ok()) return header.status();
+  Geometry geometry;
+  NumberReader numbers(std::string_view(bytes).substr(header->end),
+                       header->format);
+  for (const Element& element : header->elements) {
+    if (element.name == "vertex" && geometry.vertices > 0) {
+      return InvalidInput(path + ": header", "expected one element vertex");
+    }
+    if (!FitsInto(element, header->format, numbers.Left())) {
+      return InvalidInput(path + ": header: " + element.name,
+                          "expected a count that fits into the file, found " +
+                              std::to_string(element.count));
+    }
+    IBRDF_RETURN_IF_ERROR(ReadElement(path, element, &numbers, &geometry));
+  }
+  if (geometry.faces.empty()) {
+    return InvalidInput(path + ": faces", "expected at least one face");
+  }
+
+  std::string text = std::move(geometry.vertex_text);
+  if (geometry.normals) text += geometry.normal_text;
+  for (size_t f = 0; f < geometry.faces.size(); ++f) {
+    text.push_back('f');
+    for (const int64_t v : geometry.faces[f]) {
+      if (v >= geometry.vertices) {
+        return InvalidInput(path + ": face " + std::to_string(f),
+                            "expected indices of the file's " +
+                                std::to_string(geometry.vertices) +
+                                " vertices");
+      }
+      const std::string index = std::to_string(v + 1);
+      text += " " + index;
+      if (geometry.normals) text += "//" + index;
+    }
+    text.push_back('\n');
+  }
+  return text;
+}
+
+}  // namespace ibrdf
