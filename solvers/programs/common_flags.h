@@ -1,0 +1,65 @@
+// Options and exit statuses that every program shares.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <string>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/base/version.h"
+
+namespace ibrdf {
+
+struct CommonFlags {
+  int threads = 0;     // 0: all hardware threads
+  uint64_t seed = 1;   // of every random number
+  bool quiet = false;  // no progress
+};
+
+// Adds --threads, --seed, --quiet and --version.
+inline void AddCommonFlags(CLI::App* app, CommonFlags* flags) {
+  app->add_option("--threads", flags->threads,
+                  "number of threads; 0: all of the machine")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app->add_option("--seed", flags->seed,
+                  "seed of random numbers; the same seed gives the same bits")
+      ->capture_default_str();
+  app->add_flag("--quiet", flags->quiet, "print no progress");
+  app->set_version_flag("--version", std::string("ibrdf ") + kVersion);
+}
+
+// Prints the one line "error: <file>: <field>: <what>" on stderr unless ok.
+// Returns the exit status of the program.
+inline int FinishProgram(const Status& status) {
+  if (!status.ok()) {
+    std::string line = status.message();
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    std::fprintf(stderr, "error: %s\n", line.c_str());
+  }
+  return status.ExitCode();
+}
+
+// Parses the command line, calls run() and returns the exit status: 0 after
+// --help or --version, 2 for a bad option, else that of run()'s status; 1 for
+// an exception.
+inline int RunProgram(CLI::App* app, int argc, char** argv,
+                      const std::function<Status()>& run) {
+  try {
+    app->parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app->exit(e);  // prints the help or the version
+  } catch (const CLI::ParseError& e) {
+    return FinishProgram(InvalidInput("command line", e.what()));
+  }
+  try {
+    return FinishProgram(run());
+  } catch (const std::exception& e) {
+    return FinishProgram(Status(StatusCode::kInternal, e.what()));
+  }
+}
+
+}  // namespace ibrdf
