@@ -21,8 +21,12 @@ namespace {
 
 constexpr size_t kMaxMeshFileBytes = size_t{512} << 20;
 
-// Position and normal, bit by bit (normal 0 where joined by position alone).
-using VertexKey = std::array<uint32_t, 6>;
+// Normals of one position that differ by less than 0.08 degrees are one normal,
+// rounded differently.
+constexpr float kMinSameNormalCosine = 1.0f - 1e-6f;
+
+// Position, bit by bit.
+using VertexKey = std::array<uint32_t, 3>;
 
 struct VertexKeyHash {
   size_t operator()(const VertexKey& key) const {
@@ -32,14 +36,11 @@ struct VertexKeyHash {
   }
 };
 
-VertexKey MakeKey(const Eigen::Vector3f& position,
-                  const Eigen::Vector3f& normal) {
+VertexKey MakeKey(const Eigen::Vector3f& position) {
   VertexKey key;
   for (int i = 0; i < 3; ++i) {
     const float p = position[i] + 0.0f;  // -0 and 0 are one vertex
-    const float n = normal[i] + 0.0f;
     std::memcpy(&key[i], &p, sizeof(p));
-    std::memcpy(&key[3 + i], &n, sizeof(n));
   }
   return key;
 }
@@ -108,12 +109,14 @@ StatusOr<TriangleMesh> Convert(const std::string& path, const aiScene& scene) {
                                             .normalized()
                                             .cast<float>())
                       : Eigen::Vector3f::Zero();
-          const auto [it, added] =
-              index_of.emplace(MakeKey(position, normal),
-                               static_cast<int>(result.vertices.size()));
+          const auto [it, added] = index_of.emplace(
+              MakeKey(position), static_cast<int>(result.vertices.size()));
           if (added) {
             result.vertices.push_back(position);
-            if (normals) result.normals.push_back(normal);
+            result.normals.push_back(normal);
+          } else if (result.normals[it->second].dot(normal) <
+                     kMinSameNormalCosine) {
+            normals = false;
           }
           triangle[i] = it->second;
         }

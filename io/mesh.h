@@ -11,9 +11,10 @@ namespace ibrdf {
 // objects and groups become one mesh; polygons are cut into triangles; lines
 // and points are dropped, and so are vertices that no face uses. Materials and
 // texture coordinates are ignored.
+// Vertices are joined by position, so shading is smooth across texture seams.
 // Normals: the file's, when every face corner has a finite one longer than 0
-// (vertices are then joined by position and normal, which keeps hard edges);
-// else vertices are joined by position alone and ComputeVertexNormals is used.
+// and the corners at one position agree; else ComputeVertexNormals. A file with
+// a normal per face (flat shading, hard edges) is thus smoothed.
 // Refuses files over 512 MiB, without faces, with non-finite coordinates or
 // with face indices out of range; the message names the file.
 StatusOr<TriangleMesh> ReadMesh(const std::string& path);

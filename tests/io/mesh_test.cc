@@ -128,25 +128,48 @@ TEST(Mesh, NormalsOfTheFileAreUsedWhenValid) {
   const TempDir dir;
   const std::string path = dir.File("t.obj");
   const std::string head = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
-  WriteBytes(path, head +
-                       "vn 0 3 4\nvn 1 0 0\nf 1//1 2//1 3//1\n"
-                       "f 2//2 4//2 3//2\n");
+  const std::string faces = "f 1//1 2//1 3//1\nf 2//2 4//2 3//2\n";
+  // One direction, two lengths: used, and made unit.
+  WriteBytes(path, head + "vn 0 3 4\nvn 0 0.6 0.8\n" + faces);
   StatusOr<TriangleMesh> mesh = ReadMesh(path);
-  ASSERT_TRUE(mesh.ok());
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
   ExpectValid(*mesh);
-  EXPECT_EQ(6u, mesh->vertices.size());  // a hard edge
-  EXPECT_NEAR(0.0f, (mesh->normals[0] - Eigen::Vector3f(0, 0.6f, 0.8f)).norm(),
-              kUnitTolerance);
-  // One normal without a length: all are computed.
-  WriteBytes(path, head +
-                       "vn 0 0 0\nvn 1 0 0\nf 1//1 2//1 3//1\n"
-                       "f 2//2 4//2 3//2\n");
-  mesh = ReadMesh(path);
-  ASSERT_TRUE(mesh.ok());
   EXPECT_EQ(4u, mesh->vertices.size());
   for (const Eigen::Vector3f& n : mesh->normals) {
-    EXPECT_NEAR(1.0f, n.z(), kUnitTolerance);
+    EXPECT_NEAR(0.0f, (n - Eigen::Vector3f(0, 0.6f, 0.8f)).norm(),
+                kUnitTolerance);
   }
+  // A normal per face; one without a length; one missing: all are computed.
+  for (const std::string& rest :
+       {"vn 0 3 4\nvn 1 0 0\n" + faces, "vn 0 0 0\nvn 0 3 4\n" + faces,
+        std::string("vn 0 3 4\nf 1//1 2//1 3//1\nf 2//1 4 3//1\n")}) {
+    WriteBytes(path, head + rest);
+    mesh = ReadMesh(path);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    EXPECT_EQ(4u, mesh->vertices.size());
+    for (const Eigen::Vector3f& n : mesh->normals) {
+      EXPECT_NEAR(1.0f, n.z(), kUnitTolerance);
+    }
+  }
+}
+
+TEST(Mesh, RelativeIndicesAndContinuedLines) {
+  const TempDir dir;
+  const std::string path = dir.File("t.obj");
+  WriteBytes(path,
+             "v 0 0 0\r\nv +1 0 0\r\nv 0 1e0 0 # comment\r\n"
+             "f -3 -2 \\\r\n-1\r\nv 0 0 2\nf -4 -1 -3");
+  const StatusOr<TriangleMesh> mesh = ReadMesh(path);
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  ASSERT_EQ(2u, mesh->triangles.size());
+  const auto corner = [&](size_t t, size_t i) {
+    return mesh->vertices[mesh->triangles[t][i]];
+  };
+  EXPECT_EQ(Eigen::Vector3f(0, 0, 0), corner(0, 0));
+  EXPECT_EQ(Eigen::Vector3f(1, 0, 0), corner(0, 1));
+  EXPECT_EQ(Eigen::Vector3f(0, 1, 0), corner(0, 2));
+  EXPECT_EQ(Eigen::Vector3f(0, 0, 2), corner(1, 1));
+  EXPECT_EQ(Eigen::Vector3f(1, 0, 0), corner(1, 2));
 }
 
 TEST(Mesh, BadMeshesAreRefused) {
@@ -240,6 +263,7 @@ TEST(Mesh, SharedMeshesAreClosedAndOriented) {
         ReadMesh(data_dir + "/meshes/" + name + ".obj");
     ASSERT_TRUE(mesh.ok()) << mesh.status().message();
     ExpectValid(*mesh);
+    EXPECT_TRUE(IsClosed(*mesh)) << name;
     EXPECT_GT(SignedVolume(*mesh), 0.0) << name;
     FitUnitSphere(&*mesh);
     float farthest = 0.0f;
