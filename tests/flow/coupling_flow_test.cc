@@ -1,0 +1,313 @@
+#include "ibrdf/flow/coupling_flow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "ibrdf/flow/coupling_flow_reference.h"
+
+namespace ibrdf {
+namespace {
+
+// Weights well away from the identity, so that a test sees curved maps:
+// scale 1 is the trainer's start, 4 is rougher than trained models are.
+std::vector<float> Weights(const FlowShape& shape, float scale,
+                           uint64_t seed = 3) {
+  std::vector<float> w = InitialFlowWeights(shape, seed);
+  const DenseLayer last = shape.DenseLayers().back();
+  for (int l = 0; l < shape.layers; ++l) {
+    float* layer = w.data() + l * shape.WeightsPerLayer();
+    for (int k = 0; k < last.in_count * last.out_count; ++k) {
+      layer[last.weight_offset + k] *= scale;
+    }
+  }
+  return w;
+}
+
+std::vector<float> Code(int size, double norm, uint64_t seed = 5) {
+  std::mt19937_64 rng(seed);
+  std::normal_distribution<double> normal;
+  std::vector<float> z(size);
+  double sum = 0.0;
+  for (float& v : z) {
+    v = static_cast<float>(normal(rng));
+    sum += static_cast<double>(v) * v;
+  }
+  for (float& v : z) v *= static_cast<float>(norm / std::sqrt(sum));
+  return z;
+}
+
+// Random points of the closed cube: inside, on faces, edges and corners.
+std::vector<float> Points(int count, uint64_t seed = 7) {
+  std::mt19937_64 rng(seed);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  std::uniform_int_distribution<int> kind(0, 9);
+  std::vector<float> x(3 * static_cast<size_t>(count));
+  for (float& v : x) {
+    const int k = kind(rng);
+    v = k == 0 ? 0.0f : (k == 1 ? 1.0f : uniform(rng));
+  }
+  return x;
+}
+
+using Reference = CouplingFlowReference<double>;
+
+struct Case {
+  FlowShape shape;
+  float scale;
+  double code_norm;
+};
+
+std::vector<Case> Cases() {
+  FlowShape usual;
+  FlowShape odd;
+  odd.layers = 5;
+  odd.bins = 5;
+  odd.code_size = 3;
+  odd.widths = {19, 7};
+  FlowShape flat;
+  flat.layers = 3;
+  flat.bins = 32;
+  flat.widths = {33};
+  return {{usual, 1.0f, 0.5}, {usual, 4.0f, 1.0}, {usual, 4.0f, 30.0},
+          {odd, 3.0f, 1.0},   {flat, 3.0f, 0.0}};
+}
+
+TEST(CouplingFlowReference, GradientsMatchFiniteDifferences) {
+  // Central differences in double, step 1e-6: truncation 1e-12 and rounding
+  // 1e-10 relative to values of order one. Points near a knot, where the
+  // density has a kink in x, are told by the one-sided differences.
+  constexpr double kTolerance = 2e-6, kStep = 1e-6;
+  for (const Case& c : Cases()) {
+    const std::vector<float> w = Weights(c.shape, c.scale);
+    const Reference flow(c.shape, w.data());
+    const std::vector<float> zf = Code(c.shape.code_size, c.code_norm);
+    std::vector<double> z(zf.begin(), zf.end());
+    std::mt19937_64 rng(11);
+    std::uniform_real_distribution<double> uniform(0.001, 0.999);
+    int checked = 0;
+    for (int trial = 0; trial < 6; ++trial) {
+      double x[3] = {uniform(rng), uniform(rng), uniform(rng)}, u[3], dx[3];
+      std::vector<double> dz(c.shape.code_size), dw;
+      const double value =
+          flow.LogDensityWithGradient(x, z.data(), dx, dz.data(), &dw);
+      EXPECT_NEAR(value, flow.LogDensity(x, z.data(), u), 1e-12);
+      const auto check = [&](double analytic, double minus, double plus) {
+        const double left = (value - minus) / kStep;
+        const double right = (plus - value) / kStep;
+        if (std::abs(left - right) > 1e-3 * (1 + std::abs(analytic))) return;
+        ++checked;
+        EXPECT_NEAR(analytic, (left + right) / 2,
+                    kTolerance * (1 + std::abs(analytic)));
+      };
+      for (int i = 0; i < 3; ++i) {
+        double y[3] = {x[0], x[1], x[2]};
+        y[i] -= kStep;
+        const double minus = flow.LogDensity(y, z.data(), u);
+        y[i] += 2 * kStep;
+        check(dx[i], minus, flow.LogDensity(y, z.data(), u));
+      }
+      for (int i = 0; i < c.shape.code_size; ++i) {
+        std::vector<double> y = z;
+        y[i] -= kStep;
+        const double minus = flow.LogDensity(x, y.data(), u);
+        y[i] += 2 * kStep;
+        check(dz[i], minus, flow.LogDensity(x, y.data(), u));
+      }
+      std::uniform_int_distribution<size_t> pick(0, w.size() - 1);
+      for (int i = 0; i < 60; ++i) {
+        const size_t at = pick(rng);
+        std::vector<double> y(w.begin(), w.end());
+        y[at] -= kStep;
+        const double minus =
+            Reference(c.shape, y.data()).LogDensity(x, z.data(), u);
+        y[at] += 2 * kStep;
+        check(dw[at], minus,
+              Reference(c.shape, y.data()).LogDensity(x, z.data(), u));
+      }
+    }
+    EXPECT_GT(checked, 6 * (60 + c.shape.code_size));  // kinks are rare
+  }
+}
+
+TEST(CouplingFlowReference, InverseUndoesForwardOnTheClosedCube) {
+  for (const Case& c : Cases()) {
+    const std::vector<float> w = Weights(c.shape, c.scale);
+    const Reference flow(c.shape, w.data());
+    const std::vector<float> zf = Code(c.shape.code_size, c.code_norm);
+    const std::vector<double> z(zf.begin(), zf.end());
+    const int n = 300;
+    const std::vector<float> points = Points(n);
+    for (int p = 0; p < n; ++p) {
+      const double x[3] = {points[p], points[n + p], points[2 * n + p]};
+      double u[3], back[3];
+      const double forward = flow.LogDensity(x, z.data(), u);
+      const double inverse = flow.Inverse(u, z.data(), back);
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(x[i], back[i], 1e-9);
+      EXPECT_NEAR(forward, inverse, 1e-7);
+    }
+  }
+}
+
+TEST(CouplingFlowReference, DensityIntegratesToOne) {
+  // Midpoint rule on 96^3 cells; piecewise-linear densities leave an error of
+  // second order in the cell size.
+  for (const Case& c : Cases()) {
+    const std::vector<float> w = Weights(c.shape, c.scale);
+    const CouplingFlow flow(c.shape, w);
+    const std::vector<float> z = Code(c.shape.code_size, c.code_norm);
+    constexpr int kCells = 96;
+    const int64_t n = int64_t{kCells} * kCells * kCells;
+    std::vector<float> x(3 * n), log_density(n);
+    for (int64_t i = 0; i < n; ++i) {
+      x[i] = (i / (kCells * kCells) + 0.5f) / kCells;
+      x[n + i] = (i / kCells % kCells + 0.5f) / kCells;
+      x[2 * n + i] = (i % kCells + 0.5f) / kCells;
+    }
+    flow.LogDensity(x.data(), n, z.data(), 2, log_density.data(), nullptr);
+    double sum = 0.0;
+    for (const float v : log_density) sum += std::exp(static_cast<double>(v));
+    EXPECT_NEAR(1.0, sum / static_cast<double>(n), 5e-3);
+  }
+}
+
+class CouplingFlowLevels : public testing::TestWithParam<SimdLevel> {
+ protected:
+  void SetUp() override {
+    if (!SimdLevelSupported(GetParam())) {
+      GTEST_SKIP() << "this machine lacks " << SimdLevelName(GetParam());
+    }
+  }
+};
+
+TEST_P(CouplingFlowLevels, AgreesWithTheReference) {
+  // Float rounding grows through six maps by their slopes; 2e-4 of a value of
+  // order one is about a thousand roundings.
+  constexpr float kTolerance = 2e-4f;
+  for (const Case& c : Cases()) {
+    const std::vector<float> w = Weights(c.shape, c.scale);
+    const CouplingFlow flow(c.shape, w, GetParam());
+    const Reference reference(c.shape, w.data());
+    const std::vector<float> zf = Code(c.shape.code_size, c.code_norm);
+    const std::vector<double> z(zf.begin(), zf.end());
+    const int n = 150;  // not a multiple of the block
+    const std::vector<float> x = Points(n);
+    std::vector<float> value(n), dcode(n * c.shape.code_size), dx(3 * n);
+    flow.LogDensityWithGradient(x.data(), n, zf.data(), 2, value.data(),
+                                dcode.data(), dx.data());
+    std::vector<float> plain(n), latent(3 * n), back(3 * n), inverse(n);
+    flow.LogDensity(x.data(), n, zf.data(), 1, plain.data(), latent.data());
+    EXPECT_EQ(plain, value);
+    flow.Inverse(latent.data(), n, zf.data(), 2, back.data(), inverse.data());
+    int gradients_off = 0;
+    for (int p = 0; p < n; ++p) {
+      const double xp[3] = {x[p], x[n + p], x[2 * n + p]};
+      double gx[3];
+      std::vector<double> gz(c.shape.code_size);
+      const double v =
+          reference.LogDensityWithGradient(xp, z.data(), gx, gz.data(), nullptr);
+      EXPECT_NEAR(v, value[p], kTolerance * (1 + std::abs(v)));
+      double scale = 1.0;
+      for (const double g : gz) scale = std::max(scale, std::abs(g));
+      bool off = false;
+      for (int k = 0; k < c.shape.code_size; ++k) {
+        off |= std::abs(gz[k] - dcode[k * n + p]) > 5e-3 * scale;
+      }
+      gradients_off += off;
+      // In float the inverse is exact up to rounding over the slope.
+      EXPECT_NEAR(value[p], inverse[p], 2e-2) << "point " << p;
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(x[i * n + p], back[i * n + p], 2e-5);
+      }
+    }
+    // A point within rounding of a knot may fall in the next bin, where the
+    // gradient differs.
+    EXPECT_LE(gradients_off, n / 50);
+  }
+}
+
+TEST_P(CouplingFlowLevels, TrainingGradientMatchesTheReference) {
+  const FlowShape shape;
+  const std::vector<float> w = Weights(shape, 3.0f);
+  const CouplingFlow flow(shape, w, GetParam());
+  const Reference reference(shape, w.data());
+  const std::vector<float> zf = Code(shape.code_size, 0.8);
+  const std::vector<double> z(zf.begin(), zf.end());
+  std::vector<float> x = Points(kFlowBlock);
+  std::vector<float> value(kFlowBlock), adjoint(kFlowBlock);
+  std::mt19937_64 rng(1);
+  std::normal_distribution<float> normal;
+  for (float& a : adjoint) a = normal(rng);
+  CouplingFlow::TrainingPass pass(flow);
+  pass.Forward(x.data(), zf.data(), value.data());
+  std::vector<float> padded(flow.PaddedGradientSize(), 0.0f);
+  std::vector<float> dz(shape.code_size, 0.0f), dw(w.size(), 0.0f);
+  pass.Backward(adjoint.data(), padded.data(), dz.data());
+  flow.UnpadGradient(padded.data(), dw.data());
+  std::vector<double> rw(w.size(), 0.0), rz(shape.code_size, 0.0);
+  for (int p = 0; p < kFlowBlock; ++p) {
+    const double xp[3] = {x[p], x[kFlowBlock + p], x[2 * kFlowBlock + p]};
+    std::vector<double> gz(shape.code_size), gw;
+    reference.LogDensityWithGradient(xp, z.data(), nullptr, gz.data(), &gw);
+    for (size_t i = 0; i < gw.size(); ++i) rw[i] += adjoint[p] * gw[i];
+    for (size_t i = 0; i < gz.size(); ++i) rz[i] += adjoint[p] * gz[i];
+  }
+  double error = 0.0, norm = 0.0;
+  for (size_t i = 0; i < rw.size(); ++i) {
+    error += (rw[i] - dw[i]) * (rw[i] - dw[i]);
+    norm += rw[i] * rw[i];
+  }
+  EXPECT_LT(std::sqrt(error / norm), 1e-3);
+  for (int k = 0; k < shape.code_size; ++k) EXPECT_NEAR(rz[k], dz[k], 1e-2);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CouplingFlowLevels,
+                         testing::Values(SimdLevel::kPortable, SimdLevel::kAvx2,
+                                         SimdLevel::kAvx512),
+                         [](const testing::TestParamInfo<SimdLevel>& level) {
+                           return SimdLevelName(level.param);
+                         });
+
+TEST(CouplingFlow, SameBitsForAnyNumberOfThreads) {
+  const FlowShape shape;
+  const CouplingFlow flow(shape, Weights(shape, 3.0f));
+  const std::vector<float> z = Code(shape.code_size, 1.0);
+  const int n = 1000;
+  const std::vector<float> x = Points(n);
+  std::vector<float> first(n), first_dz(n * shape.code_size);
+  flow.LogDensityWithGradient(x.data(), n, z.data(), 1, first.data(),
+                              first_dz.data(), nullptr);
+  for (const int threads : {2, 8}) {
+    std::vector<float> value(n), dz(n * shape.code_size);
+    flow.LogDensityWithGradient(x.data(), n, z.data(), threads, value.data(),
+                                dz.data(), nullptr);
+    EXPECT_EQ(first, value);
+    EXPECT_EQ(first_dz, dz);
+  }
+}
+
+TEST(CouplingFlow, StaysFiniteForExtremeWeightsAndCodes) {
+  const FlowShape shape;
+  for (const float scale : {0.0f, 100.0f, 1e4f}) {
+    for (const double norm : {0.0, 1.0, 1e3}) {
+      const CouplingFlow flow(shape, Weights(shape, scale));
+      const std::vector<float> z = Code(shape.code_size, norm);
+      const int n = 500;
+      const std::vector<float> x = Points(n);
+      std::vector<float> v(n), dz(n * shape.code_size), dx(3 * n), u(3 * n);
+      flow.LogDensityWithGradient(x.data(), n, z.data(), 1, v.data(), dz.data(),
+                                  dx.data());
+      flow.Inverse(x.data(), n, z.data(), 1, u.data(), nullptr);
+      for (const float a : v) ASSERT_TRUE(std::isfinite(a));
+      for (const float a : dz) ASSERT_TRUE(std::isfinite(a));
+      for (const float a : dx) ASSERT_TRUE(std::isfinite(a));
+      for (const float a : u) ASSERT_TRUE(a >= 0.0f && a <= 1.0f);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ibrdf
