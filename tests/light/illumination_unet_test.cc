@@ -41,12 +41,19 @@ IlluminationUnetOptions Options(int width, int height, int scales, int channels,
   return options;
 }
 
+IlluminationUnetOptions Plain(IlluminationUnetOptions options) {
+  options.normalize = false;
+  return options;
+}
+
 std::vector<IlluminationUnetOptions> ManyOptions() {
-  return {Options(128, 64, 4, 32, 8, 8), Options(64, 32, 4, 32, 8, 8),
-          Options(32, 16, 4, 32, 8, 8),  Options(16, 8, 4, 24, 5, 3),
-          Options(8, 4, 4, 40, 17, 9),   Options(20, 10, 2, 7, 1, 1),
-          Options(32, 16, 2, 16, 0, 4),  Options(6, 3, 4, 8, 2, 2),
-          Options(12, 6, 3, 1, 1, 1),    Options(24, 8, 3, 50, 20, 5)};
+  return {
+      Options(128, 64, 4, 32, 8, 8),       Options(64, 32, 4, 32, 8, 8),
+      Options(32, 16, 4, 32, 8, 8),        Options(16, 8, 4, 24, 5, 3),
+      Options(8, 4, 4, 40, 17, 9),         Options(20, 10, 2, 7, 1, 1),
+      Options(32, 16, 2, 16, 0, 4),        Options(6, 3, 4, 8, 2, 2),
+      Options(12, 6, 3, 1, 1, 1),          Options(24, 8, 3, 50, 20, 5),
+      Plain(Options(64, 32, 4, 32, 8, 8)), Plain(Options(16, 8, 2, 9, 5, 3))};
 }
 
 std::string Name(const IlluminationUnetOptions& o) {
@@ -119,7 +126,7 @@ FastPasses RunFast(const IlluminationUnet& unet, const Floats& weights,
 TEST(IlluminationUnetReference, JvpMatchesCentralDifferences) {
   for (const auto& options :
        {Options(16, 8, 4, 8, 3, 4), Options(8, 4, 2, 6, 2, 2),
-        Options(32, 16, 3, 6, 0, 3)}) {
+        Options(32, 16, 3, 6, 0, 3), Plain(Options(16, 8, 4, 8, 3, 4))}) {
     const IlluminationUnet unet(options);
     const auto reference = Reference(unet);
     for (const double scale : {1.0, 10.0, 1e-3, 0.0}) {
@@ -256,8 +263,8 @@ TEST(IlluminationUnet, ScratchMayBeReusedByProductsAndNetworks) {
   }
 }
 
-// Noise turned by a multiple of the coarsest texel turns the map alike, to the
-// bit; by less it does not.
+// Noise turned by a multiple of the coarsest texel turns the map alike (but for
+// the order of the normalisation's sums); by less it does not.
 TEST(IlluminationUnet, TurnsWithItsNoise) {
   const IlluminationUnetOptions options = Options(64, 32, 3, 16, 4, 4);
   const IlluminationUnet unet(options);
@@ -279,7 +286,9 @@ TEST(IlluminationUnet, TurnsWithItsNoise) {
   };
   const Floats base = map(unet.noise());
   for (const int columns : {8, 16, 32, 56}) {
-    EXPECT_EQ(turned(base, columns), map(turned(unet.noise(), columns)));
+    EXPECT_LT(RelativeError(map(turned(unet.noise(), columns)),
+                            turned(base, columns)),
+              kFloatRounding);
   }
   EXPECT_GT(RelativeError(map(turned(unet.noise(), 4)), turned(base, 4)), 0.01);
 }
@@ -312,7 +321,7 @@ template <typename SetWeights, typename Expected>
 double LargestError(int height, const SetWeights& set,
                     const Expected& expected) {
   const IlluminationUnetOptions options =
-      Options(2 * height, height, 1, 1, 1, 1);
+      Plain(Options(2 * height, height, 1, 1, 1, 1));
   const double h = kPi / height;
   Floats noise;
   for (int r = 0; r < height; ++r) {

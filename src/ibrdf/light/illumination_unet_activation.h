@@ -11,4 +11,7 @@ constexpr float kUnetLeak = 0.1f;
 constexpr float kUnetCurvature = 1.0f;  // c
 constexpr float kUnetSaturation = 1e8f;
 
+// Added to the variance by instance normalisation.
+constexpr float kUnetNormEpsilon = 1e-4f;
+
 }  // namespace ibrdf

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "ibrdf/base/parallel_for.h"
 
@@ -88,6 +89,25 @@ void ToPlanar(const UnetMap& map, float* planar) {
   }
 }
 
+// Means over the texels of x, or of x y; [padded channel].
+std::vector<double> ChannelMeans(const UnetKernels& kernels, const UnetMap& x,
+                                 const UnetMap* y) {
+  std::vector<double> mean(x.stride, 0.0);
+  for (int row = 0; row < x.height; ++row) {
+    UnetBuffer sum(x.stride, 0.0f);
+    if (y == nullptr) {
+      kernels.add_texels(x.At(row, 0), x.stride, x.width, x.channels,
+                         sum.data());
+    } else {
+      kernels.add_products(x.At(row, 0), y->At(row, 0), x.stride, x.width,
+                           x.channels, sum.data());
+    }
+    for (int c = 0; c < x.channels; ++c) mean[c] += sum[c];
+  }
+  for (double& m : mean) m /= static_cast<double>(x.height) * x.width;
+  return mean;
+}
+
 // Appends the taps of one input for output row `row`.
 void AddTaps(const UnetStep& step, const UnetMap& input, int row,
              const float* weights, int out_stride, std::vector<UnetTap>* taps) {
@@ -158,6 +178,10 @@ void UnetEngine::Size(UnetBuffers* buffers) const {
   for (const UnetStep& step : plan_.steps) {
     buffers->slopes.emplace_back(
         step.activate ? buffers->maps[step.output].size() : 0);
+    buffers->normalized.emplace_back(
+        step.normalize ? buffers->maps[step.output].size() : 0);
+    buffers->inverse_deviation.emplace_back(
+        step.normalize ? Pad(plan_.tensors[step.output].channels) : 0);
   }
   buffers->weights.resize(packed_size_);
   buffers->transposed.resize(transposed_size_);
@@ -258,6 +282,54 @@ void UnetEngine::Upsample(const UnetStep& step,
   }
 }
 
+void UnetEngine::Normalize(int step_index, UnetBuffers* forward) const {
+  const UnetStep& step = plan_.steps[step_index];
+  const UnetMap x = MapOf(step.output, forward->maps);
+  const UnetMap y{forward->normalized[step_index].data(), x.channels, x.height,
+                  x.width, x.stride};
+  UnetBuffer& inverse = forward->inverse_deviation[step_index];
+  const UnetBuffer zero(x.stride, 0.0f), one(x.stride, 1.0f);
+  UnetBuffer shift(x.stride, 0.0f);
+  const std::vector<double> mean = ChannelMeans(kernels_, x, nullptr);
+  for (int c = 0; c < x.stride; ++c) shift[c] = static_cast<float>(-mean[c]);
+  for (int row = 0; row < x.height; ++row) {
+    kernels_.combine(x.At(row, 0), x.At(row, 0), x.stride, x.width, one.data(),
+                     shift.data(), zero.data());
+  }
+  const std::vector<double> variance = ChannelMeans(kernels_, x, &x);
+  for (int c = 0; c < x.channels; ++c) {
+    inverse[c] = static_cast<float>(
+        1.0 / std::sqrt(variance[c] + double{kUnetNormEpsilon}));
+  }
+  const float* bias = forward->weights.data() + packing_[step_index].bias;
+  for (int row = 0; row < x.height; ++row) {
+    kernels_.combine(x.At(row, 0), x.At(row, 0), x.stride, x.width,
+                     inverse.data(), zero.data(), zero.data());
+    std::copy_n(x.At(row, 0), static_cast<int64_t>(x.width) * x.stride,
+                y.At(row, 0));
+    kernels_.combine(x.At(row, 0), x.At(row, 0), x.stride, x.width, one.data(),
+                     bias, zero.data());
+  }
+}
+
+void UnetEngine::ApplyNormJacobian(int step_index, const UnetBuffers& forward,
+                                   const float* shift, const UnetMap& d) const {
+  const UnetMap y{const_cast<float*>(forward.normalized[step_index].data()),
+                  d.channels, d.height, d.width, d.stride};
+  const UnetBuffer& inverse = forward.inverse_deviation[step_index];
+  const std::vector<double> mean = ChannelMeans(kernels_, d, nullptr);
+  const std::vector<double> along = ChannelMeans(kernels_, d, &y);
+  UnetBuffer offset(d.stride, 0.0f), slope(d.stride, 0.0f);
+  for (int c = 0; c < d.channels; ++c) {
+    offset[c] = shift[c] - static_cast<float>(inverse[c] * mean[c]);
+    slope[c] = -static_cast<float>(inverse[c] * along[c]);
+  }
+  for (int row = 0; row < d.height; ++row) {
+    kernels_.combine(d.At(row, 0), y.At(row, 0), d.stride, d.width,
+                     inverse.data(), offset.data(), slope.data());
+  }
+}
+
 void UnetEngine::Forward(const float* weights, UnetBuffers* forward,
                          float* log_radiance) const {
   Size(forward);
@@ -274,6 +346,9 @@ void UnetEngine::Forward(const float* weights, UnetBuffers* forward,
     UnetBuffer& slopes = forward->slopes[s];
     const UnetMap slope{slopes.data(), out.channels, out.height, out.width,
                         out.stride};
+    const UnetBuffer zero(out.stride, 0.0f);
+    const float* start =
+        step.normalize ? zero.data() : packed + packing_[s].bias;
     ParallelFor(out.height, ThreadsFor(step), [&](int64_t r, int) {
       const int row = static_cast<int>(r);
       std::vector<UnetTap> taps;
@@ -283,13 +358,14 @@ void UnetEngine::Forward(const float* weights, UnetBuffers* forward,
                 packed + packing_[s].weights[k], out.stride, &taps);
       }
       kernels_.convolve_row(taps.data(), static_cast<int>(taps.size()),
-                            out.stride, out.channels, packed + packing_[s].bias,
-                            out.At(row, 0), out.stride, out.width);
-      if (step.activate) {
-        kernels_.activate(out.At(row, 0), slope.At(row, 0),
-                          static_cast<int64_t>(out.width) * out.stride);
-      }
+                            out.stride, out.channels, start, out.At(row, 0),
+                            out.stride, out.width);
     });
+    if (step.normalize) Normalize(static_cast<int>(s), forward);
+    for (int row = 0; step.activate && row < out.height; ++row) {
+      kernels_.activate(out.At(row, 0), slope.At(row, 0),
+                        static_cast<int64_t>(out.width) * out.stride);
+    }
     FillBorder(out);
   }
   ToPlanar(MapOf(plan_.steps.back().output, forward->maps), log_radiance);
@@ -312,6 +388,9 @@ void UnetEngine::Jvp(const float* tangent, const UnetBuffers& forward,
     }
     const UnetMap slope{const_cast<float*>(forward.slopes[s].data()),
                         out.channels, out.height, out.width, out.stride};
+    const UnetBuffer zero(out.stride, 0.0f);
+    const float* bias = d_packed + packing_[s].bias;
+    const float* start = step.normalize ? zero.data() : bias;
     ParallelFor(out.height, ThreadsFor(step), [&](int64_t r, int) {
       const int row = static_cast<int>(r);
       std::vector<UnetTap> taps;
@@ -323,14 +402,17 @@ void UnetEngine::Jvp(const float* tangent, const UnetBuffers& forward,
         AddTaps(step, MapOf(step.inputs[k], scratch->maps), row,
                 packed + packing_[s].weights[k], out.stride, &taps);
       }
-      kernels_.convolve_row(
-          taps.data(), static_cast<int>(taps.size()), out.stride, out.channels,
-          d_packed + packing_[s].bias, out.At(row, 0), out.stride, out.width);
-      if (step.activate) {
-        kernels_.multiply(out.At(row, 0), slope.At(row, 0),
-                          static_cast<int64_t>(out.width) * out.stride);
-      }
+      kernels_.convolve_row(taps.data(), static_cast<int>(taps.size()),
+                            out.stride, out.channels, start, out.At(row, 0),
+                            out.stride, out.width);
     });
+    if (step.normalize) {
+      ApplyNormJacobian(static_cast<int>(s), forward, bias, out);
+    }
+    for (int row = 0; step.activate && row < out.height; ++row) {
+      kernels_.multiply(out.At(row, 0), slope.At(row, 0),
+                        static_cast<int64_t>(out.width) * out.stride);
+    }
     FillBorder(out);
   }
   ToPlanar(MapOf(plan_.steps.back().output, scratch->maps), d_log_radiance);
@@ -457,6 +539,10 @@ void UnetEngine::Vjp(const float* adjoint, const UnetBuffers& forward,
                           bias.data());
     }
     std::copy_n(bias.data(), out.channels, weight_gradient + step.bias_offset);
+    if (step.normalize) {
+      const UnetBuffer zero(out.stride, 0.0f);
+      ApplyNormJacobian(s, forward, zero.data(), out);
+    }
     WrapColumns(out);
     AddWeightGradient(s, forward.maps, scratch->maps, &scratch->gradient);
     for (size_t k = 0; k < step.inputs.size(); ++k) {

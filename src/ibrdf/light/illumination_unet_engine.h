@@ -47,12 +47,14 @@ struct UnetMap {
 
 // Buffers of one pass; empty until first used.
 struct UnetBuffers {
-  std::vector<UnetBuffer> maps;    // by tensor
-  std::vector<UnetBuffer> slopes;  // of activations, by step
-  UnetBuffer weights;              // packed, or their tangent
-  UnetBuffer transposed;           // packed
-  UnetBuffer gradient;             // packed
-  uint64_t owner = 0;              // id of the engine that sized them
+  std::vector<UnetBuffer> maps;               // by tensor
+  std::vector<UnetBuffer> slopes;             // of activations, by step
+  std::vector<UnetBuffer> normalized;         // sums, by step
+  std::vector<UnetBuffer> inverse_deviation;  // by step and channel
+  UnetBuffer weights;                         // packed, or their tangent
+  UnetBuffer transposed;                      // packed
+  UnetBuffer gradient;                        // packed
+  uint64_t owner = 0;  // id of the engine that sized them
 };
 
 class UnetEngine {
@@ -92,6 +94,13 @@ class UnetEngine {
   void PackTransposed(const UnetBuffer& packed, UnetBuffer* transposed) const;
   void UnpackGradient(const UnetBuffer& gradient, float* weight_gradient) const;
 
+  // In place: normalises a step's sums and adds its bias, leaving in `forward`
+  // what the Jacobian needs.
+  void Normalize(int step_index, UnetBuffers* forward) const;
+  // Applies the Jacobian of the normalisation, which is symmetric, to a tangent
+  // or adjoint in place, and adds `shift` [padded channel].
+  void ApplyNormJacobian(int step_index, const UnetBuffers& forward,
+                         const float* shift, const UnetMap& d) const;
   void Upsample(const UnetStep& step,
                 const std::vector<UnetBuffer>& maps) const;
   void PropagateToInput(int step_index, size_t input, bool overwrite,

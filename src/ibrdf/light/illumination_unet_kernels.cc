@@ -139,6 +139,28 @@ void AddTexels(const float* adjoint, int stride, int texels, int out_channels,
   }
 }
 
+void AddProducts(const float* x, const float* y, int stride, int texels,
+                 int out_channels, float* sum) {
+  for (int c = 0; c < out_channels; c += kLanes) {
+    Vf total = Load(sum + c);
+    for (int t = 0; t < texels; ++t) {
+      total += Load(x + t * stride + c) * Load(y + t * stride + c);
+    }
+    Store(sum + c, total);
+  }
+}
+
+void Combine(float* x, const float* y, int stride, int texels,
+             const float* scale, const float* shift, const float* slope) {
+  for (int c = 0; c < stride; c += kLanes) {
+    const Vf a = Load(scale + c), b = Load(shift + c), s = Load(slope + c);
+    for (int t = 0; t < texels; ++t) {
+      float* to = x + t * stride + c;
+      Store(to, a * Load(to) + (b + s * Load(y + t * stride + c)));
+    }
+  }
+}
+
 void Activate(float* x, float* slope, int64_t count) {
   const float ramp = 0.5f * (1.0f + kUnetLeak);
   const float bend = 0.5f * (1.0f - kUnetLeak);
@@ -204,8 +226,8 @@ void UpsampleAdjointRow(const float* const fine[4], int stride, int texels,
 
 const UnetKernels& IlluminationUnetKernels() {
   static constexpr UnetKernels kernels = {
-      ConvolveRow, WeightGradient, AddTexels,         Activate,
-      Multiply,    UpsampleRow,    UpsampleAdjointRow};
+      ConvolveRow, WeightGradient, AddTexels,   AddProducts,       Combine,
+      Activate,    Multiply,       UpsampleRow, UpsampleAdjointRow};
   return kernels;
 }
 

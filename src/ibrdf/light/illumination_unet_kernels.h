@@ -38,6 +38,12 @@ struct UnetKernels {
   // sum[o] += sum over texels of adjoint[texel][o].
   void (*add_texels)(const float* adjoint, int stride, int texels,
                      int out_channels, float* sum);
+  // sum[o] += sum over texels of x[texel][o] y[texel][o].
+  void (*add_products)(const float* x, const float* y, int stride, int texels,
+                       int out_channels, float* sum);
+  // x = scale x + shift + slope y, each factor [stride], by channel.
+  void (*combine)(float* x, const float* y, int stride, int texels,
+                  const float* scale, const float* shift, const float* slope);
   // Activation in place (illumination_unet_activation.h) and its slope; count
   // is a multiple of kUnetChannelGroup here and below.
   void (*activate)(float* x, float* slope, int64_t count);

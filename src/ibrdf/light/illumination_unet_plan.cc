@@ -58,6 +58,7 @@ class Builder {
     step.size = size;
     step.stride = stride;
     step.activate = activate;
+    step.normalize = activate && options_.normalize;
     const int fan_in = size * size * plan_.InputChannels(step);
     const bool is_output = !activate;
     step.weight_offset =

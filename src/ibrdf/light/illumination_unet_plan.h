@@ -18,6 +18,9 @@ struct IlluminationUnetOptions {
   int channels = 32;      // of every feature map but the skip branches
   int skip_channels = 8;  // of the 1x1 skip branches; 0: none
   int noise_channels = 8;
+  // Instance normalisation of every hidden convolution: bounds how strongly
+  // the map responds to its weights, which optimisers of any order need.
+  bool normalize = true;
   uint64_t seed = 0;    // of the noise
   int num_threads = 0;  // <= 0: HardwareThreads(); the bits do not depend on it
 };
@@ -44,6 +47,9 @@ struct UnetStep {
   int size = 1;             // 1, 3, or 4 with stride 2
   int stride = 1;           // 1 or 2
   int before() const { return (size - stride) / 2; }  // taps before s q
+  // Before bias and activation, each output channel less its mean over the
+  // map, by its standard deviation (+ kUnetNormEpsilon under the root).
+  bool normalize = false;
   bool activate = false;
   int weight_offset = 0;  // [size][size][input channel][output channel]
   int bias_offset = 0;    // [output channel]

@@ -10,11 +10,13 @@
 namespace ibrdf {
 
 // Feature maps [channel][row][column] of one pass, by tensor of the plan, and
-// the activations' slopes, by step.
+// the activations' slopes and normalised sums, by step.
 template <typename T>
 struct UnetReferencePass {
   std::vector<std::vector<T>> tensors;
   std::vector<std::vector<T>> slopes;
+  std::vector<std::vector<T>> normalized;
+  std::vector<std::vector<T>> inverse_deviation;  // by step and channel
 
   const std::vector<T>& log_radiance() const { return tensors.back(); }
 };
@@ -32,11 +34,12 @@ class UnetReference {
     for (size_t s = 0; s < plan_.steps.size(); ++s) {
       const UnetStep& step = plan_.steps[s];
       std::vector<T>& out = pass.tensors[step.output];
-      AddBias(step, weights, &out);
       ForEachTerm(step, [&](size_t o, int tensor, size_t i, int w, T factor) {
         out[o] +=
             factor * pass.tensors[tensor][i] * (w < 0 ? T(1) : weights[w]);
       });
+      if (step.normalize) Normalize(static_cast<int>(s), &pass);
+      AddBias(step, weights, &out);
       if (!step.activate) continue;
       for (size_t o = 0; o < out.size(); ++o) {
         Activate(&out[o], &pass.slopes[s][o]);
@@ -53,7 +56,6 @@ class UnetReference {
     for (size_t s = 0; s < plan_.steps.size(); ++s) {
       const UnetStep& step = plan_.steps[s];
       std::vector<T>& out = d.tensors[step.output];
-      AddBias(step, tangent, &out);
       ForEachTerm(step, [&](size_t o, int tensor, size_t i, int w, T factor) {
         if (w < 0) {
           out[o] += factor * d.tensors[tensor][i];
@@ -62,6 +64,8 @@ class UnetReference {
                     tangent[w] * pass.tensors[tensor][i];
         }
       });
+      if (step.normalize) ApplyNormJacobian(static_cast<int>(s), pass, &out);
+      AddBias(step, tangent, &out);
       for (size_t o = 0; o < out.size(); ++o) out[o] *= pass.slopes[s][o];
     }
     return d.tensors.back();
@@ -85,6 +89,7 @@ class UnetReference {
           gradient[step.bias_offset + o / texels] += out[o];
         }
       }
+      if (step.normalize) ApplyNormJacobian(static_cast<int>(s), pass, &out);
       ForEachTerm(step, [&](size_t o, int tensor, size_t i, int w, T factor) {
         if (w < 0) {
           a.tensors[tensor][i] += factor * out[o];
@@ -110,7 +115,11 @@ class UnetReference {
           static_cast<size_t>(t.channels) * t.height * t.width, T(0));
     }
     for (const UnetStep& step : plan_.steps) {
-      pass.slopes.emplace_back(pass.tensors[step.output].size(), T(1));
+      const size_t size = pass.tensors[step.output].size();
+      pass.slopes.emplace_back(size, T(1));
+      pass.normalized.emplace_back(step.normalize ? size : 0);
+      pass.inverse_deviation.emplace_back(
+          step.normalize ? plan_.tensors[step.output].channels : 0);
     }
     return pass;
   }
@@ -124,6 +133,43 @@ class UnetReference {
                  ? (T(1) + l) / T(2) + (T(1) - l) / T(2) * inside / root
                  : T(0);
     *x = (T(1) + l) / T(2) * inside + (T(1) - l) / T(2) * (root - c);
+  }
+
+  void Normalize(int s, UnetReferencePass<T>* pass) const {
+    std::vector<T>& x = pass->tensors[plan_.steps[s].output];
+    const size_t n = Texels(plan_.steps[s].output);
+    for (size_t c = 0; c < x.size() / n; ++c) {
+      T mean = T(0), variance = T(0);
+      for (size_t i = c * n; i < (c + 1) * n; ++i) mean += x[i] / T(n);
+      for (size_t i = c * n; i < (c + 1) * n; ++i) {
+        variance += (x[i] - mean) * (x[i] - mean) / T(n);
+      }
+      const T inverse = T(1) / std::sqrt(variance + T(kUnetNormEpsilon));
+      pass->inverse_deviation[s][c] = inverse;
+      for (size_t i = c * n; i < (c + 1) * n; ++i) {
+        x[i] = (x[i] - mean) * inverse;
+        pass->normalized[s][i] = x[i];
+      }
+    }
+  }
+
+  // The Jacobian of Normalize, which is symmetric: with y the normalised
+  // channel, d -> (d - mean(d) - y mean(y d)) / deviation.
+  void ApplyNormJacobian(int s, const UnetReferencePass<T>& pass,
+                         std::vector<T>* d) const {
+    const std::vector<T>& y = pass.normalized[s];
+    const size_t n = Texels(plan_.steps[s].output);
+    for (size_t c = 0; c < d->size() / n; ++c) {
+      T mean = T(0), along = T(0);
+      for (size_t i = c * n; i < (c + 1) * n; ++i) {
+        mean += (*d)[i] / T(n);
+        along += (*d)[i] * y[i] / T(n);
+      }
+      for (size_t i = c * n; i < (c + 1) * n; ++i) {
+        (*d)[i] =
+            ((*d)[i] - mean - y[i] * along) * pass.inverse_deviation[s][c];
+      }
+    }
   }
 
   void AddBias(const UnetStep& step, const std::vector<T>& weights,
