@@ -2,9 +2,9 @@
 // an encoder-decoder network of a fixed noise (Chen et al. 2020, Sec. 5), with
 // its derivative products by hand.
 //
-// Differs from the paper's network: no normalisation layers, so that both
-// derivative products are exact and cheap and a Gaussian prior on the weights
-// has a meaning; a smooth activation; maps continue over the poles.
+// Differs from the paper's network: instance instead of batch normalisation
+// (there is one map), a smooth activation, evenly placed 4 x 4 taps where a map
+// is halved, and maps that continue over the poles.
 #pragma once
 #include <cstdint>
 #include <memory>

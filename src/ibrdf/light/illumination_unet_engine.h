@@ -94,9 +94,9 @@ class UnetEngine {
   void PackTransposed(const UnetBuffer& packed, UnetBuffer* transposed) const;
   void UnpackGradient(const UnetBuffer& gradient, float* weight_gradient) const;
 
-  // In place: normalises a step's sums and adds its bias, leaving in `forward`
-  // what the Jacobian needs.
-  void Normalize(int step_index, UnetBuffers* forward) const;
+  // In place: normalises a step's sums, adds its bias and activates, leaving in
+  // `forward` what the Jacobian needs.
+  void NormalizeAndActivate(int step_index, UnetBuffers* forward) const;
   // Applies the Jacobian of the normalisation, which is symmetric, to a tangent
   // or adjoint in place, and adds `shift` [padded channel].
   void ApplyNormJacobian(int step_index, const UnetBuffers& forward,
