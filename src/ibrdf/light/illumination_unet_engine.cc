@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "ibrdf/base/parallel_for.h"
 
@@ -22,9 +21,6 @@ uint64_t NextId() {
   static std::atomic<uint64_t> last{0};
   return ++last;
 }
-
-int RoundUp(int n, int group) { return (n + group - 1) / group * group; }
-int Pad(int channels) { return RoundUp(channels, kUnetChannelGroup); }
 
 void CopyTexel(const UnetMap& map, int from_row, int from_column, int row,
                int column) {
@@ -89,28 +85,6 @@ void ToPlanar(const UnetMap& map, float* planar) {
   }
 }
 
-// Sums by channel over a map: rows in any thread, joined in order.
-class RowSums {
- public:
-  explicit RowSums(const UnetMap& map)
-      : map_(map), sums_(static_cast<size_t>(map.height) * map.stride, 0.0f) {}
-  float* Row(int64_t row) { return sums_.data() + row * map_.stride; }
-
-  // [padded channel]: the sums by the number of texels.
-  std::vector<double> Means() const {
-    std::vector<double> mean(map_.stride, 0.0);
-    for (size_t i = 0; i < sums_.size(); ++i) {
-      mean[i % map_.stride] += sums_[i];
-    }
-    for (double& m : mean) m /= static_cast<double>(map_.height) * map_.width;
-    return mean;
-  }
-
- private:
-  const UnetMap map_;
-  UnetBuffer sums_;
-};
-
 // Appends the taps of one input for output row `row`.
 void AddTaps(const UnetStep& step, const UnetMap& input, int row,
              const float* weights, int out_stride, std::vector<UnetTap>* taps) {
@@ -138,21 +112,23 @@ UnetEngine::UnetEngine(const UnetPlan& plan, const std::vector<float>& noise,
     const int out = plan_.tensors[step.output].channels;
     const int taps = step.size * step.size;
     packing.bias = packed_size_;
-    packed_size_ += Pad(out);
+    packed_size_ += PadUnetChannels(out);
     for (const int input : step.inputs) {
       const int in = plan_.tensors[input].channels;
       packing.weights.push_back(packed_size_);
-      packed_size_ += static_cast<int64_t>(taps) * in * Pad(out);
+      packed_size_ += static_cast<int64_t>(taps) * in * PadUnetChannels(out);
       packing.transposed.push_back(transposed_size_);
-      transposed_size_ += static_cast<int64_t>(taps) * out * Pad(in);
+      transposed_size_ +=
+          static_cast<int64_t>(taps) * out * PadUnetChannels(in);
       packing.gradient.push_back(gradient_size_);
-      gradient_size_ += static_cast<int64_t>(taps) * Pad(in) * Pad(out);
+      gradient_size_ += static_cast<int64_t>(taps) * PadUnetChannels(in) *
+                        PadUnetChannels(out);
     }
     packing_.push_back(packing);
   }
   const UnetTensor& t = plan_.tensors[0];
   CHECK_EQ(static_cast<size_t>(t.channels) * t.height * t.width, noise.size());
-  const int stride = Pad(t.channels);
+  const int stride = PadUnetChannels(t.channels);
   noise_.resize(static_cast<size_t>(t.height + 2) * (t.width + 2) * stride);
   const UnetMap map{noise_.data(), t.channels, t.height, t.width, stride};
   FromPlanar(noise.data(), map);
@@ -165,39 +141,7 @@ UnetMap UnetEngine::MapOf(int tensor,
   // The noise is shared and only read.
   const UnetBuffer& buffer = tensor == 0 ? noise_ : maps[tensor];
   return {const_cast<float*>(buffer.data()), t.channels, t.height, t.width,
-          Pad(t.channels)};
-}
-
-void UnetEngine::Size(UnetBuffers* buffers) const {
-  if (buffers->owner == id_) return;
-  // Zeros: channels beyond a map's own stay so.
-  *buffers = UnetBuffers();
-  buffers->owner = id_;
-  for (size_t i = 0; i < plan_.tensors.size(); ++i) {
-    const UnetTensor& t = plan_.tensors[i];
-    const int texels = i == 0 ? 0 : (t.height + 2) * (t.width + 2);
-    buffers->maps.emplace_back(static_cast<size_t>(texels) * Pad(t.channels));
-  }
-  for (const UnetStep& step : plan_.steps) {
-    buffers->slopes.emplace_back(
-        step.activate ? buffers->maps[step.output].size() : 0);
-    buffers->normalized.emplace_back(
-        step.normalize ? buffers->maps[step.output].size() : 0);
-    buffers->inverse_deviation.emplace_back(
-        step.normalize ? Pad(plan_.tensors[step.output].channels) : 0);
-  }
-  buffers->weights.resize(packed_size_);
-  buffers->transposed.resize(transposed_size_);
-  buffers->gradient.resize(gradient_size_);
-}
-
-UnetEngine::InputSlice UnetEngine::SliceOf(const UnetStep& step,
-                                           size_t input) const {
-  InputSlice slice{0, plan_.tensors[step.inputs[input]].channels};
-  for (size_t i = 0; i < input; ++i) {
-    slice.first_channel += plan_.tensors[step.inputs[i]].channels;
-  }
-  return slice;
+          PadUnetChannels(t.channels)};
 }
 
 int UnetEngine::ThreadsFor(const UnetStep& step) const {
@@ -206,71 +150,6 @@ int UnetEngine::ThreadsFor(const UnetStep& step) const {
                        out.channels * step.size * step.size *
                        plan_.InputChannels(step);
   return work < kParallelWork ? 1 : num_threads_;
-}
-
-void UnetEngine::PackWeights(const float* weights, UnetBuffer* packed) const {
-  for (size_t s = 0; s < plan_.steps.size(); ++s) {
-    const UnetStep& step = plan_.steps[s];
-    if (step.kind != UnetStep::kConvolution) continue;
-    const int out = plan_.tensors[step.output].channels;
-    const int all = plan_.InputChannels(step);
-    std::copy_n(weights + step.bias_offset, out,
-                packed->data() + packing_[s].bias);
-    for (size_t k = 0; k < step.inputs.size(); ++k) {
-      const InputSlice slice = SliceOf(step, k);
-      float* to = packed->data() + packing_[s].weights[k];
-      for (int tap = 0; tap < step.size * step.size; ++tap) {
-        const float* from = weights + step.weight_offset +
-                            (tap * all + slice.first_channel) * out;
-        for (int i = 0; i < slice.channels; ++i, from += out, to += Pad(out)) {
-          std::copy_n(from, out, to);
-        }
-      }
-    }
-  }
-}
-
-void UnetEngine::PackTransposed(const UnetBuffer& packed,
-                                UnetBuffer* transposed) const {
-  for (size_t s = 0; s < plan_.steps.size(); ++s) {
-    const UnetStep& step = plan_.steps[s];
-    const int out = plan_.tensors[step.output].channels;
-    for (size_t k = 0; k < packing_[s].weights.size(); ++k) {
-      const int in = plan_.tensors[step.inputs[k]].channels;
-      const float* from = packed.data() + packing_[s].weights[k];
-      float* to = transposed->data() + packing_[s].transposed[k];
-      for (int tap = 0; tap < step.size * step.size; ++tap) {
-        for (int o = 0; o < out; ++o, to += Pad(in)) {
-          for (int i = 0; i < in; ++i) to[i] = from[i * Pad(out) + o];
-        }
-        from += in * Pad(out);
-      }
-    }
-  }
-}
-
-void UnetEngine::UnpackGradient(const UnetBuffer& gradient,
-                                float* weight_gradient) const {
-  for (size_t s = 0; s < plan_.steps.size(); ++s) {
-    const UnetStep& step = plan_.steps[s];
-    if (step.kind != UnetStep::kConvolution) continue;
-    const int out = plan_.tensors[step.output].channels;
-    const int all = plan_.InputChannels(step);
-    for (size_t k = 0; k < step.inputs.size(); ++k) {
-      const InputSlice slice = SliceOf(step, k);
-      const int64_t tap_size =
-          static_cast<int64_t>(Pad(slice.channels)) * Pad(out);
-      for (int tap = 0; tap < step.size * step.size; ++tap) {
-        const float* from =
-            gradient.data() + packing_[s].gradient[k] + tap * tap_size;
-        float* to = weight_gradient + step.weight_offset +
-                    (tap * all + slice.first_channel) * out;
-        for (int i = 0; i < slice.channels; ++i, from += Pad(out), to += out) {
-          std::copy_n(from, out, to);
-        }
-      }
-    }
-  }
 }
 
 void UnetEngine::Upsample(const UnetStep& step,
@@ -283,79 +162,6 @@ void UnetEngine::Upsample(const UnetStep& step,
     kernels_.upsample_row(in.At(near, 0), in.At(far, 0), in.stride, in.width,
                           out.At(row, 0));
   }
-}
-
-void UnetEngine::NormalizeAndActivate(int step_index,
-                                      UnetBuffers* forward) const {
-  const UnetStep& step = plan_.steps[step_index];
-  const int threads = ThreadsFor(step);
-  const UnetMap x = MapOf(step.output, forward->maps);
-  const UnetMap y{forward->normalized[step_index].data(), x.channels, x.height,
-                  x.width, x.stride};
-  const UnetMap slope{forward->slopes[step_index].data(), x.channels, x.height,
-                      x.width, x.stride};
-  const UnetBuffer zero(x.stride, 0.0f), one(x.stride, 1.0f);
-  RowSums sums(x), squares(x);
-  ParallelFor(x.height, threads, [&](int64_t r, int) {
-    const int row = static_cast<int>(r);
-    kernels_.add_texels(x.At(row, 0), x.stride, x.width, x.channels,
-                        sums.Row(row));
-  });
-  const std::vector<double> mean = sums.Means();
-  UnetBuffer shift(x.stride);
-  for (int c = 0; c < x.stride; ++c) shift[c] = static_cast<float>(-mean[c]);
-  ParallelFor(x.height, threads, [&](int64_t r, int) {
-    float* row = x.At(static_cast<int>(r), 0);
-    kernels_.combine(row, row, x.stride, x.width, one.data(), shift.data(),
-                     zero.data());
-    kernels_.add_products(row, row, x.stride, x.width, x.channels,
-                          squares.Row(r));
-  });
-  const std::vector<double> variance = squares.Means();
-  UnetBuffer& inverse = forward->inverse_deviation[step_index];
-  for (int c = 0; c < x.channels; ++c) {
-    inverse[c] = static_cast<float>(
-        1.0 / std::sqrt(variance[c] + double{kUnetNormEpsilon}));
-  }
-  const float* bias = forward->weights.data() + packing_[step_index].bias;
-  const int64_t row_size = static_cast<int64_t>(x.width) * x.stride;
-  ParallelFor(x.height, threads, [&](int64_t r, int) {
-    const int index = static_cast<int>(r);
-    float* row = x.At(index, 0);
-    kernels_.combine(row, row, x.stride, x.width, inverse.data(), zero.data(),
-                     zero.data());
-    std::copy_n(row, row_size, y.At(index, 0));
-    kernels_.combine(row, row, x.stride, x.width, one.data(), bias,
-                     zero.data());
-    kernels_.activate(row, slope.At(index, 0), row_size);
-  });
-}
-
-void UnetEngine::ApplyNormJacobian(int step_index, const UnetBuffers& forward,
-                                   const float* shift, const UnetMap& d) const {
-  const int threads = ThreadsFor(plan_.steps[step_index]);
-  const UnetMap y{const_cast<float*>(forward.normalized[step_index].data()),
-                  d.channels, d.height, d.width, d.stride};
-  const UnetBuffer& inverse = forward.inverse_deviation[step_index];
-  RowSums sums(d), products(d);
-  ParallelFor(d.height, threads, [&](int64_t r, int) {
-    const float* row = d.At(static_cast<int>(r), 0);
-    kernels_.add_texels(row, d.stride, d.width, d.channels, sums.Row(r));
-    kernels_.add_products(row, y.At(static_cast<int>(r), 0), d.stride, d.width,
-                          d.channels, products.Row(r));
-  });
-  const std::vector<double> mean = sums.Means();
-  const std::vector<double> along = products.Means();
-  UnetBuffer offset(d.stride, 0.0f), slope(d.stride, 0.0f);
-  for (int c = 0; c < d.channels; ++c) {
-    offset[c] = shift[c] - static_cast<float>(inverse[c] * mean[c]);
-    slope[c] = -static_cast<float>(inverse[c] * along[c]);
-  }
-  ParallelFor(d.height, threads, [&](int64_t r, int) {
-    const int row = static_cast<int>(r);
-    kernels_.combine(d.At(row, 0), y.At(row, 0), d.stride, d.width,
-                     inverse.data(), offset.data(), slope.data());
-  });
 }
 
 void UnetEngine::Forward(const float* weights, UnetBuffers* forward,

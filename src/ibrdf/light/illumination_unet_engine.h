@@ -27,6 +27,12 @@ struct CacheLineAllocator {
 };
 using UnetBuffer = std::vector<float, CacheLineAllocator<float>>;
 
+// Channels of a map or of weights in memory, the rest of a group zero.
+inline int PadUnetChannels(int channels) {
+  return (channels + kUnetChannelGroup - 1) / kUnetChannelGroup *
+         kUnetChannelGroup;
+}
+
 // A feature map (or its tangent or adjoint) with a border of one texel:
 // [row -1 ... height][column -1 ... width][stride].
 struct UnetMap {
