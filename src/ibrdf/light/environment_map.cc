@@ -61,7 +61,9 @@ void MapPosition(const Eigen::Vector3d& direction, int height, int width,
                  double* row, double* column) {
   // atan2 keeps full precision beside the poles, where acos loses half of it.
   const double theta =
-      std::atan2(std::hypot(direction.x(), direction.z()), direction.y());
+      std::atan2(std::sqrt(direction.x() * direction.x() +
+                           direction.z() * direction.z()),
+                 direction.y());
   double turn = std::atan2(direction.x(), direction.z()) / (2.0 * kPi);
   if (turn < 0.0) turn += 1.0;
   if (turn >= 1.0) turn = 0.0;

@@ -167,7 +167,7 @@ NearCosine CosineOf(const HalfVector& h, double cos_o, double sin_o) {
   const double along_theta =
       2.0 * (o_theta * h.cos_h - out.oh * h.sin_h) * h.half_theta;
   const double along_phi = 2.0 * o_phi * h.cos_h * h.half_phi;
-  out.extent = std::hypot(along_theta, along_phi);
+  out.extent = std::sqrt(along_theta * along_theta + along_phi * along_phi);
   return out;
 }
 }  // namespace
@@ -228,7 +228,7 @@ void PointQuadrature::Sample(const Eigen::Vector3d& n,
       const double x = sin_o * h.cos_p * h.cos_h - cos_o * h.sin_h;
       const double y = -sin_o * h.sin_p;
       s.theta_h = h.theta_h;
-      s.theta_d = std::atan2(std::hypot(x, y), cosine.oh);
+      s.theta_d = std::atan2(std::sqrt(x * x + y * y), cosine.oh);
       s.phi_d = FoldPhi(std::atan2(y, x));
     }
     s.wi = (wi.x() * t + wi.y() * b + wi.z() * n).normalized();
@@ -239,7 +239,10 @@ void PointQuadrature::Sample(const Eigen::Vector3d& n,
   for (size_t i = 0; i < cells_.size(); ++i) {
     const FarCell& cell = cells_[i];
     const double c = n.dot(cell.direction);
-    const double a = std::hypot(n.dot(cell.half_theta), n.dot(cell.half_phi));
+    const double along_theta = n.dot(cell.half_theta);
+    const double along_phi = n.dot(cell.half_phi);
+    const double a =
+        std::sqrt(along_theta * along_theta + along_phi * along_phi);
     if (c <= -a) continue;
     const Eigen::Vector3d wi = c < 4.0 * a
                                    ? CentreAboveHorizon(cell.direction, n, c, a)

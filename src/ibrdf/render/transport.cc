@@ -4,91 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/lobe_contraction.h"
+#include "ibrdf/render/transport_taps.h"
 
 namespace ibrdf {
+
+using namespace taps;  // NOLINT
+
 namespace {
 
 // Points are joined in this many sums, whatever the number of threads.
 constexpr int kMaxChunks = 32;
-constexpr float kUnit = 1.0f / 65535.0f;
-
-// Red, green, blue and a spare lane.
-using Float4 [[gnu::vector_size(16)]] = float;
-using Double4 [[gnu::vector_size(32)]] = double;
-
-Float4 Load4(const float* p) {
-  Float4 v;
-  std::memcpy(&v, p, sizeof(v));
-  return v;
-}
-void Add4(float* p, Float4 x) {
-  const Float4 v = Load4(p) + x;
-  std::memcpy(p, &v, sizeof(v));
-}
-Double4 Widen(Float4 v) { return __builtin_convertvector(v, Double4); }
 
 uint16_t Quantise(double fraction) {
   return static_cast<uint16_t>(
       std::lround(std::clamp(fraction, 0.0, 1.0) * 65535.0));
-}
-
-// Eight taps of a pair: offsets from its lowest node in corner order (h, d, p).
-struct Corners {
-  explicit Corners(const BrdfGridShape& s) {
-    const int row = s.p + 1, plane = s.d * row;
-    for (int k = 0; k < 8; ++k) {
-      offset[k] = (k >> 2) * plane + ((k >> 1) & 1) * row + (k & 1);
-    }
-  }
-  int offset[8];
-};
-
-template <typename Pair>
-void TrilinearWeights(const Pair& pair, float weight[8]) {
-  const float h = pair.fh * kUnit, d = pair.fd * kUnit, p = pair.fp * kUnit;
-  const float hd[4] = {(1 - h) * (1 - d), (1 - h) * d, h * (1 - d), h * d};
-  for (int k = 0; k < 4; ++k) {
-    weight[2 * k] = hd[k] * (1 - p);
-    weight[2 * k + 1] = hd[k] * p;
-  }
-}
-
-template <typename Pair>
-Float4 Interpolate(const Pair& pair, const Corners& corners,
-                   const float* grid) {
-  float weight[8];
-  TrilinearWeights(pair, weight);
-  const float* base = grid + size_t{4} * pair.node;
-  Float4 f = {};
-  for (int k = 0; k < 8; ++k) {
-    f += weight[k] * Load4(base + 4 * corners.offset[k]);
-  }
-  return f;
-}
-
-// Four taps of a near pair into the padded map.
-template <typename Pair>
-void BilinearWeights(const Pair& pair, float weight[4]) {
-  const float x = pair.fx * kUnit, y = pair.fy * kUnit;
-  weight[0] = (1 - y) * (1 - x);
-  weight[1] = (1 - y) * x;
-  weight[2] = y * (1 - x);
-  weight[3] = y * x;
-}
-
-template <typename Pair>
-Float4 LookUp(const Pair& pair, int row, const float* texels) {
-  float weight[4];
-  BilinearWeights(pair, weight);
-  const float* base = texels + size_t{4} * pair.texel;
-  return weight[0] * Load4(base) + weight[1] * Load4(base + 4) +
-         weight[2] * Load4(base + 4 * row) +
-         weight[3] * Load4(base + 4 * row + 4);
 }
 
 }  // namespace
@@ -286,28 +219,6 @@ void Transport::Render(const BrdfGrid& grid, const float* map,
       });
 }
 
-LightOperator Transport::ByLight(const BrdfGrid& grid) const {
-  const std::vector<float> f = PadGrid(grid);
-  const Corners corners(options_.grid);
-  LightOperator op(this);
-  op.far_.resize(chunks_.size());
-  op.near_.resize(chunks_.size());
-  const auto fill = [&](const auto& pairs, std::vector<float>* values) {
-    values->assign(3 * pairs.size() + 1, 0.0f);
-    float* out = values->data();
-    for (const auto& pair : pairs) {
-      const Float4 v = pair.weight * Interpolate(pair, corners, f.data());
-      for (int c = 0; c < 3; ++c) *out++ = v[c];
-    }
-  };
-  ParallelFor(static_cast<int64_t>(chunks_.size()), options_.num_threads,
-              [&](int64_t index, int) {
-                fill(chunks_[index].far, &op.far_[index]);
-                fill(chunks_[index].near, &op.near_[index]);
-              });
-  return op;
-}
-
 void Transport::RenderLobes(const float* const* fields, int num_fields,
                             const float* map, float* out) const {
   if (num_fields <= 0) return;
@@ -438,92 +349,6 @@ void Transport::GridGradient(const float* map, const double* adjoint,
   for (size_t i = 0; i < sums.size(); ++i) {
     gradient[i] = static_cast<float>(sums[i]);
   }
-}
-
-size_t LightOperator::MemoryBytes() const {
-  size_t floats = 0;
-  for (size_t i = 0; i < far_.size(); ++i) {
-    floats += far_[i].capacity() + near_[i].capacity();
-  }
-  return floats * sizeof(float);
-}
-
-void LightOperator::Apply(const float* map, double* E) const {
-  const Transport& t = *transport_;
-  const std::vector<float> texels = t.PadMap(map), blocks = t.SumBlocks(map);
-  const int row = t.map_width_ + 1;
-  ParallelFor(static_cast<int64_t>(t.chunks_.size()), t.options_.num_threads,
-              [&](int64_t index, int) {
-                const Transport::Chunk& chunk = t.chunks_[index];
-                const float* far_value = far_[index].data();
-                const float* near_value = near_[index].data();
-                size_t far = 0, near = 0;
-                for (int i = 0; i < chunk.end - chunk.begin; ++i) {
-                  // Lane 3 of a value belongs to the next pair; the map's is 0.
-                  Double4 sum = {};
-                  for (; far < chunk.far_end[i]; ++far, far_value += 3) {
-                    sum +=
-                        Widen(Load4(far_value) *
-                              Load4(&blocks[size_t{4} * chunk.far[far].block]));
-                  }
-                  for (; near < chunk.near_end[i]; ++near, near_value += 3) {
-                    sum += Widen(Load4(near_value) *
-                                 LookUp(chunk.near[near], row, texels.data()));
-                  }
-                  for (int c = 0; c < 3; ++c) {
-                    E[3 * static_cast<size_t>(chunk.begin + i) + c] = sum[c];
-                  }
-                }
-              });
-}
-
-void LightOperator::ApplyTranspose(const double* adjoint,
-                                   float* gradient) const {
-  const Transport& t = *transport_;
-  const int row = t.map_width_ + 1;
-  const size_t num_texels = size_t{4} * row * (t.map_height_ + 2);
-  const size_t num_blocks = size_t{4} * t.num_blocks_;
-  struct Partial {
-    std::vector<float> texels, blocks;
-  };
-  std::vector<Partial> partial(t.chunks_.size());
-  ParallelFor(
-      static_cast<int64_t>(t.chunks_.size()), t.options_.num_threads,
-      [&](int64_t index, int) {
-        const Transport::Chunk& chunk = t.chunks_[index];
-        Partial& g = partial[index];
-        g.texels.assign(num_texels, 0.0f);
-        g.blocks.assign(num_blocks, 0.0f);
-        const float* far_value = far_[index].data();
-        const float* near_value = near_[index].data();
-        size_t far = 0, near = 0;
-        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
-          const double* a = adjoint + 3 * static_cast<size_t>(chunk.begin + i);
-          const Float4 a4 = {static_cast<float>(a[0]), static_cast<float>(a[1]),
-                             static_cast<float>(a[2]), 0.0f};
-          for (; far < chunk.far_end[i]; ++far, far_value += 3) {
-            Add4(&g.blocks[size_t{4} * chunk.far[far].block],
-                 a4 * Load4(far_value));
-          }
-          for (; near < chunk.near_end[i]; ++near, near_value += 3) {
-            const Transport::NearPair& pair = chunk.near[near];
-            float weight[4];
-            BilinearWeights(pair, weight);
-            const Float4 v = a4 * Load4(near_value);
-            float* base = &g.texels[size_t{4} * pair.texel];
-            Add4(base, weight[0] * v);
-            Add4(base + 4, weight[1] * v);
-            Add4(base + 4 * row, weight[2] * v);
-            Add4(base + 4 * row + 4, weight[3] * v);
-          }
-        }
-      });
-  std::vector<double> texels(num_texels, 0.0), blocks(num_blocks, 0.0);
-  for (const Partial& g : partial) {
-    for (size_t i = 0; i < num_texels; ++i) texels[i] += g.texels[i];
-    for (size_t i = 0; i < num_blocks; ++i) blocks[i] += g.blocks[i];
-  }
-  t.UnpadMapGradient(texels, blocks, gradient);
 }
 
 }  // namespace ibrdf
