@@ -43,7 +43,9 @@ TEST(ReferenceRenderer, LambertUnderACosineLobeMatchesTheClosedForm) {
   points.push_back(points[0]);
   points.back().normal = u.cast<float>();
   std::vector<double> E(3 * points.size());
-  ReferenceRenderer(map, {}).Render(points, Lambertian(1.0), E.data());
+  ReferenceOptions options;
+  options.far_width = width;
+  ReferenceRenderer(map, options).Render(points, Lambertian(1.0), E.data());
   // Midpoint rule on texels of 1.4 degrees.
   constexpr double kTolerance = 2e-4;
   EXPECT_NEAR(2.0 / 3.0, E[3 * (points.size() - 1)], kTolerance);

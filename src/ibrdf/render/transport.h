@@ -30,7 +30,7 @@ class LightOperator;
 // a time (they are parallel inside).
 class Transport {
  public:
-  // map_width <= 2 far_width^2 in blocks of texels: at most 65536 far cells.
+  // map_width even; at most 65536 far cells (see FarBlockSize).
   Transport(const std::vector<ShadingPoint>& points, int map_height,
             int map_width, const TransportOptions& options);
 
