@@ -1,10 +1,10 @@
 #include "ibrdf/base/parallel_for.h"
 
+#include <gtest/gtest.h>
+
 #include <atomic>
 #include <numeric>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 namespace ibrdf {
 namespace {

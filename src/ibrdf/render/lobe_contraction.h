@@ -1,0 +1,31 @@
+// Inner loop of Transport::RenderLobes.
+#pragma once
+
+namespace ibrdf {
+
+// Floats per node in the fields' array are a multiple of this.
+inline constexpr int kLobeStride = 16;
+
+// out[k * 3 + c] = sum_i fields[nodes[i] * stride + k] g[nodes[i] * 4 + c],
+// k < stride, c < 3, summed over i in order. stride: multiple of kLobeStride.
+using ContractLobesFunction = void (*)(const int* nodes, int count,
+                                       const float* g, const float* fields,
+                                       int stride, float* out);
+
+// The version for ActiveSimdLevel().
+ContractLobesFunction ContractLobes();
+
+namespace portable {
+void ContractLobes(const int* nodes, int count, const float* g,
+                   const float* fields, int stride, float* out);
+}
+namespace avx2 {
+void ContractLobes(const int* nodes, int count, const float* g,
+                   const float* fields, int stride, float* out);
+}
+namespace avx512 {
+void ContractLobes(const int* nodes, int count, const float* g,
+                   const float* fields, int stride, float* out);
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,327 @@
+#include "ibrdf/render/scene.h"
+
+#include <embree3/rtcore.h>
+#include <glog/logging.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "ibrdf/base/parallel_for.h"
+
+namespace ibrdf {
+namespace {
+
+// Turns a normal to the viewer: flipped where the surface shows its back, then
+// tilted about the view so that n.wo >= kMinViewCosine.
+Eigen::Vector3d FaceViewer(Eigen::Vector3d normal,
+                           const Eigen::Vector3d& geometric,
+                           const Eigen::Vector3d& wo) {
+  if (geometric.dot(wo) < 0.0) normal = -normal;
+  const double cosine = normal.dot(wo);
+  // The margin keeps the promise after rounding to float.
+  constexpr double kLeast = kMinViewCosine * (1.0 + 1e-3);
+  if (cosine >= kLeast) return normal;
+  Eigen::Vector3d tangent = normal - cosine * wo;
+  if (!(tangent.norm() > 1e-9)) return wo;  // straight away: no better guess
+  tangent.normalize();
+  return std::sqrt(1.0 - kLeast * kLeast) * tangent + kLeast * wo;
+}
+
+bool IntersectUnitSphere(const Ray& ray, bool from_infinity, SurfaceHit* hit) {
+  const double b = ray.origin.dot(ray.direction);
+  const Eigen::Vector3d closest = ray.origin - b * ray.direction;
+  const double half_squared = 1.0 - closest.squaredNorm();
+  if (!(half_squared > 0.0)) return false;
+  const double half = std::sqrt(half_squared);
+  double t = -b - half;
+  if (t <= 0.0 && !from_infinity) t = -b + half;
+  if (t <= 0.0 && !from_infinity) return false;
+  const Eigen::Vector3d normal = (ray.origin + t * ray.direction).normalized();
+  hit->distance = t;
+  hit->normal = FaceViewer(normal, normal, -ray.direction);
+  return true;
+}
+
+}  // namespace
+
+struct Scene::Impl {
+  enum class Kind { kSphere, kMesh, kNormalMap };
+  Kind kind = Kind::kSphere;
+  Image normals;
+  TriangleMesh mesh;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of the bounds
+  double radius = 1.0;
+  RTCDevice device = nullptr;
+  RTCScene embree = nullptr;
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (embree != nullptr) rtcReleaseScene(embree);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  bool BuildEmbree();
+  bool IntersectMesh(const Ray& ray, bool from_infinity, SurfaceHit* hit) const;
+};
+
+bool Scene::Impl::BuildEmbree() {
+  device = rtcNewDevice("threads=1");
+  if (device == nullptr) return false;
+  embree = rtcNewScene(device);
+  rtcSetSceneFlags(embree, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+      mesh.vertices.size()));
+  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+      3 * sizeof(unsigned), mesh.triangles.size()));
+  if (vertices == nullptr || indices == nullptr) {
+    rtcReleaseGeometry(geometry);
+    return false;
+  }
+  // Unit bounds: Embree's float tolerances then fit any unit of length.
+  for (size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Eigen::Vector3d p =
+        (mesh.vertices[v].cast<double>() - center) / radius;
+    for (int k = 0; k < 3; ++k) vertices[3 * v + k] = static_cast<float>(p[k]);
+  }
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      indices[3 * t + k] = static_cast<unsigned>(mesh.triangles[t][k]);
+    }
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(embree, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(embree);
+  return rtcGetDeviceError(device) == RTC_ERROR_NONE;
+}
+
+bool Scene::Impl::IntersectMesh(const Ray& ray, bool from_infinity,
+                                SurfaceHit* hit) const {
+  const Eigen::Vector3d origin = (ray.origin - center) / radius;
+  // Start just before the bounding sphere: float keeps its precision there.
+  const double to_center = -origin.dot(ray.direction);
+  double start = to_center - 1.5;
+  if (!from_infinity) start = std::max(start, 0.0);
+  const Eigen::Vector3d o = origin + start * ray.direction;
+
+  RTCRayHit query{};
+  query.ray.org_x = static_cast<float>(o.x());
+  query.ray.org_y = static_cast<float>(o.y());
+  query.ray.org_z = static_cast<float>(o.z());
+  query.ray.dir_x = static_cast<float>(ray.direction.x());
+  query.ray.dir_y = static_cast<float>(ray.direction.y());
+  query.ray.dir_z = static_cast<float>(ray.direction.z());
+  query.ray.tnear = 0.0f;
+  query.ray.tfar = std::numeric_limits<float>::infinity();
+  query.ray.mask = ~0u;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(embree, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+
+  const std::array<int, 3>& triangle = mesh.triangles[query.hit.primID];
+  const Eigen::Vector3d wo = -ray.direction;
+  Eigen::Vector3d geometric(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  if (geometric.allFinite() && geometric.norm() > 0.0) {
+    geometric.normalize();
+  } else {
+    geometric = wo;
+  }
+  Eigen::Vector3d normal = geometric;
+  if (!mesh.normals.empty()) {
+    const double u = query.hit.u, v = query.hit.v;
+    const Eigen::Vector3d smooth =
+        (1.0 - u - v) * mesh.normals[triangle[0]].cast<double>() +
+        u * mesh.normals[triangle[1]].cast<double>() +
+        v * mesh.normals[triangle[2]].cast<double>();
+    if (smooth.allFinite() && smooth.norm() > 1e-6) {
+      normal = smooth.normalized();
+      // The winding may disagree with the normals: the side that the viewer
+      // sees decides.
+      if (geometric.dot(normal) < 0.0) geometric = -geometric;
+    }
+  }
+  hit->distance = (start + query.ray.tfar) * radius;
+  hit->normal = FaceViewer(normal, geometric, wo);
+  return true;
+}
+
+Scene Scene::UnitSphere() { return Scene(std::make_shared<Impl>()); }
+
+StatusOr<Scene> Scene::FromMesh(const TriangleMesh& mesh) {
+  const auto num_vertices = static_cast<int>(mesh.vertices.size());
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
+    return InvalidInput("mesh", "expected one normal per vertex or none");
+  }
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
+  bool has_area = false;
+  for (const std::array<int, 3>& t : mesh.triangles) {
+    Eigen::Vector3d p[3];
+    for (int k = 0; k < 3; ++k) {
+      if (t[k] < 0 || t[k] >= num_vertices) {
+        return InvalidInput("mesh", "triangle refers to vertex " +
+                                        std::to_string(t[k]) + " of " +
+                                        std::to_string(num_vertices));
+      }
+      p[k] = mesh.vertices[t[k]].cast<double>();
+      if (!p[k].allFinite()) {
+        return InvalidInput(
+            "mesh", "vertex " + std::to_string(t[k]) + " is not finite");
+      }
+      low = low.cwiseMin(p[k]);
+      high = high.cwiseMax(p[k]);
+    }
+    has_area = has_area || (p[1] - p[0]).cross(p[2] - p[0]).norm() > 0.0;
+  }
+  if (!has_area) {
+    return InvalidInput("mesh", "expected a triangle of positive area");
+  }
+  auto impl = std::make_shared<Impl>();
+  impl->kind = Impl::Kind::kMesh;
+  impl->mesh = mesh;
+  impl->center = 0.5 * (low + high);
+  impl->radius = 0.5 * (high - low).norm();
+  if (!impl->BuildEmbree()) {
+    return Status(StatusCode::kInternal, "mesh: Embree could not build it");
+  }
+  return Scene(std::move(impl));
+}
+
+StatusOr<Scene> Scene::FromNormalMap(const Image& normals) {
+  auto impl = std::make_shared<Impl>();
+  impl->kind = Impl::Kind::kNormalMap;
+  impl->normals = normals;
+  bool any = false;
+  for (size_t i = 0; i < normals.num_pixels(); ++i) {
+    Eigen::Map<Eigen::Vector3f> n(impl->normals.rgb.data() + 3 * i);
+    const float length = n.norm();
+    if (std::isfinite(length) && length > 1e-6f) {
+      n /= length;
+      any = true;
+    } else {
+      n.setZero();
+    }
+  }
+  if (!any) return InvalidInput("normals", "expected a normal in some pixel");
+  return Scene(std::move(impl));
+}
+
+bool Scene::Intersect(const Ray& ray, bool from_infinity,
+                      SurfaceHit* hit) const {
+  switch (impl_->kind) {
+    case Impl::Kind::kSphere:
+      return IntersectUnitSphere(ray, from_infinity, hit);
+    case Impl::Kind::kMesh:
+      return impl_->IntersectMesh(ray, from_infinity, hit);
+    case Impl::Kind::kNormalMap:
+      return false;
+  }
+  return false;
+}
+
+const Image& Scene::normal_map() const { return impl_->normals; }
+
+namespace {
+
+// Normal at a continuous position: bilinear between the set pixels around it,
+// inside where the pixel that holds the position is set.
+bool NormalAt(const Image& normals, double x, double y,
+              Eigen::Vector3d* normal) {
+  const int px = std::min(static_cast<int>(x), normals.width - 1);
+  const int py = std::min(static_cast<int>(y), normals.height - 1);
+  const Eigen::Map<const Eigen::Vector3f> own(normals.At(px, py));
+  if (own.isZero()) return false;
+  const double x0 = std::floor(x - 0.5), y0 = std::floor(y - 0.5);
+  const double fx = x - 0.5 - x0, fy = y - 0.5 - y0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int corner = 0; corner < 4; ++corner) {
+    const int dx = corner & 1, dy = corner >> 1;
+    const int cx = std::clamp(static_cast<int>(x0) + dx, 0, normals.width - 1);
+    const int cy = std::clamp(static_cast<int>(y0) + dy, 0, normals.height - 1);
+    const Eigen::Map<const Eigen::Vector3f> n(normals.At(cx, cy));
+    sum += (dx ? fx : 1.0 - fx) * (dy ? fy : 1.0 - fy) * n.cast<double>();
+  }
+  *normal = sum.norm() > 1e-6 ? Eigen::Vector3d(sum.normalized())
+                              : Eigen::Vector3d(own.cast<double>());
+  return true;
+}
+
+}  // namespace
+
+StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
+                                                      const Camera& camera,
+                                                      int width, int height,
+                                                      const Mask& mask,
+                                                      int samples_per_side) {
+  CHECK(width > 0 && height > 0 && samples_per_side > 0);
+  const Image& normals = scene.normal_map();
+  const bool orthographic = camera.type == CameraType::kOrthographic;
+  const auto size = [](int w, int h) {
+    return std::to_string(w) + " x " + std::to_string(h);
+  };
+  if (!mask.empty() && (mask.width != width || mask.height != height)) {
+    return InvalidInput("mask", "expected the image's size " +
+                                    size(width, height) + ", found " +
+                                    size(mask.width, mask.height));
+  }
+  if (!IsValidCamera(camera)) {
+    return InvalidInput("camera",
+                        "expected fov_degrees in (0, 180), from apart from to, "
+                        "up not parallel to the view");
+  }
+  if (!normals.empty()) {
+    if (!orthographic) {
+      return InvalidInput("camera", "a normal map needs type orthographic");
+    }
+    if (normals.width != width || normals.height != height) {
+      return InvalidInput("normals", "expected the image's size " +
+                                         size(width, height) + ", found " +
+                                         size(normals.width, normals.height));
+    }
+  }
+
+  std::vector<std::vector<ShadingPoint>> rows(height);
+  const int s = samples_per_side;
+  ParallelFor(height, 0, [&](int64_t y, int) {
+    for (int x = 0; x < width; ++x) {
+      const int pixel = static_cast<int>(y) * width + x;
+      if (!mask.empty() && mask.inside[pixel] == 0) continue;
+      for (int k = 0; k < s * s; ++k) {
+        const double px = x + (k % s + 0.5) / s;
+        const double py = static_cast<double>(y) + (k / s + 0.5) / s;
+        const Ray ray = CameraRay(camera, px, py, width, height);
+        const Eigen::Vector3d wo = -ray.direction;
+        SurfaceHit hit{};
+        if (!normals.empty()) {
+          Eigen::Vector3d normal;
+          if (!NormalAt(normals, px, py, &normal)) continue;
+          hit.normal = FaceViewer(normal, wo, wo);
+        } else if (!scene.Intersect(ray, orthographic, &hit)) {
+          continue;
+        }
+        rows[y].push_back({hit.normal.cast<float>(), wo.cast<float>(), pixel,
+                           1.0f / static_cast<float>(s * s)});
+      }
+    }
+  });
+  std::vector<ShadingPoint> points;
+  for (const std::vector<ShadingPoint>& row : rows) {
+    points.insert(points.end(), row.begin(), row.end());
+  }
+  if (points.empty()) {
+    return InvalidInput("geometry", "no pixel inside the mask sees the object");
+  }
+  return points;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,72 @@
+// The object in front of the camera, and its points that pixels see.
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/geometry/camera.h"
+#include "ibrdf/geometry/triangle_mesh.h"
+#include "ibrdf/image/image.h"
+
+namespace ibrdf {
+
+// n.wo of a shading point is at least this: normals that face away from the
+// viewer (interpolated ones at silhouettes) are turned to it.
+inline constexpr float kMinViewCosine = 1e-3f;
+
+// A surface point seen by a pixel. World frame; unit vectors.
+struct ShadingPoint {
+  Eigen::Vector3f normal;  // n.wo >= kMinViewCosine
+  Eigen::Vector3f wo;      // to the viewer
+  int pixel;               // y * width + x
+  float coverage;          // share of the pixel's area it stands for, (0, 1]
+};
+
+struct SurfaceHit {
+  double distance;         // along the ray
+  Eigen::Vector3d normal;  // unit, as ShadingPoint
+};
+
+// Geometry that rays can be cast at. Immutable; safe to share between threads;
+// copies share the geometry.
+class Scene {
+ public:
+  // Unit sphere at the origin.
+  static Scene UnitSphere();
+
+  // Normals are interpolated between vertices where the mesh has them (one per
+  // vertex), else taken from the triangle; the orientation of triangles and
+  // normals does not matter. Fails on a mesh without a triangle of positive
+  // area, an index out of range or a vertex that is not finite.
+  static StatusOr<Scene> FromMesh(const TriangleMesh& mesh);
+
+  // rgb = unit normal in the frame of an orthographic camera, one per pixel;
+  // zero length (or not finite) = outside the object. Fails when none is set.
+  static StatusOr<Scene> FromNormalMap(const Image& normals);
+
+  // First hit of the ray. `from_infinity`: the ray's origin is any point of its
+  // line. Always false for a normal map, which has no position.
+  bool Intersect(const Ray& ray, bool from_infinity, SurfaceHit* hit) const;
+
+  // The normal map; empty for other geometry.
+  const Image& normal_map() const;
+
+ private:
+  struct Impl;
+  explicit Scene(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  std::shared_ptr<const Impl> impl_;
+};
+
+// The points that an image of width x height sees, by pixel in row order: the
+// hits of samples_per_side^2 positions on a regular grid in every pixel inside
+// `mask` (empty: all). 1: the pixel's centre. Fails when the mask has another
+// size, the camera is invalid, a normal map is combined with a perspective
+// camera or another image size, or no pixel sees the object.
+StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
+                                                      const Camera& camera,
+                                                      int width, int height,
+                                                      const Mask& mask,
+                                                      int samples_per_side);
+
+}  // namespace ibrdf

@@ -1,0 +1,354 @@
+#include "ibrdf/render/transport.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ibrdf/base/parallel_for.h"
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/render/lobe_contraction.h"
+#include "ibrdf/render/transport_taps.h"
+
+namespace ibrdf {
+
+using namespace taps;  // NOLINT
+
+namespace {
+
+// Points are joined in this many sums, whatever the number of threads.
+constexpr int kMaxChunks = 32;
+
+uint16_t Quantise(double fraction) {
+  return static_cast<uint16_t>(
+      std::lround(std::clamp(fraction, 0.0, 1.0) * 65535.0));
+}
+
+}  // namespace
+
+Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
+                     int map_width, const TransportOptions& options)
+    : options_(options),
+      num_points_(static_cast<int>(points.size())),
+      map_height_(map_height),
+      map_width_(map_width),
+      block_(
+          FarBlockSize(map_height, map_width, options.quadrature.far_width)) {
+  CHECK(map_height > 0 && map_width > 1 && map_width % 2 == 0);
+  CHECK(options.grid.h >= 2 && options.grid.d >= 2 && options.grid.p >= 1);
+  num_blocks_ = (map_height / block_) * (map_width / block_);
+  CHECK_LE(num_blocks_, 65536) << "map of odd size: resize it first";
+  const PointQuadrature quadrature(MapCells(map_height, map_width, block_),
+                                   options.quadrature);
+  const int num_chunks = std::min(kMaxChunks, num_points_);
+  chunks_.resize(num_chunks);
+  ParallelFor(num_chunks, options_.num_threads, [&](int64_t i, int) {
+    Chunk& chunk = chunks_[i];
+    chunk.begin = static_cast<int>(i * num_points_ / num_chunks);
+    chunk.end = static_cast<int>((i + 1) * num_points_ / num_chunks);
+    BuildChunk(points, quadrature, &chunk);
+  });
+}
+
+void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
+                           const PointQuadrature& quadrature,
+                           Chunk* chunk) const {
+  const BrdfGridShape& shape = options_.grid;
+  const auto set_cell = [&shape](const auto& sample, auto* pair) {
+    const BrdfGridCell cell = FindCell(
+        shape, ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
+    pair->node = static_cast<uint32_t>(
+        (cell.h * shape.d + cell.d) * (shape.p + 1) + cell.p);
+    pair->fh = Quantise(cell.fh);
+    pair->fd = Quantise(cell.fd);
+    pair->fp = Quantise(cell.fp);
+    pair->weight = static_cast<float>(sample.weight);
+  };
+  PointSamples samples;
+  for (int i = chunk->begin; i < chunk->end; ++i) {
+    quadrature.Sample(points[i].normal.cast<double>().normalized(),
+                      points[i].wo.cast<double>().normalized(), &samples);
+    for (const FarSample& s : samples.far) {
+      FarPair pair{};
+      set_cell(s, &pair);
+      pair.block = static_cast<uint16_t>(s.cell);
+      chunk->far.push_back(pair);
+    }
+    for (const NearSample& s : samples.near) {
+      NearPair pair{};
+      set_cell(s, &pair);
+      double row = 0.0, column = 0.0;
+      MapPosition(s.wi, map_height_, map_width_, &row, &column);
+      const double y0 = std::floor(row - 0.5), x0 = std::floor(column - 0.5);
+      const int x = (static_cast<int>(x0) + map_width_) % map_width_;
+      pair.texel = static_cast<uint32_t>(
+          (static_cast<int>(y0) + 1) * (map_width_ + 1) + x);
+      pair.fy = Quantise(row - 0.5 - y0);
+      pair.fx = Quantise(column - 0.5 - x0);
+      chunk->near.push_back(pair);
+    }
+    chunk->far_end.push_back(chunk->far.size());
+    chunk->near_end.push_back(chunk->near.size());
+  }
+  chunk->far.shrink_to_fit();
+  chunk->near.shrink_to_fit();
+}
+
+size_t Transport::MemoryBytes() const {
+  size_t bytes = 0;
+  for (const Chunk& chunk : chunks_) {
+    bytes +=
+        chunk.far.capacity() * sizeof(FarPair) +
+        chunk.near.capacity() * sizeof(NearPair) +
+        (chunk.far_end.capacity() + chunk.near_end.capacity()) * sizeof(size_t);
+  }
+  return bytes;
+}
+
+// The padded map has a row before the first and one after the last (the row
+// itself, half a turn on: across the pole) and the first column once more.
+std::vector<float> Transport::PadMap(const float* map) const {
+  const int row = map_width_ + 1;
+  std::vector<float> out(size_t{4} * row * (map_height_ + 2), 0.0f);
+  for (int y = -1; y <= map_height_; ++y) {
+    const bool across = y < 0 || y == map_height_;
+    const int r = std::clamp(y, 0, map_height_ - 1);
+    for (int x = 0; x < row; ++x) {
+      const int c = (x + (across ? map_width_ / 2 : 0)) % map_width_;
+      const float* from = map + 3 * (static_cast<size_t>(r) * map_width_ + c);
+      std::copy_n(from, 3, &out[4 * (static_cast<size_t>(y + 1) * row + x)]);
+    }
+  }
+  return out;
+}
+
+std::vector<float> Transport::SumBlocks(const float* map) const {
+  const int columns = map_width_ / block_;
+  std::vector<double> sums(size_t{3} * num_blocks_, 0.0);
+  for (int y = 0; y < map_height_; ++y) {
+    const double solid_angle = TexelSolidAngle(y, map_height_, map_width_);
+    for (int x = 0; x < map_width_; ++x) {
+      const float* from = map + 3 * (static_cast<size_t>(y) * map_width_ + x);
+      const size_t block =
+          static_cast<size_t>(y / block_) * columns + x / block_;
+      for (int c = 0; c < 3; ++c) sums[3 * block + c] += solid_angle * from[c];
+    }
+  }
+  std::vector<float> out(size_t{4} * num_blocks_, 0.0f);
+  for (int b = 0; b < num_blocks_; ++b) {
+    for (int c = 0; c < 3; ++c) {
+      out[4 * b + c] = static_cast<float>(sums[3 * b + c]);
+    }
+  }
+  return out;
+}
+
+std::vector<float> Transport::PadGrid(const BrdfGrid& grid) const {
+  const BrdfGridShape& s = options_.grid;
+  CHECK(grid.shape == s);
+  std::vector<float> out(size_t{4} * PaddedNodes(), 0.0f);
+  for (int hd = 0; hd < s.h * s.d; ++hd) {
+    for (int p = 0; p <= s.p; ++p) {
+      for (int c = 0; c < 3; ++c) {
+        out[4 * (static_cast<size_t>(hd) * (s.p + 1) + p) + c] =
+            grid.Channel(c)[hd * s.p + p % s.p];
+      }
+    }
+  }
+  return out;
+}
+
+void Transport::UnpadMapGradient(const std::vector<double>& texels,
+                                 const std::vector<double>& blocks,
+                                 float* gradient) const {
+  const int row = map_width_ + 1, columns = map_width_ / block_;
+  std::vector<double> sums(size_t{3} * map_height_ * map_width_, 0.0);
+  for (int y = -1; y <= map_height_; ++y) {
+    const bool across = y < 0 || y == map_height_;
+    const int r = std::clamp(y, 0, map_height_ - 1);
+    for (int x = 0; x < row; ++x) {
+      const int to = (x + (across ? map_width_ / 2 : 0)) % map_width_;
+      const size_t from = 4 * (static_cast<size_t>(y + 1) * row + x);
+      for (int c = 0; c < 3; ++c) {
+        sums[3 * (static_cast<size_t>(r) * map_width_ + to) + c] +=
+            texels[from + c];
+      }
+    }
+  }
+  for (int y = 0; y < map_height_; ++y) {
+    const double solid_angle = TexelSolidAngle(y, map_height_, map_width_);
+    for (int x = 0; x < map_width_; ++x) {
+      const size_t block =
+          static_cast<size_t>(y / block_) * columns + x / block_;
+      const size_t to = 3 * (static_cast<size_t>(y) * map_width_ + x);
+      for (int c = 0; c < 3; ++c) {
+        gradient[to + c] = static_cast<float>(
+            sums[to + c] + solid_angle * blocks[4 * block + c]);
+      }
+    }
+  }
+}
+
+void Transport::Render(const BrdfGrid& grid, const float* map,
+                       double* E) const {
+  const std::vector<float> f = PadGrid(grid);
+  const std::vector<float> texels = PadMap(map), blocks = SumBlocks(map);
+  const Corners corners(options_.grid);
+  const int row = map_width_ + 1;
+  ParallelFor(
+      static_cast<int64_t>(chunks_.size()), options_.num_threads,
+      [&](int64_t index, int) {
+        const Chunk& chunk = chunks_[index];
+        size_t far = 0, near = 0;
+        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
+          Double4 sum = {};
+          for (; far < chunk.far_end[i]; ++far) {
+            const FarPair& pair = chunk.far[far];
+            sum += Widen(pair.weight * Interpolate(pair, corners, f.data()) *
+                         Load4(&blocks[size_t{4} * pair.block]));
+          }
+          for (; near < chunk.near_end[i]; ++near) {
+            const NearPair& pair = chunk.near[near];
+            sum += Widen(pair.weight * Interpolate(pair, corners, f.data()) *
+                         LookUp(pair, row, texels.data()));
+          }
+          for (int c = 0; c < 3; ++c) {
+            E[3 * static_cast<size_t>(chunk.begin + i) + c] = sum[c];
+          }
+        }
+      });
+}
+
+void Transport::RenderLobes(const float* const* fields, int num_fields,
+                            const float* map, float* out) const {
+  if (num_fields <= 0) return;
+  const BrdfGridShape& s = options_.grid;
+  const int stride = (num_fields + kLobeStride - 1) / kLobeStride * kLobeStride;
+  const int num_nodes = PaddedNodes();
+  std::vector<float> by_node(static_cast<size_t>(num_nodes) * stride, 0.0f);
+  ParallelFor(s.h, options_.num_threads, [&](int64_t ih, int) {
+    for (int hd = static_cast<int>(ih) * s.d; hd < (ih + 1) * s.d; ++hd) {
+      for (int p = 0; p <= s.p; ++p) {
+        float* to =
+            &by_node[(static_cast<size_t>(hd) * (s.p + 1) + p) * stride];
+        for (int k = 0; k < num_fields; ++k) {
+          to[k] = fields[k][hd * s.p + p % s.p];
+        }
+      }
+    }
+  });
+
+  const std::vector<float> texels = PadMap(map), blocks = SumBlocks(map);
+  const Corners corners(s);
+  const int row = map_width_ + 1;
+  const ContractLobesFunction contract = ContractLobes();
+  // Per worker: light gathered at every node, all zero between points; which
+  // nodes the point touched, in order of first touch; contracted sums.
+  struct Scratch {
+    std::vector<float> light;
+    std::vector<uint8_t> touched;
+    std::vector<int> nodes;
+    std::vector<float> sums;
+  };
+  const int num_workers =
+      options_.num_threads > 0 ? options_.num_threads : HardwareThreads();
+  std::vector<Scratch> scratch(num_workers);
+  ParallelFor(
+      static_cast<int64_t>(chunks_.size()), options_.num_threads,
+      [&](int64_t index, int worker) {
+        Scratch& w = scratch[worker];
+        w.light.resize(size_t{4} * num_nodes, 0.0f);
+        w.touched.resize(num_nodes, 0);
+        w.sums.resize(size_t{3} * stride);
+        const auto scatter = [&](const auto& pair, Float4 light) {
+          float weight[8];
+          TrilinearWeights(pair, weight);
+          for (int k = 0; k < 8; ++k) {
+            const int node = static_cast<int>(pair.node) + corners.offset[k];
+            if (w.touched[node] == 0) {
+              w.touched[node] = 1;
+              w.nodes.push_back(node);
+            }
+            Add4(&w.light[size_t{4} * node], weight[k] * light);
+          }
+        };
+        const Chunk& chunk = chunks_[index];
+        size_t far = 0, near = 0;
+        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
+          w.nodes.clear();
+          for (; far < chunk.far_end[i]; ++far) {
+            const FarPair& pair = chunk.far[far];
+            scatter(pair, pair.weight * Load4(&blocks[size_t{4} * pair.block]));
+          }
+          for (; near < chunk.near_end[i]; ++near) {
+            const NearPair& pair = chunk.near[near];
+            scatter(pair, pair.weight * LookUp(pair, row, texels.data()));
+          }
+          contract(w.nodes.data(), static_cast<int>(w.nodes.size()),
+                   w.light.data(), by_node.data(), stride, w.sums.data());
+          std::copy_n(
+              w.sums.data(), 3 * num_fields,
+              out + static_cast<size_t>(chunk.begin + i) * 3 * num_fields);
+          for (const int node : w.nodes) {
+            std::fill_n(&w.light[size_t{4} * node], 4, 0.0f);
+            w.touched[node] = 0;
+          }
+        }
+      });
+}
+
+void Transport::GridGradient(const float* map, const double* adjoint,
+                             float* gradient) const {
+  const BrdfGridShape& s = options_.grid;
+  const std::vector<float> texels = PadMap(map), blocks = SumBlocks(map);
+  const Corners corners(s);
+  const int row = map_width_ + 1;
+  std::vector<std::vector<float>> partial(chunks_.size());
+  ParallelFor(
+      static_cast<int64_t>(chunks_.size()), options_.num_threads,
+      [&](int64_t index, int) {
+        const Chunk& chunk = chunks_[index];
+        std::vector<float>& g = partial[index];
+        g.assign(size_t{4} * PaddedNodes(), 0.0f);
+        const auto scatter = [&](const auto& pair, Float4 light) {
+          float weight[8];
+          TrilinearWeights(pair, weight);
+          float* base = &g[size_t{4} * pair.node];
+          for (int k = 0; k < 8; ++k) {
+            Add4(base + 4 * corners.offset[k], weight[k] * light);
+          }
+        };
+        size_t far = 0, near = 0;
+        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
+          const double* a = adjoint + 3 * static_cast<size_t>(chunk.begin + i);
+          const Float4 a4 = {static_cast<float>(a[0]), static_cast<float>(a[1]),
+                             static_cast<float>(a[2]), 0.0f};
+          for (; far < chunk.far_end[i]; ++far) {
+            const FarPair& pair = chunk.far[far];
+            scatter(pair,
+                    a4 * pair.weight * Load4(&blocks[size_t{4} * pair.block]));
+          }
+          for (; near < chunk.near_end[i]; ++near) {
+            const NearPair& pair = chunk.near[near];
+            scatter(pair, a4 * pair.weight * LookUp(pair, row, texels.data()));
+          }
+        }
+      });
+  std::vector<double> sums(size_t{3} * s.num_nodes(), 0.0);
+  for (const std::vector<float>& g : partial) {
+    for (int hd = 0; hd < s.h * s.d; ++hd) {
+      for (int p = 0; p <= s.p; ++p) {
+        const int node = hd * s.p + p % s.p;
+        for (int c = 0; c < 3; ++c) {
+          sums[static_cast<size_t>(c) * s.num_nodes() + node] +=
+              g[4 * (static_cast<size_t>(hd) * (s.p + 1) + p) + c];
+        }
+      }
+    }
+  }
+  for (size_t i = 0; i < sums.size(); ++i) {
+    gradient[i] = static_cast<float>(sums[i]);
+  }
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,125 @@
+// Differentiable renderer: radiance of shading points as a form linear in the
+// tabulated BRDF and linear in the map, with both transposes.
+//
+// E_ic = sum_pairs weight f_c(pair) L_c(pair): the pairs of a point are the
+// samples of PointQuadrature, each with eight taps into the BRDF grid and one
+// block of the map (far) or four of its texels (near). No shadows, no bounces.
+//
+// Shapes: map [H, W, 3] radiance; E [points, 3] radiance; BRDF grid
+// [3, nodes] in 1/sr. Inputs must be finite; maps and grids may be negative
+// (tangents). Same bits for any number of threads.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/render/quadrature.h"
+#include "ibrdf/render/scene.h"
+
+namespace ibrdf {
+
+struct TransportOptions {
+  QuadratureOptions quadrature;
+  BrdfGridShape grid;
+  int num_threads = 0;  // <= 0: all
+};
+
+class LightOperator;
+
+// Immutable after construction; its functions may be called from one thread at
+// a time (they are parallel inside).
+class Transport {
+ public:
+  // map_width even; at most 65536 far cells (see FarBlockSize).
+  Transport(const std::vector<ShadingPoint>& points, int map_height,
+            int map_width, const TransportOptions& options);
+
+  int num_points() const { return num_points_; }
+  int map_height() const { return map_height_; }
+  int map_width() const { return map_width_; }
+  const BrdfGridShape& grid_shape() const { return options_.grid; }
+  // Bytes held by the lists of pairs.
+  size_t MemoryBytes() const;
+
+  void Render(const BrdfGrid& grid, const float* map, double* E) const;
+
+  // The linear map from L to E for a fixed BRDF. Must not outlive *this.
+  LightOperator ByLight(const BrdfGrid& grid) const;
+
+  // For scalar fields s_k on the grid, fields[k] = [nodes]: out
+  // [points, num_fields, 3], out_ikc = int s_k L_c cos. A BRDF
+  // f_c = sum_k colour_kc s_k has E_ic = sum_k colour_kc out_ikc.
+  void RenderLobes(const float* const* fields, int num_fields, const float* map,
+                   float* out) const;
+
+  // Transpose of Render in the grid: gradient [3, nodes] of sum adjoint.E.
+  void GridGradient(const float* map, const double* adjoint,
+                    float* gradient) const;
+
+ private:
+  friend class LightOperator;
+
+  // Trilinear fractions are in units of 1/65535.
+  struct FarPair {
+    uint32_t node;  // lowest node of the cell, in the padded grid
+    uint16_t fh, fd, fp;
+    uint16_t block;
+    float weight;
+  };
+  struct NearPair {
+    uint32_t node;
+    uint16_t fh, fd, fp;
+    uint16_t fx;
+    uint32_t texel;  // upper left of four, in the padded map
+    float weight;
+    uint16_t fy;
+  };
+  // Consecutive points; the split depends on their number alone.
+  struct Chunk {
+    int begin = 0, end = 0;
+    std::vector<FarPair> far;
+    std::vector<NearPair> near;
+    std::vector<size_t> far_end, near_end;  // [end - begin]
+  };
+
+  void BuildChunk(const std::vector<ShadingPoint>& points,
+                  const PointQuadrature& quadrature, Chunk* chunk) const;
+  // Four floats per entry, the last one 0.
+  std::vector<float> PadMap(const float* map) const;
+  std::vector<float> SumBlocks(const float* map) const;
+  std::vector<float> PadGrid(const BrdfGrid& grid) const;
+  void UnpadMapGradient(const std::vector<double>& texels,
+                        const std::vector<double>& blocks,
+                        float* gradient) const;
+  int PaddedNodes() const {
+    return options_.grid.h * options_.grid.d * (options_.grid.p + 1);
+  }
+
+  TransportOptions options_;
+  int num_points_ = 0;
+  int map_height_ = 0;
+  int map_width_ = 0;
+  int block_ = 1;  // side in texels
+  int num_blocks_ = 0;
+  std::vector<Chunk> chunks_;
+};
+
+class LightOperator {
+ public:
+  // E [points, 3] from map [H, W, 3].
+  void Apply(const float* map, double* E) const;
+  // gradient [H, W, 3] of sum adjoint.E, adjoint [points, 3].
+  void ApplyTranspose(const double* adjoint, float* gradient) const;
+
+  size_t MemoryBytes() const;
+
+ private:
+  friend class Transport;
+  explicit LightOperator(const Transport* transport) : transport_(transport) {}
+
+  const Transport* transport_;
+  // weight f_c of every pair, [chunk][pair * 3 + c], one spare entry.
+  std::vector<std::vector<float>> far_, near_;
+};
+
+}  // namespace ibrdf
