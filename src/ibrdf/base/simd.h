@@ -4,6 +4,9 @@
 #pragma once
 #include <cstdint>
 #include <cstring>
+#if defined(__SSE__)
+#include <immintrin.h>
+#endif
 
 #if !defined(IBRDF_SIMD_NAMESPACE) || !defined(IBRDF_SIMD_WIDTH)
 #error "compile through ibrdf_add_simd_kernels()"
@@ -47,9 +50,40 @@ using Vi [[gnu::vector_size(IBRDF_SIMD_WIDTH * 4), gnu::may_alias]] = int32_t;
   for (int i = 0; i < kLanes; ++i) s += v[i];
   return s;
 }
+// By intrinsics: compilers take a loop over lanes apart into scalar roots.
 [[maybe_unused]] inline Vf Sqrt(Vf v) {
+#if IBRDF_SIMD_WIDTH == 16
+  // The masked form spares GCC 12 a false warning about its own header.
+  return (Vf)_mm512_maskz_sqrt_ps(0xffff, (__m512)v);
+#elif IBRDF_SIMD_WIDTH == 8
+  return (Vf)_mm256_sqrt_ps((__m256)v);
+#elif defined(__SSE__)
+  return (Vf)_mm_sqrt_ps((__m128)v);
+#else
   for (int i = 0; i < kLanes; ++i) v[i] = __builtin_sqrtf(v[i]);
   return v;
+#endif
+}
+
+// Transposes kLanes vectors of kLanes floats in place, by log2(kLanes) perfect
+// shuffles of pairs.
+[[maybe_unused]] inline void Transpose(Vf* rows) {
+  Vi low = Vi{}, high = Vi{};
+  for (int i = 0; i < kLanes; ++i) {
+    low[i] = i / 2 + (i % 2) * kLanes;
+    high[i] = low[i] + kLanes / 2;
+  }
+#pragma GCC unroll 4
+  for (int stage = 1; stage < kLanes; stage *= 2) {
+    Vf mixed[kLanes];
+#pragma GCC unroll 8
+    for (int i = 0; i < kLanes / 2; ++i) {
+      mixed[2 * i] = __builtin_shuffle(rows[i], rows[i + kLanes / 2], low);
+      mixed[2 * i + 1] = __builtin_shuffle(rows[i], rows[i + kLanes / 2], high);
+    }
+#pragma GCC unroll 16
+    for (int i = 0; i < kLanes; ++i) rows[i] = mixed[i];
+  }
 }
 
 // exp(x), relative error below 2e-7 on [-87, 88]; clamped outside.

@@ -245,6 +245,22 @@ inline void SplineAdjoint(int n, const float* params, int p, Vf xi, Vf y,
   Store(gut + p, gn * slope + da);
 }
 
+// [count][64] -> [64][padded], zeros beyond count.
+void TransposeRows(const float* rows, int count, int padded, float* out) {
+  for (int k = 0; k < padded; k += kLanes) {
+    for (int p = 0; p < kP; p += kLanes) {
+      Vf tile[kLanes];
+      for (int i = 0; i < kLanes; ++i) {
+        tile[i] = k + i < count ? Load(rows + (k + i) * kP + p) : Vf{};
+      }
+      Transpose(tile);
+      for (int i = 0; i < kLanes; ++i) {
+        Store(out + (p + i) * padded + k, tile[i]);
+      }
+    }
+  }
+}
+
 void Backward(const FlowView& v, const float* tape, const float* adjoint,
               float* scratch, float* weight_gradient, float* bias_gradient,
               float* dcode, float* dx) {
@@ -281,12 +297,7 @@ void Backward(const FlowView& v, const float* tape, const float* adjoint,
         }
         const int padded = (d.in_count + 2 * kLanes - 1) / (2 * kLanes) *
                            (2 * kLanes);
-        for (int p = 0; p < kP; ++p) {
-          for (int k = 0; k < padded; ++k) {
-            transposed[p * padded + k] =
-                k < d.in_count ? rows[(d.in + k) * kP + p] : 0.0f;
-          }
-        }
+        TransposeRows(rows + d.in * kP, d.in_count, padded, transposed);
         float* gw = weight_gradient + l * v.padded_per_layer + d.padded_offset;
         Product<true>(d.out_count, padded, kP, g, kP, 1, transposed, padded,
                       gw, PaddedCount(d.in_count), nullptr);

@@ -1,0 +1,177 @@
+#include "io/model_file.h"
+
+#include <sys/stat.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr char kMagic[] = "ibrdf-model ";
+constexpr int kVersion = 1;
+constexpr size_t kMaxBytes = size_t{256} << 20;
+// Rounding of a code that was projected to the unit sphere in float.
+constexpr double kBallSlack = 1e-4;
+
+uint64_t Fnv1a(const char* data, size_t size) {
+  uint64_t hash = 0xcbf29ce484222325ULL;
+  for (size_t i = 0; i < size; ++i) {
+    hash = (hash ^ static_cast<unsigned char>(data[i])) * 0x100000001b3ULL;
+  }
+  return hash;
+}
+
+// Takes the text up to the next newline off `rest`.
+bool TakeLine(const std::string& bytes, size_t* at, std::string* line) {
+  const size_t end = bytes.find('\n', *at);
+  if (end == std::string::npos || end - *at > 64) return false;
+  *line = bytes.substr(*at, end - *at);
+  *at = end + 1;
+  return true;
+}
+
+bool TakeFloats(const std::string& bytes, size_t* at, size_t count,
+                std::vector<float>* values) {
+  values->resize(count);
+  std::memcpy(values->data(), bytes.data() + *at, count * sizeof(float));
+  *at += count * sizeof(float);
+  for (const float v : *values) {
+    if (!std::isfinite(v)) return false;
+  }
+  return true;
+}
+
+Status ParseHeader(const std::string& path, const std::string& text,
+                   NeuralBrdfModel* model) {
+  try {
+    const nlohmann::json header = nlohmann::json::parse(text);
+    model->shape.layers = header.at("layers").get<int>();
+    model->shape.bins = header.at("bins").get<int>();
+    model->shape.code_size = header.at("code_size").get<int>();
+    model->shape.widths = header.at("widths").get<std::vector<int>>();
+    model->exponent = header.at("exponent").get<double>();
+    model->names = header.at("names").get<std::vector<std::string>>();
+    model->note = header.at("note").get<std::string>();
+  } catch (const nlohmann::json::exception& e) {
+    return InvalidInput(path + ": header", e.what());
+  }
+  const std::string wrong = model->shape.Validate();
+  if (!wrong.empty()) return InvalidInput(path + ": header", wrong);
+  if (!(model->exponent >= 0.1 && model->exponent <= 32.0)) {
+    return InvalidInput(path + ": exponent", "expected a number in [0.1, 32]");
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
+StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
+  const StatusOr<std::string> file = ReadFile(path, kMaxBytes);
+  if (!file.ok()) return file.status();
+  const std::string& bytes = *file;
+  const size_t magic = sizeof(kMagic) - 1;
+  size_t at = magic;
+  std::string version, length;
+  if (bytes.compare(0, magic, kMagic) != 0 || !TakeLine(bytes, &at, &version)) {
+    return InvalidInput(path, "not a model file, expected \"ibrdf-model 1\"");
+  }
+  if (version != std::to_string(kVersion)) {
+    return InvalidInput(path + ": version", "expected 1, found " + version);
+  }
+  if (bytes.size() < at + sizeof(uint64_t)) {
+    return InvalidInput(path, "truncated model file");
+  }
+  const size_t end = bytes.size() - sizeof(uint64_t);
+  uint64_t checksum = 0;
+  std::memcpy(&checksum, bytes.data() + end, sizeof(checksum));
+  if (checksum != Fnv1a(bytes.data(), end)) {
+    return InvalidInput(path + ": checksum",
+                        "does not match, the file is damaged or truncated");
+  }
+  if (!TakeLine(bytes, &at, &length) || length.empty() || length.size() > 9 ||
+      length.find_first_not_of("0123456789") != std::string::npos ||
+      std::stoul(length) > end - at) {
+    return InvalidInput(path + ": header", "expected its length in bytes");
+  }
+  const size_t header_size = std::stoul(length);
+  NeuralBrdfModel model;
+  IBRDF_RETURN_IF_ERROR(
+      ParseHeader(path, bytes.substr(at, header_size), &model));
+  at += header_size;
+  const size_t codes = model.names.size() * model.shape.code_size;
+  const size_t floats = model.shape.NumWeights() + codes + model.names.size();
+  if (end - at != floats * sizeof(float)) {
+    return InvalidInput(path, "expected " + std::to_string(floats) +
+                                  " numbers after the header, found " +
+                                  std::to_string((end - at) / sizeof(float)));
+  }
+  if (!TakeFloats(bytes, &at, model.shape.NumWeights(), &model.weights)) {
+    return InvalidInput(path + ": weights", "expected finite numbers");
+  }
+  if (!TakeFloats(bytes, &at, codes, &model.codes)) {
+    return InvalidInput(path + ": codes", "expected finite numbers");
+  }
+  if (!TakeFloats(bytes, &at, model.names.size(), &model.log_colours)) {
+    return InvalidInput(path + ": log_colours", "expected finite numbers");
+  }
+  for (int i = 0; i < model.num_codes(); ++i) {
+    double sum = 0.0;
+    for (int k = 0; k < model.shape.code_size; ++k) {
+      const double v = model.codes[i * model.shape.code_size + k];
+      sum += v * v;
+    }
+    if (std::sqrt(sum) > 1.0 + kBallSlack) {
+      return InvalidInput(path + ": codes",
+                          model.names[i] + " lies outside the unit ball");
+    }
+  }
+  return model;
+}
+
+Status WriteModel(const NeuralBrdfModel& model, const std::string& path) {
+  const nlohmann::json header = {{"layers", model.shape.layers},
+                                 {"bins", model.shape.bins},
+                                 {"code_size", model.shape.code_size},
+                                 {"widths", model.shape.widths},
+                                 {"exponent", model.exponent},
+                                 {"names", model.names},
+                                 {"note", model.note}};
+  const std::string text = header.dump();
+  std::string bytes = kMagic + std::to_string(kVersion) + "\n" +
+                      std::to_string(text.size()) + "\n" + text;
+  for (const std::vector<float>* values :
+       {&model.weights, &model.codes, &model.log_colours}) {
+    bytes.append(reinterpret_cast<const char*>(values->data()),
+                 values->size() * sizeof(float));
+  }
+  const uint64_t checksum = Fnv1a(bytes.data(), bytes.size());
+  bytes.append(reinterpret_cast<const char*>(&checksum), sizeof(checksum));
+  return WriteFileAtomically(path, bytes);
+}
+
+StatusOr<std::string> FindModel(const std::string& name) {
+  if (name != "default") return name;
+  std::vector<std::string> folders;
+  if (const char* folder = std::getenv("IBRDF_MODEL_DIR")) {
+    folders.push_back(folder);
+  }
+  folders.push_back(IBRDF_INSTALLED_MODEL_DIR);
+  folders.push_back(IBRDF_SOURCE_MODEL_DIR);
+  for (const std::string& folder : folders) {
+    const std::string path = folder + "/default.ibrdf";
+    struct stat info = {};
+    if (::stat(path.c_str(), &info) == 0) return path;
+  }
+  return InvalidInput("reflectance.model",
+                      "the default model is not installed, expected "
+                      "default.ibrdf in $IBRDF_MODEL_DIR");
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,24 @@
+// Trained models of the invertible BRDF on disk.
+#pragma once
+#include <string>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/flow/neural_brdf_model.h"
+
+namespace ibrdf {
+
+// Format, version 1: the line "ibrdf-model 1\n"; a decimal byte count and "\n";
+// that many bytes of JSON (shape, exponent, names, note); the float32 arrays
+// weights, codes and log_colours, little endian; a 64-bit FNV-1a checksum of
+// everything before it. Refused with a message that names file and field:
+// another magic or version, sizes that do not fit, a wrong checksum, numbers
+// that are not finite, codes outside the unit ball.
+StatusOr<NeuralBrdfModel> ReadModel(const std::string& path);
+
+Status WriteModel(const NeuralBrdfModel& model, const std::string& path);
+
+// Path of the model called `name`: "default" is looked for in $IBRDF_MODEL_DIR,
+// beside the installed library and in the source tree; anything else is a path.
+StatusOr<std::string> FindModel(const std::string& name);
+
+}  // namespace ibrdf

@@ -1,0 +1,168 @@
+// The trainer of the flow and its embedding.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <numeric>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "ibrdf/flow/flow_kernels.h"
+#include "io/model_file.h"
+#include "solvers/programs/common_flags.h"
+#include "solvers/trainer/flow_trainer.h"
+
+namespace ibrdf {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+void RequestStop(int) { stop_requested = true; }
+
+struct TrainFlags {
+  std::string data, out, leave_out, note;
+  int points = 131072;
+  bool fresh = false;
+};
+
+std::vector<std::string> SplitByComma(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) {
+    if (!part.empty()) parts.push_back(part);
+  }
+  return parts;
+}
+
+Status Train(const TrainFlags& flags, const CommonFlags& common,
+             TrainerOptions options) {
+  const std::string wrong = options.shape.Validate();
+  if (!wrong.empty()) return InvalidInput("command line", wrong);
+  if (options.points_per_code % kFlowBlock != 0) {
+    return InvalidInput("command line: --points-per-code",
+                        "expected a multiple of " +
+                            std::to_string(kFlowBlock));
+  }
+  const StatusOr<TrainingData> all =
+      ReadTrainingData(flags.data, SplitByComma(flags.leave_out), flags.points,
+                       common.seed);
+  if (!all.ok()) return all.status();
+  // A sixteenth of the points is never trained on.
+  const int train_points = all->num_points - all->num_points / 16;
+  const TrainingData train = all->Slice(0, train_points);
+  const TrainingData held_out = all->Slice(train_points, all->num_points);
+  options.checkpoint = flags.out + ".checkpoint";
+  options.seed = common.seed;
+  options.num_threads = common.threads;
+  if (flags.fresh) std::remove(options.checkpoint.c_str());
+  std::signal(SIGINT, RequestStop);
+  std::signal(SIGTERM, RequestStop);
+
+  const auto report = [&](const TrainerProgress& p) {
+    if (common.quiet) return;
+    std::printf(
+        "step %6lld / %lld  %7.1f s  train log-RMSE %.4f  held-out points "
+        "%.4f\n",
+        static_cast<long long>(p.step), static_cast<long long>(options.steps),
+        p.seconds, p.training_rmse, p.held_out_rmse);
+    std::fflush(stdout);
+  };
+  StatusOr<NeuralBrdfModel> model =
+      TrainFlow(train, held_out, options, report, &stop_requested);
+  if (!model.ok()) return model.status();
+
+  const std::vector<double> scores =
+      ScoreModel(*model, held_out, common.threads);
+  std::vector<double> by_material;
+  for (size_t m = 0; m + 2 < scores.size(); m += 3) {
+    by_material.push_back(std::sqrt((scores[m] * scores[m] +
+                                     scores[m + 1] * scores[m + 1] +
+                                     scores[m + 2] * scores[m + 2]) /
+                                    3));
+    if (!common.quiet) {
+      const std::string& name = model->names[m];
+      std::printf("%-28s %.4f\n", name.substr(0, name.rfind('.')).c_str(),
+                  by_material.back());
+    }
+  }
+  const double mean =
+      std::accumulate(by_material.begin(), by_material.end(), 0.0) /
+      static_cast<double>(by_material.size());
+  char score[160];
+  std::snprintf(score, sizeof(score),
+                "mean log-RMSE over %zu materials at points not trained on, "
+                "one code per channel: %.4f",
+                by_material.size(), mean);
+  std::printf("%s\n", score);
+  model->note = flags.note + (flags.note.empty() ? "" : " ") + score + "; " +
+                std::to_string(options.steps) + " steps of " +
+                std::to_string(options.codes_per_step) + " codes x " +
+                std::to_string(options.points_per_code) + " points, seed " +
+                std::to_string(options.seed) + ".";
+  IBRDF_RETURN_IF_ERROR(WriteModel(*model, flags.out));
+  std::remove(options.checkpoint.c_str());
+  return OkStatus();
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app(
+      "Trains the invertible BRDF and its embedding on a folder of MERL "
+      ".binary tables. Stops at SIGINT with a checkpoint beside --out, from "
+      "which the same command goes on.");
+  CommonFlags common;
+  TrainFlags flags;
+  TrainerOptions options;
+  AddCommonFlags(&app, &common);
+  app.add_option("--data", flags.data, "folder of MERL .binary files")
+      ->required();
+  app.add_option("--out", flags.out, "model file to write")->required();
+  app.add_option("--leave-out", flags.leave_out,
+                 "comma-separated materials not to train on");
+  app.add_option("--note", flags.note, "text kept in the model: data, licence");
+  app.add_option("--points", flags.points,
+                 "random bins of each table to use; 1/16 of them are held out")
+      ->check(CLI::Range(1024, 1 << 21))
+      ->capture_default_str();
+  app.add_flag("--fresh", flags.fresh, "ignore an existing checkpoint");
+  app.add_option("--steps", options.steps, "Adam steps")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+  app.add_option("--codes-per-step", options.codes_per_step,
+                 "distributions in a step")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  app.add_option("--points-per-code", options.points_per_code,
+                 "points of each, a multiple of 64")
+      ->check(CLI::Range(64, 65536))
+      ->capture_default_str();
+  app.add_option("--layers", options.shape.layers, "coupling layers")
+      ->capture_default_str();
+  app.add_option("--bins", options.shape.bins, "bins of a spline")
+      ->capture_default_str();
+  app.add_option("--widths", options.shape.widths,
+                 "conditioner widths, outermost first")
+      ->capture_default_str();
+  app.add_option("--exponent", options.exponent,
+                 "reflectance = colour * density ^ exponent")
+      ->check(CLI::Range(0.1, 32.0))
+      ->capture_default_str();
+  app.add_option("--learning-rate", options.learning_rate, "of the weights")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--code-learning-rate", options.code_learning_rate,
+                 "of the codes")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--report-seconds", options.report_seconds,
+                 "seconds between progress lines")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  return RunProgram(&app, argc, argv,
+                    [&] { return Train(flags, common, options); });
+}
+
+}  // namespace
+}  // namespace ibrdf
+
+int main(int argc, char** argv) { return ibrdf::Main(argc, argv); }

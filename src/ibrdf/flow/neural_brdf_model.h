@@ -1,0 +1,31 @@
+// The conditional invertible BRDF with its embedding, as the trainer makes it.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/flow/flow_shape.h"
+
+namespace ibrdf {
+
+// One lobe of the model is colour * q(x | z)^exponent, where q is the flow's
+// density on the unit cube x = (sqrt(theta_h / bound), theta_d, phi_d) (see
+// brdf_grid.h). exponent 1 is Chen et al. 2020, Eq. 5; a larger one lets a
+// density of moderate range stand for reflectance of many orders of magnitude,
+// while scale and hue stay exact factors outside.
+struct NeuralBrdfModel {
+  FlowShape shape;
+  double exponent = 4.0;
+  std::vector<float> weights;  // [shape.NumWeights()]
+
+  // The embedding: one code per training distribution (material and channel).
+  std::vector<std::string> names;  // "material.red" ...
+  std::vector<float> codes;        // [names.size()][code_size], in the unit ball
+  // log of the colour (raw MERL units) with which a code fits its table.
+  std::vector<float> log_colours;  // [names.size()]
+
+  std::string note;  // data, licence, command and score of the training
+
+  int num_codes() const { return static_cast<int>(names.size()); }
+};
+
+}  // namespace ibrdf
