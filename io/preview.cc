@@ -325,6 +325,7 @@ Rgb8Image ComposePanels(const std::vector<std::vector<PreviewPanel>>& rows,
     height += kLabelStyle.line_height;
   }
   for (const RowLayout& row : layouts) height += row.height() + kGap;
+  if (note_lines.empty()) height -= kGap;
 
   cv::Mat canvas(height, content_width + 2 * kMargin, CV_8UC3, kGround);
   int top = kMargin - 8;

@@ -94,9 +94,11 @@ double BrdfScale(const MerlTable& estimate, const MerlTable& reference) {
   return ratio.Factor();
 }
 
-std::string ScaledLabel(const std::string& name, double scale) {
-  return name + " (times " + Number(scale) + " for the reference's scale)";
-}
+// Explained by kScaleNote.
+std::string Times(double scale) { return " x" + Number(scale); }
+constexpr char kScaleNote[] =
+    "xN after an estimate: shown times this factor, the one for all channels "
+    "that brings its mean logarithm to the reference's.";
 
 Row MapPanels(const ResultPreviewInput& input) {
   if (input.illumination.empty()) return {};
@@ -112,8 +114,8 @@ Row MapPanels(const ResultPreviewInput& input) {
                 input.illumination.width);
   const double exposure = ExposureOf(reference, Mask(), kMapWhite);
   const double scale = MapScale(input.illumination, reference);
-  return {Picture(ScaledLabel("Estimated illumination", scale),
-                  input.illumination, Mask(), scale * exposure, kind),
+  return {Picture("Estimated illumination" + Times(scale), input.illumination,
+                  Mask(), scale * exposure, kind),
           Picture("Reference illumination (" + White(exposure, "") +
                       ", its 97th percentile)",
                   reference, Mask(), exposure, kind)};
@@ -129,7 +131,7 @@ Spheres RenderSpheres(const MerlTable& table, int num_threads) {
     return InterpolateMerl(table, theta_h, theta_d, phi_d);
   };
   return {RenderBrdfSphere(brdf, StudioLights(), kSphereSize),
-          RenderBrdfSphere(brdf, ProceduralSky(kSkyHeight, 2 * kSkyHeight),
+          RenderBrdfSphere(table, ProceduralSky(kSkyHeight, 2 * kSkyHeight),
                            kSphereSize, num_threads)};
 }
 
@@ -143,8 +145,8 @@ Row BrdfPanels(const ResultPreviewInput& input) {
               : estimate;
   const double scale =
       compare ? BrdfScale(input.brdf, input.reference_brdf) : 1.0;
-  const std::string name = compare ? ScaledLabel("Estimated BRDF", scale)
-                                   : std::string("Estimated BRDF");
+  const std::string name =
+      "BRDF estimate" + (compare ? Times(scale) : std::string());
   Row row;
   const auto add = [&](const Image& estimated, const Image& known,
                        const std::string& light) {
@@ -152,11 +154,11 @@ Row BrdfPanels(const ResultPreviewInput& input) {
     row.push_back(
         Picture(name + ", " + light, estimated, mask, scale * exposure));
     if (compare) {
-      row.push_back(Picture("Reference BRDF, " + light, known, mask, exposure));
+      row.push_back(Picture("BRDF reference, " + light, known, mask, exposure));
     }
   };
-  add(estimate.lamps, reference.lamps, "three lamps");
-  add(estimate.sky, reference.sky, "artificial sky");
+  add(estimate.lamps, reference.lamps, "lamps");
+  add(estimate.sky, reference.sky, "sky");
   return row;
 }
 
@@ -195,7 +197,11 @@ Rgb8Image ComposeOverview(const ResultRows& rows,
   for (const Row* row : {&rows.images, &rows.maps, &rows.spheres}) {
     if (!row->empty()) shown.push_back(*row);
   }
-  return ComposePanels(shown, input.title, input.metrics);
+  std::vector<std::string> notes = input.metrics;
+  if (rows.maps.size() > 1 || rows.spheres.size() > 2) {
+    notes.push_back(kScaleNote);
+  }
+  return ComposePanels(shown, input.title, notes);
 }
 
 }  // namespace

@@ -89,7 +89,12 @@ TEST(BrdfSphere, ConstantMapShowsTheAlbedo) {
   Image map(32, 16);
   std::fill(map.rgb.begin(), map.rgb.end(), 2.0f);
   const int size = 24;
-  const Image image = RenderBrdfSphere(Lambertian, map, size);
+  MerlTable table;
+  for (int c = 0; c < 3; ++c) {
+    table.raw.insert(table.raw.end(), kMerlBins,
+                     kAlbedo[c] / kPi / kMerlScale[c]);
+  }
+  const Image image = RenderBrdfSphere(table, map, size);
   const Mask mask = BrdfSphereMask(size);
   for (size_t i = 0; i < mask.inside.size(); ++i) {
     for (int c = 0; c < 3; ++c) {

@@ -117,16 +117,16 @@ Image RenderBrdfSphere(const BrdfFunction& brdf,
   return PixelMeans(points, E.data(), size, size);
 }
 
-Image RenderBrdfSphere(const BrdfFunction& brdf, const Image& map, int size,
+Image RenderBrdfSphere(const MerlTable& table, const Image& map, int size,
                        int num_threads) {
   const std::vector<ShadingPoint> points = SpherePoints(size, 1);
   ReferenceOptions options;
-  options.near_rings = 16;
-  options.near_ring_samples = 48;
+  options.near_rings = 12;
+  options.near_ring_samples = 36;
   options.far_width = 32;
   options.num_threads = num_threads;
   std::vector<double> E(3 * points.size());
-  ReferenceRenderer(map, options).Render(points, brdf, E.data());
+  ReferenceRenderer(map, options).Render(points, table, E.data());
   return PixelMeans(points, E.data(), size, size);
 }
 

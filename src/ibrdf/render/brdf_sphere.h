@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 
 namespace ibrdf {
@@ -30,9 +31,9 @@ Image RenderBrdfSphere(const BrdfFunction& brdf,
                        const std::vector<DirectionalLight>& lights, int size,
                        int samples_per_side = 3);
 
-// The same under an environment map, at pixel centres, with a coarse quadrature
-// (for the eye, not for measurements).
-Image RenderBrdfSphere(const BrdfFunction& brdf, const Image& map, int size,
+// The same of a complete table under an environment map, at pixel centres, with
+// a coarse quadrature (for the eye, not for measurements).
+Image RenderBrdfSphere(const MerlTable& table, const Image& map, int size,
                        int num_threads = 0);
 
 // The pixels whose centre lies on that sphere.
