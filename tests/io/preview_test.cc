@@ -146,7 +146,7 @@ TEST(Preview, ResidualIsRedWhereTheRenderIsTooBright) {
 TEST(Preview, LargeImagesAreReducedToFitTheWidth) {
   const Rgb8Image one = ComposePanels({{Panel(Constant(3000, 100, 1.0f))}}, "");
   EXPECT_LE(one.width, 1440);
-  const std::vector<PreviewPanel> row(5, Panel(Constant(900, 2000, 0.5f)));
+  const std::vector<PreviewPanel> row(5, Panel(Constant(450, 1000, 0.5f)));
   const Rgb8Image five = ComposePanels({row, row}, "title", {"note"});
   EXPECT_LE(five.width, 1440);
   // The mean of equal pixels is the pixel: no ringing, no darkening.

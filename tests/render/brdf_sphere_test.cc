@@ -40,7 +40,7 @@ TEST(BrdfSphere, LambertianIsAlbedoTimesTheCosinesOfItsLights) {
   int inside = 0;
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      Eigen::Vector3d n;
+      Eigen::Vector3d n = Eigen::Vector3d::Zero();
       const bool hit = NormalAt(x, y, size, &n);
       EXPECT_EQ(mask.inside[y * size + x] != 0, hit) << x << ' ' << y;
       Eigen::Array3d expected = Eigen::Array3d::Zero();
@@ -74,7 +74,7 @@ TEST(BrdfSphere, HighlightIsAtTheHalfVector) {
   int lit = 0;
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      Eigen::Vector3d n;
+      Eigen::Vector3d n = Eigen::Vector3d::Zero();
       if (!NormalAt(x, y, size, &n)) continue;
       const double angle = std::acos(std::min(n.dot(half), 1.0));
       if (std::fabs(angle - 0.1) < 1e-4) continue;  // float normals decide
