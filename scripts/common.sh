@@ -1,5 +1,7 @@
+# shellcheck shell=bash
 # Sourced by the scripts beside it: where the project is, and steps with times.
 
+# shellcheck disable=SC2034  # used by those scripts
 project_dir="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 
 # step DESCRIPTION COMMAND...: runs the command and prints how long it took.

@@ -2,6 +2,7 @@
 # From nothing to a first estimate: installs what is missing, builds the
 # programs, renders a glossy sphere and estimates its reflectance and light.
 set -euo pipefail
+# shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "${project_dir}"
 

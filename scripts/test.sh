@@ -2,6 +2,7 @@
 # Installs what is missing, builds everything and runs all tests. With CI=true
 # a compiler warning is an error.
 set -euo pipefail
+# shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "${project_dir}"
 
