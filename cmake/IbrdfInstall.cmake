@@ -1,7 +1,7 @@
 # Install and export, so that another project can find_package(ibrdf).
 include(CMakePackageConfigHelpers)
 
-install(TARGETS ibrdf_core ibrdf_io EXPORT ibrdfTargets
+install(TARGETS ibrdf_core ibrdf_io ibrdf_solvers EXPORT ibrdfTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/ibrdf
@@ -18,7 +18,7 @@ write_basic_package_version_file(
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/ibrdf-config.cmake
               ${PROJECT_BINARY_DIR}/ibrdf-config-version.cmake
-              cmake/FindOpenCVImgproc.cmake
+              cmake/FindOpenCVImgproc.cmake cmake/FindOpenEXR.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ibrdf)
-install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/ibrdf
+install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/ibrdf OPTIONAL
         FILES_MATCHING PATTERN "*.ibrdf" PATTERN "*.md")

@@ -1,0 +1,36 @@
+// Labelled pictures of radiance, residuals and maps.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/image/image.h"
+#include "ibrdf/image/rgb8_image.h"
+
+namespace ibrdf {
+
+struct PreviewPanel {
+  enum class Kind {
+    kRadiance,        // image times exposure, as sRGB
+    kSignedResidual,  // mean of the channels, in DivergingColour
+    kMap,             // as kRadiance, with the axes below
+  };
+  std::string label;  // printable ASCII, wrapped to the picture's width
+  Image image;
+  Kind kind = Kind::kRadiance;
+  // Pixels outside are neutral grey, as are pixels that are NaN; empty: none.
+  Mask mask;
+  double exposure = 1.0;
+  // kSignedResidual: value at the ends of the colour bar; 0: the 99th
+  // percentile of the magnitude, rounded up to 1, 2 or 5 times a power of ten.
+  double range = 0.0;
+};
+
+// Rows of panels on a light ground, the title above and the notes below, at
+// most 1440 pixels wide. Small images are enlarged by the largest whole factor
+// that fits, pixels staying squares; large ones are reduced by area in linear
+// light; the size and factor stand below each. Panels have pixels, rows panels.
+Rgb8Image ComposePanels(const std::vector<std::vector<PreviewPanel>>& rows,
+                        const std::string& title,
+                        const std::vector<std::string>& notes = {});
+
+}  // namespace ibrdf
