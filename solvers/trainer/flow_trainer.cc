@@ -110,7 +110,7 @@ class Trainer {
       Chunk& c = chunks_[chunk];
       std::fill(c.gradient.begin(), c.gradient.end(), 0.0f);
       for (int b = static_cast<int>(chunk); b < batch; b += kChunks) {
-        sums[b] = AddGradient(order[b], seeds[b], scale, &c.gradient,
+        sums[b] = AddGradient(order[b], seeds[b], scale, &c,
                               code_gradients.data() + b * code_size_);
       }
     });
@@ -159,6 +159,7 @@ class Trainer {
  private:
   struct Chunk {
     std::vector<float> gradient;
+    std::vector<CouplingFlow::TrainingPass> passes;  // room, reused
   };
 
   double Schedule() const {
@@ -170,7 +171,7 @@ class Trainer {
   }
 
   double AddGradient(int distribution, uint64_t seed, double scale,
-                     std::vector<float>* gradient, float* code_gradient) const {
+                     Chunk* chunk, float* code_gradient) const {
     const int n = options_.points_per_code;
     const float* code =
         state_.codes.data() + static_cast<size_t>(distribution) * code_size_;
@@ -189,10 +190,9 @@ class Trainer {
       target[p] = log_raw[at];
     }
     const int blocks = n / kFlowBlock;
-    std::vector<CouplingFlow::TrainingPass> passes;
-    passes.reserve(blocks);
+    std::vector<CouplingFlow::TrainingPass>& passes = chunk->passes;
+    while (static_cast<int>(passes.size()) < blocks) passes.emplace_back(flow_);
     for (int b = 0; b < blocks; ++b) {
-      passes.emplace_back(flow_);
       passes[b].Forward(x.data() + b * 3 * kFlowBlock, code,
                         value.data() + b * kFlowBlock);
     }
@@ -200,7 +200,7 @@ class Trainer {
         Residuals(value, target, options_.exponent, options_.huber, &psi);
     for (float& v : psi) v *= static_cast<float>(scale);
     for (int b = 0; b < blocks; ++b) {
-      passes[b].Backward(psi.data() + b * kFlowBlock, gradient->data(),
+      passes[b].Backward(psi.data() + b * kFlowBlock, chunk->gradient.data(),
                          code_gradient);
     }
     return sum;

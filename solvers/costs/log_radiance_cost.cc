@@ -1,0 +1,200 @@
+#include "solvers/costs/log_radiance_cost.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glog/logging.h>
+
+namespace ibrdf {
+namespace {
+
+// Residuals of E, and dr/dE of each; false where E is not finite.
+bool FillResiduals(const std::vector<double>& E, const Observations& observed,
+                   const RobustLogLikelihood& likelihood, double* residuals,
+                   std::vector<double>* dr_dE) {
+  if (dr_dE != nullptr) dr_dE->assign(E.size(), 0.0);
+  for (size_t i = 0; i < E.size(); ++i) {
+    residuals[i] = 0.0;
+    if (!observed.valid[i / 3]) continue;
+    if (!std::isfinite(E[i])) return false;
+    const double e = std::max(E[i], 0.0) + likelihood.epsilon;
+    const double t =
+        (std::log(e) - std::log(observed.radiance[i] + likelihood.epsilon)) /
+        likelihood.scale;
+    double dr_dt = 0.0;
+    residuals[i] = RobustResidual(t, likelihood.delta, &dr_dt);
+    if (dr_dE != nullptr) (*dr_dE)[i] = dr_dt / (likelihood.scale * e);
+  }
+  return true;
+}
+
+void ScaleRows(const std::vector<double>& dr_dE, const std::vector<double>& dE,
+               int columns, double* jacobian) {
+  for (size_t i = 0; i < dr_dE.size(); ++i) {
+    for (int p = 0; p < columns; ++p) {
+      const size_t at = i * columns + p;
+      jacobian[at] = dr_dE[i] * dE[at];
+    }
+  }
+}
+
+}  // namespace
+
+Observations MakeObservations(const std::vector<double>& radiance) {
+  Observations o;
+  o.radiance = radiance;
+  o.valid.resize(radiance.size() / 3);
+  for (size_t i = 0; i < o.valid.size(); ++i) {
+    bool valid = true;
+    for (int c = 0; c < 3; ++c) {
+      const double v = radiance[3 * i + c];
+      valid &= std::isfinite(v) && v > 0.0;
+    }
+    o.valid[i] = valid;
+    o.num_valid += valid;
+  }
+  return o;
+}
+
+bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
+                     const double* parameters, const float* map,
+                     std::vector<double>* E, std::vector<double>* dE) {
+  const int lobe_size = lobes.lobe_size(), codes = lobes.code_size();
+  const int stride = dE != nullptr ? 1 + codes : 1;
+  const int num_fields = stride * lobes.num_lobes();
+  const int columns = lobes.num_parameters();
+  const int points = transport.num_points();
+  std::vector<float> fields;
+  lobes.Tabulate(parameters, dE != nullptr, &fields);
+  const size_t nodes = lobes.grid_shape().num_nodes();
+  std::vector<const float*> pointers(num_fields);
+  for (int f = 0; f < num_fields; ++f) pointers[f] = fields.data() + f * nodes;
+  std::vector<float> out(static_cast<size_t>(points) * num_fields * 3);
+  transport.RenderLobes(pointers.data(), num_fields, map, out.data());
+  E->assign(static_cast<size_t>(points) * 3, 0.0);
+  if (dE != nullptr) dE->assign(E->size() * columns, 0.0);
+  bool finite = true;
+  for (int i = 0; i < points; ++i) {
+    for (int k = 0; k < lobes.num_lobes(); ++k) {
+      const double* lobe = parameters + static_cast<size_t>(k) * lobe_size;
+      for (int c = 0; c < 3; ++c) {
+        const double colour =
+            std::exp(std::min(lobe[codes + c], LobeModel::kMaxLogColour)) *
+            kMerlScale[c];
+        const auto field = [&](int f) {
+          return static_cast<double>(
+              out[(static_cast<size_t>(i) * num_fields + k * stride + f) * 3 +
+                  c]);
+        };
+        const size_t row = static_cast<size_t>(i) * 3 + c;
+        const double term = colour * field(0);
+        (*E)[row] += term;
+        if (dE == nullptr) continue;
+        double* d = dE->data() + row * columns + k * lobe_size;
+        for (int z = 0; z < codes; ++z) d[z] = colour * field(1 + z);
+        d[codes + c] =
+            lobe[codes + c] < LobeModel::kMaxLogColour ? term : 0.0;
+      }
+    }
+    for (int c = 0; c < 3; ++c) finite &= std::isfinite((*E)[3 * i + c]);
+  }
+  return finite;
+}
+
+LobeRadianceCost::LobeRadianceCost(const Transport* transport,
+                                   const LobeModel* lobes,
+                                   std::vector<float> map,
+                                   const Observations* observed,
+                                   const RobustLogLikelihood& likelihood)
+    : transport_(transport),
+      lobes_(lobes),
+      map_(std::move(map)),
+      observed_(observed),
+      likelihood_(likelihood) {
+  mutable_parameter_block_sizes()->push_back(lobes->num_parameters());
+  set_num_residuals(transport->num_points() * 3);
+}
+
+bool LobeRadianceCost::Evaluate(double const* const* parameters,
+                                double* residuals, double** jacobians) const {
+  const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
+  std::vector<double> E, dE, dr_dE;
+  if (!RenderLobeModel(*transport_, *lobes_, parameters[0], map_.data(), &E,
+                       wanted ? &dE : nullptr)) {
+    return false;
+  }
+  if (!FillResiduals(E, *observed_, likelihood_, residuals,
+                     wanted ? &dr_dE : nullptr)) {
+    return false;
+  }
+  if (wanted) ScaleRows(dr_dE, dE, lobes_->num_parameters(), jacobians[0]);
+  return true;
+}
+
+LogRadianceCost::LogRadianceCost(const Transport* transport,
+                                 const LobeModel* lobes,
+                                 const IlluminationUnet* unet,
+                                 const Observations* observed,
+                                 const RobustLogLikelihood& likelihood)
+    : transport_(transport),
+      lobes_(lobes),
+      unet_(unet),
+      observed_(observed),
+      likelihood_(likelihood) {
+  mutable_parameter_block_sizes()->push_back(lobes->num_parameters());
+  mutable_parameter_block_sizes()->push_back(unet->num_weights());
+  set_num_residuals(transport->num_points() * 3);
+}
+
+bool LogRadianceCost::Evaluate(double const* const* parameters,
+                               double* residuals, double** jacobians) const {
+  const int weights = unet_->num_weights();
+  const std::vector<float> phi(parameters[1], parameters[1] + weights);
+  const int texels = unet_->num_outputs() / 3;
+  std::vector<float> planar(unet_->num_outputs());
+  IlluminationUnet::Workspace workspace, scratch;
+  unet_->Forward(phi.data(), &workspace, planar.data());
+  std::vector<float> map(planar.size());
+  for (int t = 0; t < texels; ++t) {
+    for (int c = 0; c < 3; ++c) {
+      map[3 * t + c] = std::exp(std::min(planar[c * texels + t], 80.0f));
+    }
+  }
+  const bool want_lobes = jacobians != nullptr && jacobians[0] != nullptr;
+  const bool want_weights = jacobians != nullptr && jacobians[1] != nullptr;
+  std::vector<double> E, dE, dr_dE;
+  if (!RenderLobeModel(*transport_, *lobes_, parameters[0], map.data(), &E,
+                       want_lobes ? &dE : nullptr)) {
+    return false;
+  }
+  if (!FillResiduals(E, *observed_, likelihood_, residuals,
+                     want_lobes || want_weights ? &dr_dE : nullptr)) {
+    return false;
+  }
+  if (want_lobes) ScaleRows(dr_dE, dE, lobes_->num_parameters(), jacobians[0]);
+  if (want_weights) {
+    std::vector<float> fields;
+    lobes_->Tabulate(parameters[0], false, &fields);
+    const BrdfGrid grid = lobes_->Combine(parameters[0], fields, 1);
+    const LightOperator light = transport_->ByLight(grid);
+    std::vector<double> adjoint(E.size(), 0.0);
+    std::vector<float> by_map(map.size()), by_output(map.size()),
+        by_weight(weights);
+    for (size_t row = 0; row < E.size(); ++row) {
+      adjoint[row] = dr_dE[row];
+      light.ApplyTranspose(adjoint.data(), by_map.data());
+      adjoint[row] = 0.0;
+      for (int t = 0; t < texels; ++t) {
+        for (int c = 0; c < 3; ++c) {
+          by_output[c * texels + t] = by_map[3 * t + c] * map[3 * t + c];
+        }
+      }
+      unet_->Vjp(by_output.data(), workspace, &scratch, by_weight.data());
+      std::copy(by_weight.begin(), by_weight.end(),
+                jacobians[1] + row * weights);
+    }
+  }
+  return true;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,73 @@
+// The image likelihood as one Ceres cost over the two parameter blocks.
+#pragma once
+#include <ceres/cost_function.h>
+
+#include <memory>
+#include <vector>
+
+#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/light/illumination_unet.h"
+#include "ibrdf/render/transport.h"
+#include "solvers/costs/robust_log_residual.h"
+
+namespace ibrdf {
+
+// log radiance of observed points, [points][3] radiance; points whose three
+// values are not all finite and positive take no part.
+struct Observations {
+  std::vector<double> radiance;  // [points * 3]
+  std::vector<char> valid;       // [points]
+  int num_valid = 0;
+};
+Observations MakeObservations(const std::vector<double>& radiance);
+
+// Residuals [points * 3], row i * 3 + c:
+//   r_ic = RobustResidual((log(E_ic + eps) - log(I_ic + eps)) / b),
+// E = Transport of the lobes (parameters[0], as LobeModel) and the map
+// L = exp(UNet(noise; Phi)) (parameters[1] = Phi, in double). Residuals of
+// points that take no part are 0. Jacobians: dE/d(z, a) by the flow's and the
+// renderer's derivatives; d E / d Phi row by row by the UNet's vector-Jacobian
+// product, so that block is for small problems (its rows are exact, and each
+// costs a backward pass). All referenced objects must outlive the cost.
+class LogRadianceCost final : public ceres::CostFunction {
+ public:
+  LogRadianceCost(const Transport* transport, const LobeModel* lobes,
+                  const IlluminationUnet* unet, const Observations* observed,
+                  const RobustLogLikelihood& likelihood);
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  const Transport* transport_;
+  const LobeModel* lobes_;
+  const IlluminationUnet* unet_;
+  const Observations* observed_;
+  const RobustLogLikelihood likelihood_;
+};
+
+// The same residuals for a fixed map [H, W, 3]: one block, the lobes.
+class LobeRadianceCost final : public ceres::CostFunction {
+ public:
+  LobeRadianceCost(const Transport* transport, const LobeModel* lobes,
+                   std::vector<float> map, const Observations* observed,
+                   const RobustLogLikelihood& likelihood);
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  const Transport* transport_;
+  const LobeModel* lobes_;
+  const std::vector<float> map_;
+  const Observations* observed_;
+  const RobustLogLikelihood likelihood_;
+};
+
+// E [points * 3] of the lobes under a map, and with dE != nullptr its Jacobian
+// [points * 3][lobes.num_parameters()], row-major. False if not finite.
+bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
+                     const double* parameters, const float* map,
+                     std::vector<double>* E, std::vector<double>* dE);
+
+}  // namespace ibrdf

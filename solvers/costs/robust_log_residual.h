@@ -1,0 +1,28 @@
+// The Laplacian likelihood of log radiance as a least-squares residual.
+#pragma once
+#include <cmath>
+
+namespace ibrdf {
+
+// Chen et al. 2020, Eq. 2: -log p = |log I - log E| / b + const per pixel and
+// channel. With t = (log(E + epsilon) - log(I + epsilon)) / b and the smoothed
+// magnitude rho(t) = sqrt(t^2 + delta^2) - delta, the residual
+// r = sign(t) sqrt(2 rho(t)) has r^2 / 2 = rho(t): Ceres' sum of squares is the
+// likelihood, one robust loss per pixel and channel however many share a block.
+// r is smooth in t, with r ~ t / sqrt(delta) near 0.
+struct RobustLogLikelihood {
+  double scale = 0.02;     // b, natural log
+  double epsilon = 1e-6;   // radiance
+  double delta = 0.5;      // in units of b
+};
+
+// The residual of t and dr/dt; both finite for any finite t.
+inline double RobustResidual(double t, double delta, double* dr_dt) {
+  const double root = std::sqrt(t * t + delta * delta);
+  // rho = t^2 / (root + delta): no cancellation at small t.
+  const double s = std::sqrt(2.0 / (root + delta));
+  if (dr_dt != nullptr) *dr_dt = 1.0 / (root * s);
+  return t * s;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,80 @@
+// The estimate: reflectance, illumination or both from one image, as the
+// maximum of the posterior of Chen et al. 2020, Eq. 1 and 8.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/flow/neural_brdf_model.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/render/scene.h"
+#include "ibrdf/render/transport.h"
+#include "io/problem.h"
+
+namespace ibrdf {
+
+struct InverseProblem {
+  ProblemKind kind = ProblemKind::kJoint;
+  Image image;                       // observed radiance
+  std::vector<ShadingPoint> points;  // of the object's pixels, at most one each
+
+  // Unknown reflectance: the trained model; known: its grid.
+  NeuralBrdfModel model;
+  int lobes = 2;
+  double prior_sigma = 0.5;
+  std::optional<BrdfGrid> known_brdf;
+
+  // Size of the map; known: its radiance at that size.
+  int map_width = 128, map_height = 64;
+  IlluminationPrior illumination_prior = IlluminationPrior::kUNet;
+  std::optional<Image> known_map;
+
+  std::optional<double> scale, epsilon;  // of the likelihood
+  SolverSpec solver;
+  uint64_t seed = 1;
+  int num_threads = 0;
+  TransportOptions transport;
+};
+
+// One line of the trace: the best state after a step.
+struct TraceEntry {
+  std::string stage;
+  double seconds = 0.0;
+  double cost = 0.0;        // likelihood + priors, nats, at the final scale b
+  double likelihood = 0.0;  // sum |log E - log I| / b, smoothed
+  double reflectance_prior = 0.0;
+  double illumination_prior = 0.0;
+  double misfit = 0.0;  // mean |log E - log I|
+};
+
+struct Estimate {
+  std::vector<double> lobe_parameters;  // as LobeModel; empty if known
+  MerlTable brdf;                       // empty if known
+  Image map;                            // [H, W]; the known one if known
+  Image render;                         // radiance at the object's pixels, else 0
+  double scale = 0.0;                   // b used at the end
+  double epsilon = 0.0;
+  double misfit = 0.0;
+  double seconds = 0.0;
+  int64_t pixels_used = 0;
+  std::string start;  // in words: the reflectance that the best start began with
+  std::vector<TraceEntry> trace;
+  // kOk; kNoImprovement or kInterrupted: this is the best iterate found.
+  Status status;
+};
+
+// A stage's progress, share in [0, 1] of the time or work.
+using SolveProgress =
+    std::function<void(const TraceEntry& entry, double share)>;
+
+// kInvalidInput if no pixel can be used. `stop` may be null.
+StatusOr<Estimate> SolveInverseRendering(const InverseProblem& problem,
+                                         const SolveProgress& progress,
+                                         const std::atomic<bool>* stop);
+
+}  // namespace ibrdf

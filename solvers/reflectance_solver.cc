@@ -1,0 +1,89 @@
+#include "solvers/reflectance_solver.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Dense>
+
+namespace ibrdf {
+namespace {
+
+class StopCallback final : public ceres::IterationCallback {
+ public:
+  explicit StopCallback(const std::function<bool()>& stop) : stop_(stop) {}
+  ceres::CallbackReturnType operator()(
+      const ceres::IterationSummary&) override {
+    return stop_ && stop_() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                            : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const std::function<bool()>& stop_;
+};
+
+}  // namespace
+
+double SolveReflectance(const Transport& transport, const LobeModel& lobes,
+                        const std::vector<float>& map,
+                        const Observations& observed,
+                        const ReflectanceStepOptions& options,
+                        std::vector<double>* parameters) {
+  ceres::Problem problem;
+  problem.AddResidualBlock(new LobeRadianceCost(&transport, &lobes, map,
+                                                &observed, options.likelihood),
+                           nullptr, parameters->data());
+  problem.AddResidualBlock(
+      new LobePriorCost(lobes.num_lobes(), lobes.code_size(), options.prior),
+      nullptr, parameters->data());
+  ceres::Solver::Options o;
+  o.linear_solver_type = ceres::DENSE_QR;
+  // Few parameters: the trust region may start wide.
+  o.initial_trust_region_radius = 10.0;
+  o.max_num_iterations = options.max_iterations;
+  o.function_tolerance = options.tolerance;
+  o.logging_type = ceres::SILENT;
+  StopCallback stop(options.should_stop);
+  o.callbacks.push_back(&stop);
+  ceres::Solver::Summary summary;
+  ceres::Solve(o, &problem, &summary);
+  return summary.final_cost;
+}
+
+double LobePriorCostValue(const LobeModel& lobes, const LobePrior& prior,
+                          const std::vector<double>& parameters) {
+  const LobePriorCost cost(lobes.num_lobes(), lobes.code_size(), prior);
+  std::vector<double> residuals(cost.num_residuals());
+  const double* blocks[] = {parameters.data()};
+  cost.Evaluate(blocks, residuals.data(), nullptr);
+  double sum = 0.0;
+  for (const double r : residuals) sum += r * r;
+  return sum / 2;
+}
+
+std::vector<double> GaugeShift(const LobeModel& lobes, const LobePrior& prior,
+                               const std::vector<double>& parameters,
+                               const double* mean_log_radiance,
+                               double light_std) {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  const double w = 1.0 / (prior.colour_sigma * prior.colour_sigma);
+  for (int k = 0; k < lobes.num_lobes(); ++k) {
+    for (int c = 0; c < 3; ++c) {
+      const double a =
+          parameters[k * lobes.lobe_size() + lobes.code_size() + c];
+      A(c, c) += w;
+      b[c] += w * (prior.colour_mean[c] - a);
+    }
+  }
+  const double v = 1.0 / (light_std * light_std);
+  for (const int c : {0, 2}) {
+    Eigen::Vector3d row = Eigen::Vector3d::Zero();
+    row[c] = 1.0;
+    row[1] = -1.0;
+    A += v * row * row.transpose();
+    b += v * row * (mean_log_radiance[c] - mean_log_radiance[1]);
+  }
+  const Eigen::Vector3d d = A.ldlt().solve(b);
+  return {d[0], d[1], d[2]};
+}
+
+}  // namespace ibrdf
