@@ -1,0 +1,112 @@
+#include <glog/logging.h>
+
+#include <utility>
+
+#include "ibrdf/light/environment_map.h"
+#include "io/image_file.h"
+#include "io/mesh.h"
+#include "io/model_file.h"
+#include "io/png.h"
+#include "io/problem_file.h"
+#include "solvers/render_scene.h"
+#include "solvers/solve_problem.h"
+
+namespace ibrdf {
+namespace {
+
+Status LoadImage(const ImageSpec& spec, Image* image, Mask* mask) {
+  StatusOr<Image> read = ReadImage(spec.file);
+  if (!read.ok()) return read.status();
+  *image = std::move(read).value();
+  if (spec.mask.empty()) return OkStatus();
+  StatusOr<Mask> read_mask = ReadMask(spec.mask);
+  if (!read_mask.ok()) return read_mask.status();
+  *mask = std::move(read_mask).value();
+  if (mask->width != image->width || mask->height != image->height) {
+    return InvalidInput(
+        spec.mask, "expected the image's size " + std::to_string(image->width) +
+                       "x" + std::to_string(image->height) + ", found " +
+                       std::to_string(mask->width) + "x" +
+                       std::to_string(mask->height));
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
+std::string DescribeEffects(const Problem& problem) {
+  const bool sphere = problem.geometry.kind == GeometryKind::kSphere;
+  if (sphere) {
+    return "none: the sphere is convex, no point shadows or lights another";
+  }
+  return "none: shadows and interreflection are not simulated; where the "
+         "object is not convex, reflectance and light absorb them";
+}
+
+StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
+                                            uint64_t default_seed,
+                                            int num_threads) {
+  IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
+  if (problem.solver.method == SolverMethod::kAdam) {
+    return InvalidInput(problem.path + ": solver.method",
+                        "adam is not available in this version, expected auto, "
+                        "gauss_newton or lbfgs");
+  }
+  InverseProblem inverse;
+  inverse.kind = problem.kind;
+  inverse.lobes = problem.reflectance.lobes;
+  inverse.prior_sigma = problem.reflectance.prior_sigma;
+  inverse.map_width = problem.illumination.width;
+  inverse.map_height = problem.illumination.height;
+  inverse.illumination_prior = problem.illumination.prior;
+  inverse.scale = problem.likelihood.scale;
+  inverse.epsilon = problem.likelihood.epsilon;
+  inverse.solver = problem.solver;
+  inverse.seed = problem.solver.seed.has_value()
+                     ? static_cast<uint64_t>(*problem.solver.seed)
+                     : default_seed;
+  inverse.num_threads = num_threads;
+
+  Mask mask;
+  IBRDF_RETURN_IF_ERROR(LoadImage(problem.image, &inverse.image, &mask));
+  const StatusOr<Scene> scene = LoadScene(problem.geometry);
+  if (!scene.ok()) return scene.status();
+  StatusOr<std::vector<ShadingPoint>> points =
+      FindShadingPoints(*scene, problem.camera, inverse.image.width,
+                        inverse.image.height, mask, 1);
+  if (!points.ok()) {
+    return InvalidInput(problem.path, points.status().message());
+  }
+  inverse.points = std::move(points).value();
+  if (problem.geometry.kind != GeometryKind::kSphere) {
+    LOG(WARNING) << DescribeEffects(problem);
+  }
+
+  if (problem.reflectance.known()) {
+    const StatusOr<MerlTable> table = LoadKnownReflectance(problem.reflectance);
+    if (!table.ok()) return table.status();
+    inverse.known_brdf = BrdfGrid::FromMerl(*table, inverse.transport.grid);
+  } else {
+    const StatusOr<std::string> path = FindModel(
+        problem.reflectance.model.empty() ? "default"
+                                          : problem.reflectance.model);
+    if (!path.ok()) return path.status();
+    StatusOr<NeuralBrdfModel> model = ReadModel(*path);
+    if (!model.ok()) return model.status();
+    if (model->num_codes() < 3) {
+      return InvalidInput(*path, "expected the codes of at least one material");
+    }
+    inverse.model = std::move(model).value();
+  }
+  if (problem.illumination.known()) {
+    const StatusOr<Image> map = LoadKnownIllumination(problem.illumination);
+    if (!map.ok()) return map.status();
+    inverse.known_map =
+        map->width == inverse.map_width && map->height == inverse.map_height
+            ? *map
+            : ResizeMap(*map, inverse.map_height, inverse.map_width);
+  }
+  return inverse;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,86 @@
+// The estimate of reflectance and illumination from one image.
+#include <glog/logging.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "io/problem_file.h"
+#include "solvers/programs/common_flags.h"
+#include "solvers/solve_problem.h"
+
+namespace ibrdf {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+void RequestStop(int) { stop_requested = true; }
+
+Status Solve(const std::string& file,
+             const std::vector<std::string>& overrides,
+             const std::string& folder, const CommonFlags& flags) {
+  const StatusOr<Problem> problem = ReadProblem(file, overrides);
+  if (!problem.ok()) return problem.status();
+  const StatusOr<InverseProblem> inverse =
+      LoadInverseProblem(*problem, flags.seed, flags.threads);
+  if (!inverse.ok()) return inverse.status();
+  std::signal(SIGINT, RequestStop);
+  std::signal(SIGTERM, RequestStop);
+  const bool terminal = ::isatty(STDOUT_FILENO) != 0;
+  if (!flags.quiet) {
+    std::printf("%zu pixels of the object, map %dx%d; effects: %s\n",
+                inverse->points.size(), inverse->map_width,
+                inverse->map_height, DescribeEffects(*problem).c_str());
+  }
+  const SolveProgress progress = [&](const TraceEntry& e, double share) {
+    if (flags.quiet) return;
+    std::printf("%s%7.1f s  %3.0f %%  %-32s misfit %.4f  cost %.1f%s",
+                terminal ? "\r\033[K" : "", e.seconds, 100 * share,
+                e.stage.c_str(), e.misfit, e.cost,
+                terminal && e.stage != "end" ? "" : "\n");
+    std::fflush(stdout);
+  };
+  const StatusOr<Estimate> estimate =
+      SolveInverseRendering(*inverse, progress, &stop_requested);
+  if (!estimate.ok()) return estimate.status();
+  std::string metrics;
+  IBRDF_RETURN_IF_ERROR(
+      WriteResults(*problem, *inverse, *estimate, folder, &metrics));
+  if (!flags.quiet) {
+    std::printf("%sresults in %s; look at %s/overview.png\n", metrics.c_str(),
+                folder.c_str(), folder.c_str());
+  }
+  return estimate->status;
+}
+
+int Main(int argc, char** argv) {
+  google::InitGoogleLogging(argv[0]);
+  FLAGS_logtostderr = true;
+  FLAGS_minloglevel = google::GLOG_WARNING;
+  CLI::App app(
+      "Estimates reflectance (MERL table) and illumination (equirectangular "
+      "map, W/(m^2 sr)) from one HDR image of an object of known shape. "
+      "SIGINT ends early and keeps the best estimate (exit status 130).");
+  CommonFlags flags;
+  AddCommonFlags(&app, &flags);
+  std::string file, folder = "out";
+  std::vector<std::string> overrides;
+  app.add_option("--problem", file, "problem file (YAML)")->required();
+  app.add_option("--out", folder, "folder of the results, made if need be")
+      ->capture_default_str();
+  app.add_option("--set", overrides,
+                 "key.path=value overrides a key of the problem; repeatable; "
+                 "e.g. --set solver.seconds=30")
+      ->expected(1)
+      ->take_all();
+  return RunProgram(&app, argc, argv,
+                    [&] { return Solve(file, overrides, folder, flags); });
+}
+
+}  // namespace
+}  // namespace ibrdf
+
+int main(int argc, char** argv) { return ibrdf::Main(argc, argv); }

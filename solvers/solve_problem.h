@@ -1,0 +1,27 @@
+// A problem file from its inputs to its results.
+#pragma once
+#include <atomic>
+#include <string>
+
+#include "ibrdf/base/status.h"
+#include "io/problem.h"
+#include "solvers/inverse_rendering.h"
+
+namespace ibrdf {
+
+// Reads every file that a checked problem names and finds the object's pixels.
+StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
+                                            uint64_t default_seed,
+                                            int num_threads);
+
+// What the effects key comes to for this problem, in words for the user.
+std::string DescribeEffects(const Problem& problem);
+
+// Writes result.json, brdf.binary, brdf.json, illumination.exr, render.exr,
+// residual.exr and the PNG previews into `folder`, making it; each file whole
+// or absent. `metrics_text`, where given, receives the metrics, one a line.
+Status WriteResults(const Problem& problem, const InverseProblem& inverse,
+                    const Estimate& estimate, const std::string& folder,
+                    std::string* metrics_text);
+
+}  // namespace ibrdf

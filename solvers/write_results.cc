@@ -1,0 +1,229 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <limits>
+
+#include "ibrdf/base/version.h"
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/metrics/brdf_metrics.h"
+#include "ibrdf/metrics/illumination_metrics.h"
+#include "ibrdf/metrics/image_metrics.h"
+#include "io/atomic_file.h"
+#include "io/exr.h"
+#include "io/image_file.h"
+#include "io/merl.h"
+#include "io/problem_json.h"
+#include "io/result_preview.h"
+#include "solvers/solve_problem.h"
+
+namespace ibrdf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Truth {
+  MerlTable brdf;
+  Image illumination;
+};
+
+Json Metric(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+// Pixels that the estimate renders.
+Mask ObjectMask(const InverseProblem& inverse) {
+  Mask mask(inverse.image.width, inverse.image.height, 0);
+  for (const ShadingPoint& p : inverse.points) mask.inside[p.pixel] = 1;
+  return mask;
+}
+
+Status LoadTruth(const Problem& problem, const InverseProblem& inverse,
+                 Truth* truth) {
+  if (!problem.truth.brdf.empty()) {
+    StatusOr<MerlTable> table = ReadMerl(problem.truth.brdf);
+    if (!table.ok()) return table.status();
+    truth->brdf = std::move(table).value();
+  }
+  if (!problem.truth.illumination.empty()) {
+    StatusOr<Image> map = ReadImage(problem.truth.illumination);
+    if (!map.ok()) return map.status();
+    truth->illumination =
+        ResizeMap(*map, inverse.map_height, inverse.map_width);
+  }
+  return OkStatus();
+}
+
+Status AddMetrics(const InverseProblem& inverse, const Estimate& estimate,
+                  const Truth& truth, Json* metrics) {
+  Json& m = *metrics;
+  m["seconds"] = estimate.seconds;
+  m["misfit"] = Metric(estimate.misfit);
+  if (!truth.brdf.raw.empty() && !estimate.brdf.raw.empty()) {
+    const StatusOr<BrdfMetrics> b = CompareBrdfs(estimate.brdf, truth.brdf);
+    if (!b.ok()) return b.status();
+    m["brdf_log_rmse"] = Metric(b->log_rmse);
+    m["brdf_log_rmse_aligned"] = Metric(b->log_rmse_aligned);
+    m["brdf_log_rmse_below80"] = Metric(b->log_rmse_below80);
+  }
+  if (!truth.illumination.empty() && !inverse.known_map.has_value()) {
+    const StatusOr<IlluminationMetrics> l =
+        CompareIlluminations(estimate.map, truth.illumination);
+    if (!l.ok()) return l.status();
+    m["illumination_relative_log_rmse"] = Metric(l->relative_log_rmse);
+    m["illumination_relative_log_rmse_aligned"] =
+        Metric(l->relative_log_rmse_aligned);
+    m["illumination_relative_log_rmse_unweighted"] =
+        Metric(l->relative_log_rmse_unweighted);
+  }
+  const StatusOr<ImageMetrics> i =
+      CompareImages(estimate.render, inverse.image, ObjectMask(inverse));
+  if (i.ok()) {
+    m["image_log_rmse"] = Metric(i->log_rmse);
+    m["psnr"] = Metric(i->psnr);
+    m["dssim"] = Metric(i->dssim);
+  }
+  return OkStatus();
+}
+
+Json TraceJson(const Estimate& estimate) {
+  Json trace = Json::array();
+  for (const TraceEntry& t : estimate.trace) {
+    trace.push_back({{"stage", t.stage},
+                     {"seconds", t.seconds},
+                     {"cost", Metric(t.cost)},
+                     {"likelihood", Metric(t.likelihood)},
+                     {"reflectance_prior", Metric(t.reflectance_prior)},
+                     {"illumination_prior", Metric(t.illumination_prior)},
+                     {"misfit", Metric(t.misfit)}});
+  }
+  return trace;
+}
+
+Json LobesJson(const InverseProblem& inverse, const Estimate& estimate) {
+  const int codes = inverse.model.shape.code_size, size = codes + 3;
+  Json lobes = Json::array();
+  for (int k = 0; k < inverse.lobes; ++k) {
+    const double* p = estimate.lobe_parameters.data() + k * size;
+    Json colour = Json::array();
+    for (int c = 0; c < 3; ++c) colour.push_back(std::exp(p[codes + c]));
+    lobes.push_back({{"code", std::vector<double>(p, p + codes)},
+                     {"colour_raw_merl", colour}});
+  }
+  return lobes;
+}
+
+const char* StatusName(const Status& status) {
+  switch (status.code()) {
+    case StatusCode::kOk:
+      return "ok";
+    case StatusCode::kNoImprovement:
+      return "no_improvement";
+    case StatusCode::kInterrupted:
+      return "interrupted";
+    default:
+      return "error";
+  }
+}
+
+// log E - log I with the likelihood's epsilon; NaN outside and where the pixel
+// took no part.
+Image Residual(const InverseProblem& inverse, const Estimate& estimate) {
+  Image residual(inverse.image.width, inverse.image.height);
+  std::fill(residual.rgb.begin(), residual.rgb.end(),
+            std::numeric_limits<float>::quiet_NaN());
+  for (const ShadingPoint& p : inverse.points) {
+    for (int c = 0; c < 3; ++c) {
+      const size_t at = size_t{3} * p.pixel + c;
+      const double observed = inverse.image.rgb[at];
+      if (!(std::isfinite(observed) && observed > 0.0)) continue;
+      residual.rgb[at] = static_cast<float>(
+          std::log(estimate.render.rgb[at] + estimate.epsilon) -
+          std::log(observed + estimate.epsilon));
+    }
+  }
+  return residual;
+}
+
+std::vector<std::string> MetricLines(const Json& metrics) {
+  std::vector<std::string> lines;
+  for (const auto& [name, value] : metrics.items()) {
+    if (!value.is_number()) continue;
+    char line[120];
+    std::snprintf(line, sizeof(line), "%s %.4g", name.c_str(),
+                  value.get<double>());
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace
+
+Status WriteResults(const Problem& problem, const InverseProblem& inverse,
+                    const Estimate& estimate, const std::string& folder,
+                    std::string* metrics_text) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return InvalidInput(folder, error.message());
+  Truth truth;
+  IBRDF_RETURN_IF_ERROR(LoadTruth(problem, inverse, &truth));
+  Json metrics = Json::object();
+  IBRDF_RETURN_IF_ERROR(AddMetrics(inverse, estimate, truth, &metrics));
+
+  const auto path = [&](const char* name) { return folder + "/" + name; };
+  if (!estimate.brdf.raw.empty()) {
+    IBRDF_RETURN_IF_ERROR(WriteMerl(estimate.brdf, path("brdf.binary")));
+    const Json brdf = {
+        {"model", problem.reflectance.model.empty() ? "default"
+                                                    : problem.reflectance.model},
+        {"formula",
+         "raw = sum over lobes of colour * density(code) ^ exponent"},
+        {"exponent", inverse.model.exponent},
+        {"lobes", LobesJson(inverse, estimate)}};
+    IBRDF_RETURN_IF_ERROR(
+        WriteFileAtomically(path("brdf.json"), brdf.dump(2) + "\n"));
+  }
+  IBRDF_RETURN_IF_ERROR(WriteExr(estimate.map, path("illumination.exr")));
+  IBRDF_RETURN_IF_ERROR(WriteExr(estimate.render, path("render.exr")));
+  IBRDF_RETURN_IF_ERROR(
+      WriteExr(Residual(inverse, estimate), path("residual.exr")));
+
+  ResultPreviewInput preview;
+  preview.title = problem.path.substr(problem.path.find_last_of('/') + 1);
+  preview.input = inverse.image;
+  preview.mask = ObjectMask(inverse);
+  preview.render = estimate.render;
+  preview.illumination = estimate.map;
+  preview.reference_illumination = truth.illumination;
+  preview.brdf = estimate.brdf;
+  preview.reference_brdf = truth.brdf;
+  preview.metrics = MetricLines(metrics);
+  preview.num_threads = inverse.num_threads;
+  IBRDF_RETURN_IF_ERROR(WriteResultPreviews(preview, folder));
+
+  const Json result = {
+      {"ibrdf_version", kVersion},
+      {"status", StatusName(estimate.status)},
+      {"problem", ProblemToJson(problem)},
+      {"effects", DescribeEffects(problem)},
+      {"gauge",
+       "scale per channel between reflectance and light: least prior cost of "
+       "log colours (training materials) and of the light's mean chroma"},
+      {"start", estimate.start},
+      {"seed", inverse.seed},
+      {"pixels_used", estimate.pixels_used},
+      {"likelihood",
+       {{"scale", estimate.scale}, {"epsilon", estimate.epsilon}}},
+      {"metrics", metrics},
+      {"trace", TraceJson(estimate)}};
+  IBRDF_RETURN_IF_ERROR(
+      WriteFileAtomically(path("result.json"), result.dump(2) + "\n"));
+  if (metrics_text != nullptr) {
+    metrics_text->clear();
+    for (const std::string& line : MetricLines(metrics)) {
+      *metrics_text += "  " + line + "\n";
+    }
+  }
+  return OkStatus();
+}
+
+}  // namespace ibrdf
