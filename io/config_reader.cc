@@ -1,0 +1,256 @@
+#include "io/config_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <locale>
+#include <sstream>
+
+namespace ibrdf {
+namespace {
+using Kind = ConfigNode::Kind;
+
+// Longest value that a message repeats.
+constexpr size_t kMaxShown = 60;
+
+bool ParseNumber(const ConfigNode& node, double* out) {
+  if (node.kind != Kind::kScalar || node.quoted) return false;
+  std::istringstream stream(node.scalar);
+  stream.imbue(std::locale::classic());
+  double value = 0.0;
+  stream >> value;
+  if (stream.fail() ||
+      stream.peek() != std::istringstream::traits_type::eof()) {
+    return false;
+  }
+  *out = value;
+  return std::isfinite(value);
+}
+
+std::string Text(double value) {
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic());
+  stream << value;
+  return stream.str();
+}
+
+std::string RangeText(const Range& r) {
+  const bool low = std::isfinite(r.low), high = std::isfinite(r.high);
+  if (!low && !high) return "a number";
+  if (low && high) {
+    return "a number in " + std::string(r.low_included ? "[" : "(") +
+           Text(r.low) + ", " + Text(r.high) + (r.high_included ? "]" : ")");
+  }
+  if (low)
+    return "a number " + std::string(r.low_included ? ">= " : "> ") +
+           Text(r.low);
+  return "a number " + std::string(r.high_included ? "<= " : "< ") +
+         Text(r.high);
+}
+
+bool Inside(double v, const Range& r) {
+  return (r.low_included ? v >= r.low : v > r.low) &&
+         (r.high_included ? v <= r.high : v < r.high);
+}
+
+int EditDistance(const std::string& a, const std::string& b) {
+  const size_t n = b.size() + 1;
+  std::vector<int> cost((a.size() + 1) * n);
+  for (size_t i = 0; i <= a.size(); ++i) {
+    for (size_t j = 0; j <= b.size(); ++j) {
+      int best =
+          i == 0 ? static_cast<int>(j)
+          : j == 0
+              ? static_cast<int>(i)
+              : std::min({cost[(i - 1) * n + j] + 1, cost[i * n + j - 1] + 1,
+                          cost[(i - 1) * n + j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        best = std::min(best, cost[(i - 2) * n + j - 2] + 1);
+      }
+      cost[i * n + j] = best;
+    }
+  }
+  return cost.back();
+}
+
+}  // namespace
+
+void ConfigContext::Fail(const std::string& key, const std::string& what) {
+  if (error.ok()) {
+    error = InvalidInput(key.empty() ? file : file + ": " + key, what);
+  }
+}
+
+std::string NearestWord(const std::string& word,
+                        const std::vector<std::string>& known) {
+  const std::string head = word.substr(0, kMaxShown);
+  return *std::min_element(known.begin(), known.end(),
+                           [&](const std::string& a, const std::string& b) {
+                             return EditDistance(head, a) <
+                                    EditDistance(head, b);
+                           });
+}
+
+std::string Describe(const ConfigNode& node) {
+  switch (node.kind) {
+    case Kind::kNull:
+      return "nothing";
+    case Kind::kList:
+      return "a list of " + std::to_string(node.items.size());
+    case Kind::kMap:
+      return "a map";
+    case Kind::kScalar:
+      break;
+  }
+  const bool cut = node.scalar.size() > kMaxShown;
+  return "'" + node.scalar.substr(0, kMaxShown) + (cut ? "...'" : "'");
+}
+
+std::string JoinWords(const std::vector<std::string>& words) {
+  std::string text;
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? " or " : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
+ConfigReader::ConfigReader(ConfigContext* context, const ConfigNode* node,
+                           const std::string& path,
+                           const std::vector<std::string>& known)
+    : context_(context), node_(nullptr), path_(path) {
+  if (node == nullptr || node->kind == Kind::kNull) return;
+  if (node->kind != Kind::kMap) {
+    context_->Fail(path, "expected a map of " + JoinWords(known) + ", found " +
+                             Describe(*node));
+    return;
+  }
+  node_ = node;
+  for (const auto& [key, value] : node->entries) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    context_->Fail(PathOf(key.substr(0, kMaxShown)),
+                   "unknown key; the nearest known one is " +
+                       PathOf(NearestWord(key, known)));
+  }
+}
+
+const ConfigNode* ConfigReader::Find(const std::string& key) const {
+  return node_ == nullptr ? nullptr : node_->Find(key);
+}
+
+std::string ConfigReader::PathOf(const std::string& key) const {
+  return path_.empty() ? key : path_ + "." + key;
+}
+
+bool ConfigReader::IsWord(const std::string& key,
+                          const std::string& word) const {
+  const ConfigNode* node = Find(key);
+  return node != nullptr && node->kind == Kind::kScalar && node->scalar == word;
+}
+
+void ConfigReader::Fail(const std::string& key, const std::string& what) {
+  context_->Fail(PathOf(key), what);
+}
+
+void ConfigReader::FailExpected(const std::string& key,
+                                const std::string& expected) {
+  const ConfigNode* node = Find(key);
+  Fail(key, "expected " + expected + ", found " +
+                (node == nullptr ? "nothing" : Describe(*node)));
+}
+
+void ConfigReader::Number(const std::string& key, const Range& range,
+                          double* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  double value = 0.0;
+  if (!ParseNumber(*node, &value) || !Inside(value, range)) {
+    FailExpected(key, RangeText(range));
+    return;
+  }
+  *out = value;
+}
+
+void ConfigReader::Integer(const std::string& key, int64_t low, int64_t high,
+                           int64_t* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  int64_t value = 0;
+  bool ok = node->kind == Kind::kScalar && !node->quoted;
+  if (ok) {
+    std::istringstream stream(node->scalar);
+    stream.imbue(std::locale::classic());
+    stream >> value;
+    ok = !stream.fail() &&
+         stream.peek() == std::istringstream::traits_type::eof() &&
+         value >= low && value <= high;
+  }
+  if (!ok) {
+    FailExpected(key, "a whole number in [" + std::to_string(low) + ", " +
+                          std::to_string(high) + "]");
+    return;
+  }
+  *out = value;
+}
+
+void ConfigReader::Integer(const std::string& key, int low, int high,
+                           int* out) {
+  int64_t value = *out;
+  Integer(key, int64_t{low}, int64_t{high}, &value);
+  *out = static_cast<int>(value);
+}
+
+void ConfigReader::Choice(const std::string& key,
+                          const std::vector<std::string>& words, int* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  if (node->kind == Kind::kScalar) {
+    const auto word = std::find(words.begin(), words.end(), node->scalar);
+    if (word != words.end()) {
+      *out = static_cast<int>(word - words.begin());
+      return;
+    }
+  }
+  FailExpected(key, JoinWords(words));
+}
+
+void ConfigReader::Path(const std::string& key, std::string* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  if (node->kind != Kind::kScalar || node->scalar.empty()) {
+    FailExpected(key, "the name of a file");
+    return;
+  }
+  const std::filesystem::path path(node->scalar);
+  *out = path.is_absolute() || context_->folder.empty()
+             ? path.string()
+             : (std::filesystem::path(context_->folder) / path)
+                   .lexically_normal()
+                   .string();
+}
+
+void ConfigReader::Triple(const std::string& key, const Range& range,
+                          bool one_for_all, Eigen::Vector3d* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  double value = 0.0;
+  if (one_for_all && ParseNumber(*node, &value) && Inside(value, range)) {
+    out->setConstant(value);
+    return;
+  }
+  Eigen::Vector3d values;
+  bool ok = node->kind == Kind::kList && node->items.size() == 3;
+  for (int c = 0; ok && c < 3; ++c) {
+    ok = ParseNumber(node->items[c], &values[c]) && Inside(values[c], range);
+  }
+  if (!ok) {
+    const std::string number = RangeText(range);
+    FailExpected(key, (one_for_all ? number + " or a list of three"
+                                   : "a list of three, each " + number));
+    return;
+  }
+  *out = values;
+}
+
+}  // namespace ibrdf

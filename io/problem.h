@@ -1,0 +1,120 @@
+// What a problem file (joint.yaml, scene.yaml) asks for, checked.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/geometry/camera.h"
+#include "ibrdf/light/procedural_sky.h"
+
+namespace ibrdf {
+
+// Paths are resolved: usable from the current folder. Whether the files exist
+// is found out by whoever reads them.
+
+enum class ProblemKind { kJoint, kReflectance, kIllumination };
+
+struct ImageSpec {
+  std::string file;  // .exr or .hdr; empty: to be rendered
+  std::string mask;  // .png; empty: none
+  int width = 0;     // pixels, of an image to be rendered; 0 with a file
+  int height = 0;
+};
+
+enum class GeometryKind { kSphere, kMesh, kNormals };
+enum class MeshFit { kUnitSphere, kNone };
+
+struct GeometrySpec {
+  GeometryKind kind = GeometryKind::kSphere;  // the unit sphere at the origin
+  std::string file;  // mesh (.obj, .ply) or normals (.exr)
+  MeshFit fit = MeshFit::kUnitSphere;
+};
+
+struct ReflectanceSpec {
+  // Unknown reflectance.
+  std::string model;         // trained model; empty: the default one
+  int lobes = 2;             // [1, 8]
+  double prior_sigma = 0.5;  // of the codes, > 0
+  // Known reflectance: at most one is set.
+  std::string known_file;                // MERL .binary
+  std::optional<CookTorrance> analytic;  // `lambertian` too: specular 0
+
+  bool known() const { return !known_file.empty() || analytic.has_value(); }
+};
+
+enum class IlluminationPrior { kUNet, kNone };
+
+struct IlluminationSpec {
+  int width = 128;  // of the estimate, or of the map that a sky is made into
+  int height = 64;
+  IlluminationPrior prior = IlluminationPrior::kUNet;
+  // Known illumination: at most one is set.
+  std::string known_file;  // .exr or .hdr
+  std::optional<SkyOptions> sky;
+
+  bool known() const { return !known_file.empty() || sky.has_value(); }
+};
+
+struct LikelihoodSpec {
+  std::optional<double> scale;    // Laplacian b, natural log; unset: automatic
+  std::optional<double> epsilon;  // radiance added inside the logarithms
+};
+
+enum class Effect {
+  kVisibility,
+  kInterreflection,
+  kSharpLobes,
+  kPerspective,
+  kReflectanceMap,
+};
+inline constexpr int kNumEffects = 5;
+// Name in problem files, e.g. "sharp_lobes".
+const char* EffectName(Effect effect);
+// Whether this version has it.
+bool EffectAvailable(Effect effect);
+
+// kAuto: the program decides. kAll: every effect that is available. kList: the
+// listed ones and no other.
+enum class EffectsMode { kAuto, kAll, kNone, kList };
+struct EffectsSpec {
+  EffectsMode mode = EffectsMode::kAuto;
+  std::vector<Effect> list;  // each at most once, all available
+};
+
+enum class SolverMethod { kAuto, kGaussNewton, kLbfgs, kAdam };
+struct SolverSpec {
+  SolverMethod method = SolverMethod::kAuto;
+  double seconds = 120.0;     // wall-clock budget, > 0
+  double tolerance = 1e-4;    // relative decrease of the cost to stop at, >= 0
+  int max_iterations = 1000;  // >= 0
+  std::optional<int64_t> seed;  // unset: the program's --seed
+};
+
+// Empty: not given.
+struct TruthSpec {
+  std::string brdf;          // MERL .binary
+  std::string illumination;  // .exr or .hdr
+};
+
+enum class RenderQuality { kPreview, kReference };
+
+struct Problem {
+  std::string path;  // of the file it was read from
+  ProblemKind kind = ProblemKind::kJoint;
+  ImageSpec image;
+  Camera camera;
+  GeometrySpec geometry;
+  ReflectanceSpec reflectance;
+  IlluminationSpec illumination;
+  LikelihoodSpec likelihood;
+  EffectsSpec effects;
+  SolverSpec solver;
+  TruthSpec truth;
+  // Of ibrdf_render.
+  RenderQuality quality = RenderQuality::kReference;
+  double noise = 0.0;  // standard deviation of the log-normal noise, >= 0
+};
+
+}  // namespace ibrdf

@@ -1,0 +1,26 @@
+// Problem files: YAML -> Problem.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "io/problem.h"
+
+namespace ibrdf {
+
+// Reads `path`, then applies `overrides` ("key.path=value", as --set; see
+// ApplyOverride in io/config_tree.h), then checks every key, type and range.
+// Relative paths, those of overrides too, are relative to the file's folder.
+// Messages name the file and the full key.
+StatusOr<Problem> ReadProblem(const std::string& path,
+                              const std::vector<std::string>& overrides);
+
+// What an estimate needs: an image file, and known exactly what `problem` says
+// is known.
+Status CheckSolvable(const Problem& problem);
+
+// What a render needs: known reflectance and illumination, and the size of the
+// image.
+Status CheckRenderable(const Problem& problem);
+
+}  // namespace ibrdf
