@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/base/fast_atan2.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 
@@ -27,7 +28,17 @@ double FoldPhi(double phi) {
   return phi >= kPi ? 0.0 : phi;
 }
 
-// A frame around n whose first axis lies in the plane of n and wo.
+// Moves wi, at cosine c in a cell of half-extent a, to the cosine-weighted
+// centre of the cell's part above the horizon.
+Eigen::Vector3d CentreAboveHorizon(const Eigen::Vector3d& wi,
+                                   const Eigen::Vector3d& n, double c,
+                                   double a) {
+  const double wanted = c < a ? (c + a) * (2.0 / 3.0) : c + a * a / (3.0 * c);
+  return (wi + (wanted - c) * n).normalized();
+}
+
+}  // namespace
+
 void ViewFrame(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
                Eigen::Vector3d* t, Eigen::Vector3d* b) {
   *t = wo - n.dot(wo) * n;
@@ -39,17 +50,6 @@ void ViewFrame(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
   t->normalize();
   *b = n.cross(*t);
 }
-
-// Moves wi, at cosine c in a cell of half-extent a, to the cosine-weighted
-// centre of the cell's part above the horizon.
-Eigen::Vector3d CentreAboveHorizon(const Eigen::Vector3d& wi,
-                                   const Eigen::Vector3d& n, double c,
-                                   double a) {
-  const double wanted = c < a ? (c + a) * (2.0 / 3.0) : c + a * a / (3.0 * c);
-  return (wi + (wanted - c) * n).normalized();
-}
-
-}  // namespace
 
 double NearShare(double theta_h, const QuadratureOptions& options) {
   const double begin = options.near_begin_degrees * kDegree;
@@ -191,18 +191,11 @@ double PointQuadrature::NearIntegral(double theta_o) const {
          (x - i) * (near_integral_[i + 1] - near_integral_[i]);
 }
 
-void PointQuadrature::Sample(const Eigen::Vector3d& n,
-                             const Eigen::Vector3d& wo,
-                             PointSamples* samples) const {
-  samples->near.clear();
-  samples->far.clear();
-  Eigen::Vector3d t, b;
-  ViewFrame(n, wo, &t, &b);
-  const double cos_o = std::clamp(n.dot(wo), 0.0, 1.0);
-  const double sin_o = std::max(wo.dot(t), 0.0);
+double PointQuadrature::SampleNear(double cos_o, double sin_o,
+                                   std::vector<NearSample>* samples) const {
+  samples->clear();
   const Eigen::Vector3d o_local(sin_o, 0.0, cos_o);
-
-  double near_sum = 0.0;
+  double sum = 0.0;
   for (const HalfVector& h : half_vectors_) {
     if (h.measure <= 0.0) continue;
     const NearCosine cosine = CosineOf(h, cos_o, sin_o);
@@ -211,15 +204,15 @@ void PointQuadrature::Sample(const Eigen::Vector3d& n,
                           MeanClippedCosine(cosine.centre, cosine.extent) *
                           h.measure;
     if (weight <= 0.0) continue;
-    near_sum += weight;
+    sum += weight;
     NearSample s;
     s.weight = weight;
-    Eigen::Vector3d wi(2.0 * cosine.oh * h.sin_h * h.cos_p - sin_o,
-                       2.0 * cosine.oh * h.sin_h * h.sin_p, cosine.centre);
+    s.wi = Eigen::Vector3d(2.0 * cosine.oh * h.sin_h * h.cos_p - sin_o,
+                           2.0 * cosine.oh * h.sin_h * h.sin_p, cosine.centre);
     if (cosine.centre < cosine.extent) {
-      wi = CentreAboveHorizon(wi, Eigen::Vector3d::UnitZ(), cosine.centre,
-                              cosine.extent);
-      const HalfDiff angles = ToHalfDiff(wi, o_local);
+      s.wi = CentreAboveHorizon(s.wi, Eigen::Vector3d::UnitZ(), cosine.centre,
+                                cosine.extent);
+      const HalfDiff angles = ToHalfDiff(s.wi, o_local);
       s.theta_h = angles.theta_h;
       s.theta_d = angles.theta_d;
       s.phi_d = angles.phi_d;
@@ -228,14 +221,22 @@ void PointQuadrature::Sample(const Eigen::Vector3d& n,
       const double x = sin_o * h.cos_p * h.cos_h - cos_o * h.sin_h;
       const double y = -sin_o * h.sin_p;
       s.theta_h = h.theta_h;
-      s.theta_d = std::atan2(std::sqrt(x * x + y * y), cosine.oh);
-      s.phi_d = FoldPhi(std::atan2(y, x));
+      s.theta_d = FastAtan2(std::sqrt(x * x + y * y), cosine.oh);
+      s.phi_d = FoldPhi(FastAtan2(y, x));
     }
-    s.wi = (wi.x() * t + wi.y() * b + wi.z() * n).normalized();
-    samples->near.push_back(s);
+    samples->push_back(s);
   }
+  const double integral = NearIntegral(std::atan2(sin_o, cos_o));
+  const double correction = sum > 0.0 ? integral / sum : 1.0;
+  for (NearSample& s : *samples) s.weight *= correction;
+  return correction;
+}
 
-  double far_sum = 0.0;
+double PointQuadrature::SampleFar(const Eigen::Vector3d& n,
+                                  const Eigen::Vector3d& wo,
+                                  std::vector<FarSample>* samples) const {
+  samples->clear();
+  double sum = 0.0;
   for (size_t i = 0; i < cells_.size(); ++i) {
     const FarCell& cell = cells_[i];
     const double c = n.dot(cell.direction);
@@ -252,27 +253,42 @@ void PointQuadrature::Sample(const Eigen::Vector3d& n,
     const double cos_h = std::min(n.dot(h) / length, 1.0);
     if (cos_h >= cos_near_begin_) continue;
     FarSample s;
-    s.theta_h = std::acos(cos_h);
+    s.theta_h = FastAtan2(std::sqrt(1.0 - cos_h * cos_h), cos_h);
     s.weight = MeanClippedCosine(c, a);
     if (cos_h > cos_near_end_) s.weight *= 1.0 - NearShare(s.theta_h, options_);
     if (s.weight <= 0.0) continue;
     const double cos_d = std::min(0.5 * length, 1.0);
-    s.theta_d = std::acos(cos_d);
+    s.theta_d = FastAtan2(std::sqrt(1.0 - cos_d * cos_d), cos_d);
     // Components of wi across and along the direction of growing theta_h, both
     // times sin(theta_h), which is not small here.
     s.phi_d = FoldPhi(
-        std::atan2(n.cross(h).dot(wi) / length, cos_h * cos_d - n.dot(wi)));
+        FastAtan2(n.cross(h).dot(wi) / length, cos_h * cos_d - n.dot(wi)));
     s.cell = static_cast<int>(i);
-    far_sum += s.weight * cell.solid_angle;
-    samples->far.push_back(s);
+    sum += s.weight * cell.solid_angle;
+    samples->push_back(s);
   }
+  Eigen::Vector3d t, b;
+  ViewFrame(n, wo, &t, &b);
+  const double integral =
+      kPi - NearIntegral(std::atan2(std::max(wo.dot(t), 0.0),
+                                    std::clamp(n.dot(wo), 0.0, 1.0)));
+  const double correction = sum > 0.0 ? integral / sum : 1.0;
+  for (FarSample& s : *samples) s.weight *= correction;
+  return correction;
+}
 
-  const double near_integral = NearIntegral(std::atan2(sin_o, cos_o));
-  samples->near_correction = near_sum > 0.0 ? near_integral / near_sum : 1.0;
-  samples->far_correction =
-      far_sum > 0.0 ? (kPi - near_integral) / far_sum : 1.0;
-  for (NearSample& s : samples->near) s.weight *= samples->near_correction;
-  for (FarSample& s : samples->far) s.weight *= samples->far_correction;
+void PointQuadrature::Sample(const Eigen::Vector3d& n,
+                             const Eigen::Vector3d& wo,
+                             PointSamples* samples) const {
+  Eigen::Vector3d t, b;
+  ViewFrame(n, wo, &t, &b);
+  samples->near_correction =
+      SampleNear(std::clamp(n.dot(wo), 0.0, 1.0), std::max(wo.dot(t), 0.0),
+                 &samples->near);
+  for (NearSample& s : samples->near) {
+    s.wi = (s.wi.x() * t + s.wi.y() * b + s.wi.z() * n).normalized();
+  }
+  samples->far_correction = SampleFar(n, wo, &samples->far);
 }
 
 }  // namespace ibrdf

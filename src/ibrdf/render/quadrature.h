@@ -42,6 +42,11 @@ int FarBlockSize(int map_height, int map_width, int far_width);
 // Cells of blocks of block x block texels, row-major; block divides both sides.
 std::vector<FarCell> MapCells(int map_height, int map_width, int block);
 
+// A frame around n whose first axis t lies in the plane of n and wo, on the
+// side of wo: wo = (wo.t, 0, n.wo). n, wo: unit.
+void ViewFrame(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
+               Eigen::Vector3d* t, Eigen::Vector3d* b);
+
 struct NearSample {
   double theta_h, theta_d, phi_d;  // radians
   Eigen::Vector3d wi;              // world, unit; L is looked up here
@@ -70,6 +75,14 @@ class PointQuadrature {
   // cell's solid angle) are the exact shares of int cos = pi.
   void Sample(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
               PointSamples* samples) const;
+
+  // The two rules by themselves; each returns its correction. The near one
+  // depends on the view angle alone: its wi are in the frame of ViewFrame, with
+  // wo = (sin_o, 0, cos_o), and not normalised to the last bits.
+  double SampleNear(double cos_o, double sin_o,
+                    std::vector<NearSample>* samples) const;
+  double SampleFar(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
+                   std::vector<FarSample>* samples) const;
 
  private:
   struct HalfVector {

@@ -1,6 +1,8 @@
 // Slow, converged renderer: the image that accuracy is measured against.
 // Full-resolution map, MERL table trilinear between bin centres
-// (InterpolateMerl), no BRDF grid. No shadows, no bounces.
+// (InterpolateMerl), no BRDF grid. No shadows, no bounces. Points seen at the
+// same angle (most of a sphere's under an orthographic camera) share the BRDF
+// values of their near samples.
 #pragma once
 #include <vector>
 
@@ -52,11 +54,29 @@ class ReferenceRenderer {
   static Light GatherLight(const Image& map, int far_width);
   static QuadratureOptions NearOptions(const Image& map,
                                        const ReferenceOptions& options);
+
+  // Four floats a texel, with what lies across the poles above and below and
+  // the first column repeated on the right: bilinear taps need no wrapping.
+  struct PaddedMap {
+    explicit PaddedMap(const Image& map);
+    // Sum of f_k L(wi_k), wi = x t + y b + z n of unit length.
+    struct Rays;
+    Eigen::Array3d Gather(const Rays& rays, const Eigen::Matrix3f& frame) const;
+
+    int width, height;
+    std::vector<float> lanes;  // [height + 2][width + 1][4]
+  };
+  // Near samples of one view angle, in the frame of ViewFrame.
+  template <typename Lookup>
+  void ShadeNear(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
+                 const Lookup& lookup, std::vector<NearSample>* samples,
+                 PaddedMap::Rays* rays) const;
+
   ReferenceRenderer(const Image& map, Light light,
                     const ReferenceOptions& options);
 
-  Image map_;
   int num_threads_;
+  PaddedMap map_;
   std::vector<Eigen::Array3d> power_;
   PointQuadrature quadrature_;
 };

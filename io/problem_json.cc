@@ -1,0 +1,177 @@
+#include "io/problem_json.h"
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+namespace ibrdf {
+namespace {
+using nlohmann::json;
+
+template <typename Vector>
+json Triple(const Vector& v) {
+  return json::array({v[0], v[1], v[2]});
+}
+
+json AutoOr(const std::optional<double>& value) {
+  return value.has_value() ? json(*value) : json("auto");
+}
+
+json ImageJson(const ImageSpec& image) {
+  if (image.file.empty()) {
+    return {{"width", image.width}, {"height", image.height}};
+  }
+  json out = {{"file", image.file}};
+  if (!image.mask.empty()) out["mask"] = image.mask;
+  return out;
+}
+
+json CameraJson(const Camera& camera) {
+  if (camera.type == CameraType::kOrthographic) {
+    return {{"type", "orthographic"}};
+  }
+  return {{"type", "perspective"},
+          {"fov_degrees", camera.fov_degrees},
+          {"from", Triple(camera.from)},
+          {"to", Triple(camera.to)},
+          {"up", Triple(camera.up)}};
+}
+
+json GeometryJson(const GeometrySpec& geometry) {
+  switch (geometry.kind) {
+    case GeometryKind::kSphere:
+      break;
+    case GeometryKind::kMesh:
+      return {{"mesh", geometry.file},
+              {"fit",
+               geometry.fit == MeshFit::kUnitSphere ? "unit_sphere" : "none"}};
+    case GeometryKind::kNormals:
+      return {{"normals", geometry.file}};
+  }
+  return {{"sphere", json::object()}};
+}
+
+json ReflectanceJson(const ReflectanceSpec& reflectance) {
+  if (!reflectance.known_file.empty()) {
+    return {{"known", reflectance.known_file}};
+  }
+  if (reflectance.analytic.has_value()) {
+    const CookTorrance& f = *reflectance.analytic;
+    if (f.specular.maxCoeff() == 0.0) {
+      return {{"known", {{"lambertian", Triple(f.diffuse)}}}};
+    }
+    return {{"known",
+             {{"cook_torrance",
+               {{"diffuse", Triple(f.diffuse)},
+                {"specular", Triple(f.specular)},
+                {"roughness", Triple(f.roughness)},
+                {"f0", Triple(f.f0)}}}}}};
+  }
+  return {{"model", reflectance.model.empty() ? "default" : reflectance.model},
+          {"lobes", reflectance.lobes},
+          {"prior_sigma", reflectance.prior_sigma}};
+}
+
+json IlluminationJson(const IlluminationSpec& illumination) {
+  if (!illumination.known_file.empty()) {
+    return {{"known", illumination.known_file}};
+  }
+  json out = {{"width", illumination.width}, {"height", illumination.height}};
+  if (illumination.sky.has_value()) {
+    const SkyOptions& sky = *illumination.sky;
+    out["known"]["sky"] = {{"sun_theta_degrees", sky.sun_theta_degrees},
+                           {"sun_phi_degrees", sky.sun_phi_degrees},
+                           {"sun_radius_degrees", sky.sun_radius_degrees},
+                           {"sun_irradiance", sky.sun_irradiance},
+                           {"zenith_radiance", sky.zenith_radiance},
+                           {"haze", sky.haze},
+                           {"clouds", sky.clouds},
+                           {"skyline", sky.skyline},
+                           {"ground_albedo", sky.ground_albedo}};
+    return out;
+  }
+  out["prior"] =
+      illumination.prior == IlluminationPrior::kUNet ? "unet" : "none";
+  return out;
+}
+
+json EffectsJson(const EffectsSpec& effects) {
+  switch (effects.mode) {
+    case EffectsMode::kAuto:
+      return "auto";
+    case EffectsMode::kAll:
+      return "all";
+    case EffectsMode::kNone:
+      return "none";
+    case EffectsMode::kList:
+      break;
+  }
+  json list = json::array();
+  for (const Effect effect : effects.list) list.push_back(EffectName(effect));
+  return list;
+}
+
+json SolverJson(const SolverSpec& solver) {
+  const char* method = "auto";
+  switch (solver.method) {
+    case SolverMethod::kAuto:
+      break;
+    case SolverMethod::kGaussNewton:
+      method = "gauss_newton";
+      break;
+    case SolverMethod::kLbfgs:
+      method = "lbfgs";
+      break;
+    case SolverMethod::kAdam:
+      method = "adam";
+      break;
+  }
+  json out = {{"method", method},
+              {"seconds", solver.seconds},
+              {"tolerance", solver.tolerance},
+              {"max_iterations", solver.max_iterations}};
+  if (solver.seed.has_value()) out["seed"] = *solver.seed;
+  return out;
+}
+
+const char* KindName(ProblemKind kind) {
+  switch (kind) {
+    case ProblemKind::kJoint:
+      return "joint";
+    case ProblemKind::kReflectance:
+      return "reflectance";
+    case ProblemKind::kIllumination:
+      return "illumination";
+  }
+  return "";
+}
+
+}  // namespace
+
+nlohmann::json ProblemToJson(const Problem& problem) {
+  json out = {{"image", ImageJson(problem.image)},
+              {"camera", CameraJson(problem.camera)},
+              {"geometry", GeometryJson(problem.geometry)},
+              {"reflectance", ReflectanceJson(problem.reflectance)},
+              {"illumination", IlluminationJson(problem.illumination)},
+              {"effects", EffectsJson(problem.effects)}};
+  if (problem.image.file.empty()) {
+    out["quality"] =
+        problem.quality == RenderQuality::kReference ? "reference" : "preview";
+    out["noise"] = problem.noise;
+    return out;
+  }
+  out["problem"] = KindName(problem.kind);
+  out["likelihood"] = {{"scale", AutoOr(problem.likelihood.scale)},
+                       {"epsilon", AutoOr(problem.likelihood.epsilon)}};
+  out["solver"] = SolverJson(problem.solver);
+  json truth = json::object();
+  if (!problem.truth.brdf.empty()) truth["brdf"] = problem.truth.brdf;
+  if (!problem.truth.illumination.empty()) {
+    truth["illumination"] = problem.truth.illumination;
+  }
+  if (!truth.empty()) out["truth"] = truth;
+  return out;
+}
+
+}  // namespace ibrdf

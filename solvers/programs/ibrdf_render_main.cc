@@ -1,0 +1,197 @@
+// Forward render of a scene file.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/exr.h"
+#include "io/file_extension.h"
+#include "io/merl.h"
+#include "io/png.h"
+#include "io/problem_file.h"
+#include "solvers/programs/common_flags.h"
+#include "solvers/render_scene.h"
+
+namespace ibrdf {
+namespace {
+
+struct Outputs {
+  std::string image, mask, illumination, brdf;
+};
+
+// Lines "render 40 %" on stderr: rewritten in place on a terminal, one for
+// every tenth in a file; none in the first two seconds.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet)
+      : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
+
+  bool Show(double share) {
+    const std::chrono::duration<double> elapsed = Clock::now() - start_;
+    const int percent = static_cast<int>(100.0 * share);
+    if (quiet_ || percent == shown_) return true;
+    if (share < 1.0 && elapsed.count() < kSilentSeconds) return true;
+    if (shown_ < 0 && share >= 1.0) return true;
+    if (!terminal_ && percent / 10 == shown_ / 10 && shown_ >= 0) return true;
+    shown_ = percent;
+    std::fprintf(
+        stderr,
+        terminal_ ? "\rrender %3d %%, %.0f s" : "render %d %%, %.0f s\n",
+        percent, elapsed.count());
+    if (terminal_ && share >= 1.0) std::fputc('\n', stderr);
+    return true;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double kSilentSeconds = 2.0;
+  const bool quiet_;
+  const bool terminal_;
+  const Clock::time_point start_ = Clock::now();
+  int shown_ = -1;
+};
+
+// The brightest but one percent of the object's values reach white.
+Rgb8Image Preview(const Image& image, const Mask& mask) {
+  std::vector<float> values;
+  for (size_t p = 0; p < image.num_pixels(); ++p) {
+    if (mask.inside[p] == 0) continue;
+    values.insert(values.end(), &image.rgb[3 * p], &image.rgb[3 * p] + 3);
+  }
+  float white = 1.0f;
+  if (!values.empty()) {
+    const auto nth =
+        values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
+    std::nth_element(values.begin(), nth, values.end());
+    if (*nth > 0.0f) white = *nth;
+  }
+  Rgb8Image out(image.width, image.height);
+  for (size_t k = 0; k < image.rgb.size(); ++k) {
+    const double v = std::clamp(double{image.rgb[k]} / white, 0.0, 1.0);
+    const double encoded =
+        v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    out.rgb[k] = static_cast<uint8_t>(std::lround(255.0 * encoded));
+  }
+  return out;
+}
+
+Rgb8Image MaskImage(const Mask& mask) {
+  Rgb8Image out(mask.width, mask.height);
+  for (size_t k = 0; k < out.rgb.size(); ++k) {
+    out.rgb[k] = mask.inside[k / 3] != 0 ? 255 : 0;
+  }
+  return out;
+}
+
+Status RequireExtension(const std::string& path, const std::string& wanted,
+                        const std::string& option) {
+  if (path.empty() || FileExtension(path) == wanted) return OkStatus();
+  return InvalidInput("command line: " + option,
+                      "expected a ." + wanted + " file, found '" + path + "'");
+}
+
+// Makes the folder of an output.
+Status MakeFolder(const std::string& path) {
+  const std::filesystem::path folder =
+      std::filesystem::path(path).parent_path();
+  if (folder.empty()) return OkStatus();
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return InvalidInput(folder.string(), error.message());
+  return OkStatus();
+}
+
+Status CheckOutputs(const Outputs& out) {
+  IBRDF_RETURN_IF_ERROR(RequireExtension(out.image, "exr", "--out"));
+  IBRDF_RETURN_IF_ERROR(RequireExtension(out.mask, "png", "--mask"));
+  IBRDF_RETURN_IF_ERROR(
+      RequireExtension(out.illumination, "exr", "--illumination-out"));
+  IBRDF_RETURN_IF_ERROR(RequireExtension(out.brdf, "binary", "--brdf-out"));
+  for (const std::string* path :
+       {&out.image, &out.mask, &out.illumination, &out.brdf}) {
+    IBRDF_RETURN_IF_ERROR(MakeFolder(*path));
+  }
+  return OkStatus();
+}
+
+Status Run(const std::string& scene, const std::vector<std::string>& overrides,
+           const Outputs& out, const CommonFlags& flags) {
+  const StatusOr<Problem> problem = ReadProblem(scene, overrides);
+  if (!problem.ok()) return problem.status();
+  IBRDF_RETURN_IF_ERROR(CheckRenderable(*problem));
+  IBRDF_RETURN_IF_ERROR(CheckOutputs(out));
+
+  ProgressLine progress(flags.quiet);
+  RenderSceneOptions options;
+  options.seed = flags.seed;
+  options.num_threads = flags.threads;
+  options.progress = [&](double share) { return progress.Show(share); };
+  const StatusOr<RenderedScene> rendered = RenderScene(*problem, options);
+  if (!rendered.ok()) return rendered.status();
+
+  IBRDF_RETURN_IF_ERROR(WriteExr(rendered->image, out.image));
+  const std::string preview =
+      std::filesystem::path(out.image).replace_extension(".png").string();
+  if (preview != out.mask) {
+    IBRDF_RETURN_IF_ERROR(
+        WritePng(Preview(rendered->image, rendered->mask), preview));
+  }
+  if (!out.mask.empty()) {
+    IBRDF_RETURN_IF_ERROR(WritePng(MaskImage(rendered->mask), out.mask));
+  }
+  if (!out.illumination.empty()) {
+    IBRDF_RETURN_IF_ERROR(WriteExr(rendered->illumination, out.illumination));
+  }
+  if (!out.brdf.empty()) {
+    const StatusOr<MerlTable> table =
+        LoadKnownReflectance(problem->reflectance);
+    if (!table.ok()) return table.status();
+    IBRDF_RETURN_IF_ERROR(WriteMerl(*table, out.brdf));
+  }
+  return OkStatus();
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app(
+      "Renders a scene file: known reflectance (1/sr) and illumination "
+      "(W/(m^2 sr)) to radiance, with a tone-mapped PNG beside it.");
+  CommonFlags flags;
+  AddCommonFlags(&app, &flags);
+  std::string scene, quality;
+  std::vector<std::string> overrides;
+  Outputs out;
+  app.add_option("--scene", scene, "scene file (YAML)")->required();
+  app.add_option("--out", out.image, "radiance to write, .exr")->required();
+  app.add_option("--mask", out.mask,
+                 "mask of the object to write, .png; default: none");
+  app.add_option("--illumination-out", out.illumination,
+                 "equirectangular map used to write, .exr; default: none");
+  app.add_option("--brdf-out", out.brdf,
+                 "BRDF as MERL table to write, .binary; default: none");
+  app.add_option("--quality", quality,
+                 "preview (one sample a pixel, coarse quadrature) or reference "
+                 "(converged, 2x2 samples); default: the scene's, else "
+                 "reference");
+  app.add_option("--set", overrides,
+                 "key.path=value overrides a key of the scene; repeatable; "
+                 "e.g. --set noise=0.02 (standard deviation of log-normal "
+                 "noise) --set image.width=256 (pixels)")
+      ->expected(1)
+      ->take_all();
+  return RunProgram(&app, argc, argv, [&]() -> Status {
+    std::vector<std::string> all = overrides;
+    if (!quality.empty()) all.push_back("quality=" + quality);
+    return Run(scene, all, out, flags);
+  });
+}
+
+}  // namespace
+}  // namespace ibrdf
+
+int main(int argc, char** argv) { return ibrdf::Main(argc, argv); }

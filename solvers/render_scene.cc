@@ -1,0 +1,190 @@
+#include "solvers/render_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <utility>
+
+#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/light/procedural_sky.h"
+#include "ibrdf/render/reference_renderer.h"
+#include "io/image_file.h"
+#include "io/merl.h"
+#include "io/mesh.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kReferenceSamplesPerSide = 2;
+// Points between two calls of progress: well below a second at reference
+// quality, enough to keep the threads busy.
+constexpr size_t kPointsPerStep = 2048;
+
+// A quarter of the reference's rings: within 1 % but for mirrors.
+ReferenceOptions QualityOptions(RenderQuality quality, int num_threads) {
+  ReferenceOptions options;
+  options.num_threads = num_threads;
+  if (quality == RenderQuality::kPreview) {
+    options.near_rings /= 4;
+    options.near_ring_samples /= 4;
+    options.far_width = 64;
+  }
+  return options;
+}
+
+// Box-Muller on bits of the generator, which the standard fixes (unlike
+// std::normal_distribution): the same seed gives the same noise anywhere.
+class NormalNumbers {
+ public:
+  explicit NormalNumbers(uint64_t seed) : rng_(seed) {}
+  double Next() {
+    constexpr double kTwoPi = 6.28318530717958647693;
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - Uniform()));
+    return radius * std::cos(kTwoPi * Uniform());
+  }
+
+ private:
+  double Uniform() {
+    return std::ldexp(static_cast<double>(rng_() >> 11), -53);
+  }
+  std::mt19937_64 rng_;
+};
+
+void AddNoise(double sigma, uint64_t seed, Image* image) {
+  if (sigma <= 0.0) return;
+  NormalNumbers normal(seed);
+  for (float& v : image->rgb) {
+    v = static_cast<float>(v * std::exp(sigma * normal.Next()));
+  }
+}
+
+Mask PixelsOf(const std::vector<ShadingPoint>& points, int width, int height) {
+  Mask mask(width, height, 0);
+  for (const ShadingPoint& p : points) mask.inside[p.pixel] = 255;
+  return mask;
+}
+
+}  // namespace
+
+StatusOr<Scene> LoadScene(const GeometrySpec& geometry) {
+  switch (geometry.kind) {
+    case GeometryKind::kSphere:
+      break;
+    case GeometryKind::kMesh: {
+      StatusOr<TriangleMesh> mesh = ReadMesh(geometry.file);
+      if (!mesh.ok()) return mesh.status();
+      if (geometry.fit == MeshFit::kUnitSphere) FitUnitSphere(&*mesh);
+      StatusOr<Scene> scene = Scene::FromMesh(*mesh);
+      if (!scene.ok()) {
+        return InvalidInput(geometry.file, scene.status().message());
+      }
+      return scene;
+    }
+    case GeometryKind::kNormals: {
+      const StatusOr<Image> normals = ReadImage(geometry.file);
+      if (!normals.ok()) return normals.status();
+      StatusOr<Scene> scene = Scene::FromNormalMap(*normals);
+      if (!scene.ok()) {
+        return InvalidInput(geometry.file, scene.status().message());
+      }
+      return scene;
+    }
+  }
+  return Scene::UnitSphere();
+}
+
+StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination) {
+  if (illumination.sky.has_value()) {
+    return RenderSky(*illumination.sky, illumination.height,
+                     illumination.width);
+  }
+  StatusOr<Image> map = ReadImage(illumination.known_file);
+  if (!map.ok()) return map.status();
+  for (size_t k = 0; k < map->rgb.size(); ++k) {
+    if (std::isfinite(map->rgb[k]) && map->rgb[k] >= 0.0f) continue;
+    const size_t pixel = k / 3;
+    return InvalidInput(illumination.known_file,
+                        "row " + std::to_string(pixel / map->width) +
+                            ", column " + std::to_string(pixel % map->width) +
+                            ": expected finite radiance >= 0, found " +
+                            std::to_string(map->rgb[k]));
+  }
+  if (map->width % 2 != 0) {
+    return InvalidInput(
+        illumination.known_file,
+        "width: expected an even number, found " + std::to_string(map->width));
+  }
+  return map;
+}
+
+StatusOr<MerlTable> LoadKnownReflectance(const ReflectanceSpec& reflectance) {
+  if (reflectance.analytic.has_value()) {
+    return SampleMerl(reflectance.analytic->Function());
+  }
+  return ReadMerl(reflectance.known_file);
+}
+
+StatusOr<RenderedScene> RenderScene(const Problem& problem,
+                                    const RenderSceneOptions& options) {
+  const StatusOr<Scene> scene = LoadScene(problem.geometry);
+  if (!scene.ok()) return scene.status();
+  StatusOr<Image> map = LoadKnownIllumination(problem.illumination);
+  if (!map.ok()) return map.status();
+  const int width = problem.image.width, height = problem.image.height;
+  const StatusOr<std::vector<ShadingPoint>> found = FindShadingPoints(
+      *scene, problem.camera, width, height, Mask(),
+      problem.quality == RenderQuality::kReference ? kReferenceSamplesPerSide
+                                                   : 1);
+  if (!found.ok()) {
+    return InvalidInput(problem.path, found.status().message());
+  }
+  const std::vector<ShadingPoint>& points = *found;
+
+  MerlTable table;
+  if (!problem.reflectance.known_file.empty()) {
+    StatusOr<MerlTable> read = ReadMerl(problem.reflectance.known_file);
+    if (!read.ok()) return read.status();
+    table = *std::move(read);
+  }
+
+  const ReferenceRenderer renderer(
+      *map, QualityOptions(problem.quality, options.num_threads));
+  // By view angle, so that points of one angle fall into one step and share
+  // their work.
+  std::vector<ShadingPoint> ordered = points;
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const ShadingPoint& a, const ShadingPoint& b) {
+                     return a.normal.dot(a.wo) < b.normal.dot(b.wo);
+                   });
+  std::vector<double> E(3 * ordered.size());
+  for (size_t begin = 0; begin < ordered.size(); begin += kPointsPerStep) {
+    if (options.progress &&
+        !options.progress(static_cast<double>(begin) / ordered.size())) {
+      return Status(StatusCode::kInterrupted, problem.path + ": interrupted");
+    }
+    const size_t end = std::min(begin + kPointsPerStep, ordered.size());
+    const std::vector<ShadingPoint> step(ordered.begin() + begin,
+                                         ordered.begin() + end);
+    if (problem.reflectance.analytic.has_value()) {
+      renderer.Render(step, problem.reflectance.analytic->Function(),
+                      &E[3 * begin]);
+    } else {
+      renderer.Render(step, table, &E[3 * begin]);
+    }
+  }
+  if (options.progress) options.progress(1.0);
+
+  RenderedScene out;
+  out.image = PixelMeans(ordered, E.data(), width, height);
+  out.mask = PixelsOf(ordered, width, height);
+  out.illumination = *std::move(map);
+  AddNoise(problem.noise,
+           problem.solver.seed.has_value()
+               ? static_cast<uint64_t>(*problem.solver.seed)
+               : options.seed,
+           &out.image);
+  return out;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,46 @@
+// Forward rendering of a problem whose reflectance and illumination are known.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/render/scene.h"
+#include "io/problem.h"
+
+namespace ibrdf {
+
+// The geometry of a problem; reads its mesh or normal map.
+StatusOr<Scene> LoadScene(const GeometrySpec& geometry);
+
+// The known illumination: the file as it is, or the sky made into a map of the
+// problem's size. Refuses values that are negative or not finite.
+StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination);
+
+// The known reflectance as a table: the file, or the analytic BRDF at the bin
+// centres.
+StatusOr<MerlTable> LoadKnownReflectance(const ReflectanceSpec& reflectance);
+
+struct RenderSceneOptions {
+  uint64_t seed = 1;    // of the noise, where the problem has no seed
+  int num_threads = 0;  // <= 0: all
+  // Called with the share done, in [0, 1], from the calling thread; false
+  // stops the render. May be empty.
+  std::function<bool(double)> progress;
+};
+
+struct RenderedScene {
+  Image image;         // radiance; 0 outside the object
+  Mask mask;           // pixels whose centre (preview) or any sample sees it
+  Image illumination;  // the map used
+};
+
+// Reference quality: 2x2 samples a pixel; preview: one, and a coarser
+// quadrature. Analytic BRDFs are evaluated, not tabulated. Noise multiplies
+// each channel of each pixel by exp(noise * normal). CheckRenderable first.
+StatusOr<RenderedScene> RenderScene(const Problem& problem,
+                                    const RenderSceneOptions& options);
+
+}  // namespace ibrdf

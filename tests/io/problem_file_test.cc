@@ -1,0 +1,289 @@
+#include "io/problem_file.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "io/problem_json.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr char kLeast[] = "image: {file: a.exr}\ngeometry: {sphere: {}}\n";
+
+class ProblemFile : public ::testing::Test {
+ protected:
+  StatusOr<Problem> Read(const std::string& text,
+                         const std::vector<std::string>& overrides = {}) {
+    WriteBytes(path_, text);
+    return ReadProblem(path_, overrides);
+  }
+  std::string ErrorOf(const std::string& text,
+                      const std::vector<std::string>& overrides = {}) {
+    const StatusOr<Problem> problem = Read(text, overrides);
+    if (problem.ok()) return "no error";
+    EXPECT_EQ(StatusCode::kInvalidInput, problem.status().code());
+    return problem.status().message();
+  }
+
+  const TempDir dir_;
+  const std::string path_ = dir_.File("joint.yaml");
+};
+
+TEST_F(ProblemFile, LeastFileHasTheDocumentedDefaults) {
+  const StatusOr<Problem> read = Read(kLeast);
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  const Problem& p = *read;
+  EXPECT_EQ(ProblemKind::kJoint, p.kind);
+  EXPECT_EQ(dir_.File("a.exr"), p.image.file);
+  EXPECT_EQ("", p.image.mask);
+  EXPECT_EQ(CameraType::kOrthographic, p.camera.type);
+  EXPECT_EQ(GeometryKind::kSphere, p.geometry.kind);
+  EXPECT_EQ("", p.reflectance.model);
+  EXPECT_EQ(2, p.reflectance.lobes);
+  EXPECT_EQ(0.5, p.reflectance.prior_sigma);
+  EXPECT_EQ(128, p.illumination.width);
+  EXPECT_EQ(64, p.illumination.height);
+  EXPECT_FALSE(p.likelihood.scale.has_value());
+  EXPECT_EQ(EffectsMode::kAuto, p.effects.mode);
+  EXPECT_EQ(120.0, p.solver.seconds);
+  EXPECT_EQ(1e-4, p.solver.tolerance);
+  EXPECT_EQ(0.0, p.noise);
+  EXPECT_TRUE(CheckSolvable(p).ok());
+  EXPECT_FALSE(CheckRenderable(p).ok());
+}
+
+TEST_F(ProblemFile, EveryKeyIsRead) {
+  const StatusOr<Problem> read = Read(R"(
+problem: reflectance
+image: {file: in.exr, mask: sub/../mask.png}
+camera: {type: perspective, fov_degrees: 40, from: [0, 1, 5], to: [0, 0, 1], up: [1, 0, 0]}
+geometry: {mesh: /abs/bunny.obj, fit: none}
+reflectance: {model: m.ibrdf, lobes: 3, prior_sigma: 0.25}
+illumination: {known: env.hdr}
+likelihood: {scale: 0.02, epsilon: 1e-5}
+effects: [sharp_lobes, perspective]
+solver: {method: lbfgs, seconds: 5, tolerance: 0, max_iterations: 7, seed: 9}
+truth: {brdf: gt.binary, illumination: gt.exr}
+)");
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  const Problem& p = *read;
+  EXPECT_EQ(dir_.File("mask.png"), p.image.mask);
+  EXPECT_EQ(40.0, p.camera.fov_degrees);
+  EXPECT_EQ(Eigen::Vector3d(0, 1, 5), p.camera.from);
+  EXPECT_EQ(Eigen::Vector3d(1, 0, 0), p.camera.up);
+  EXPECT_EQ("/abs/bunny.obj", p.geometry.file);
+  EXPECT_EQ(MeshFit::kNone, p.geometry.fit);
+  EXPECT_EQ(dir_.File("m.ibrdf"), p.reflectance.model);
+  EXPECT_EQ(3, p.reflectance.lobes);
+  EXPECT_EQ(dir_.File("env.hdr"), p.illumination.known_file);
+  EXPECT_EQ(0.02, *p.likelihood.scale);
+  EXPECT_EQ(1e-5, *p.likelihood.epsilon);
+  ASSERT_EQ(2u, p.effects.list.size());
+  EXPECT_EQ(Effect::kPerspective, p.effects.list[1]);
+  EXPECT_EQ(SolverMethod::kLbfgs, p.solver.method);
+  EXPECT_EQ(7, p.solver.max_iterations);
+  EXPECT_EQ(9, *p.solver.seed);
+  EXPECT_EQ(dir_.File("gt.exr"), p.truth.illumination);
+  EXPECT_TRUE(CheckSolvable(p).ok());
+}
+
+TEST_F(ProblemFile, BuiltInScenesNeedNoFile) {
+  const StatusOr<Problem> read = Read(R"(
+image: {width: 32, height: 24}
+geometry: {sphere: }
+reflectance: {known: {cook_torrance: {diffuse: [0.1, 0.2, 0.3], roughness: 0.2}}}
+illumination: {width: 256, known: {sky: {sun_theta_degrees: 30, haze: 0}}}
+quality: preview
+noise: 0.02
+)");
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_EQ(0.2, read->reflectance.analytic->diffuse[1]);
+  EXPECT_EQ(0.2, read->reflectance.analytic->roughness[2]);
+  EXPECT_EQ(0.04, read->reflectance.analytic->f0[0]);
+  EXPECT_EQ(128, read->illumination.height);
+  EXPECT_EQ(30.0, read->illumination.sky->sun_theta_degrees);
+  EXPECT_EQ(60.0, read->illumination.sky->sun_phi_degrees);
+  EXPECT_EQ(RenderQuality::kPreview, read->quality);
+  EXPECT_EQ(0.02, read->noise);
+  EXPECT_TRUE(CheckRenderable(*read).ok());
+  EXPECT_FALSE(CheckSolvable(*read).ok());
+
+  const StatusOr<Problem> matte = Read(
+      std::string(kLeast) + "reflectance: {known: {lambertian: [1, 0.5, 0]}}");
+  ASSERT_TRUE(matte.ok()) << matte.status().message();
+  EXPECT_EQ(0.0, matte->reflectance.analytic->specular.maxCoeff());
+  EXPECT_EQ(0.5, matte->reflectance.analytic->diffuse[1]);
+}
+
+TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
+  const std::string least = kLeast;
+  const struct {
+    std::string text, message;
+  } cases[] = {
+      {least + "reflectance: {lobs: 3}",
+       "reflectance.lobs: unknown key; the nearest known one is "
+       "reflectance.lobes"},
+      {least + "sovler: {}",
+       "sovler: unknown key; the nearest known one is "
+       "solver"},
+      {least + "reflectance: {lobes: 2.5}",
+       "reflectance.lobes: expected a whole number in [1, 8], found '2.5'"},
+      {least + "reflectance: {lobes: 99}", "[1, 8], found '99'"},
+      {least + "reflectance: {prior_sigma: 0}",
+       "reflectance.prior_sigma: expected a number > 0, found '0'"},
+      {least + "reflectance: {prior_sigma: nan}", "found 'nan'"},
+      {least + "reflectance: {prior_sigma: '1'}", "expected a number > 0"},
+      {least + "reflectance: [1]",
+       "reflectance: expected a map of model, lobes, prior_sigma or known, "
+       "found a list of 1"},
+      {least + "solver: {method: newton}",
+       "solver.method: expected auto, gauss_newton, lbfgs or adam, found "
+       "'newton'"},
+      {least + "solver: {seconds: 1e400}", "solver.seconds: expected"},
+      {least + "likelihood: {scale: many}", "likelihood.scale: expected"},
+      {least + "likelihood: {scale: []}", "expected auto or a number"},
+      {least + "effects: [visibility]",
+       "effects: visibility is not available in this version"},
+      {least + "effects: [perspectiv]", "the nearest known one is perspective"},
+      {least + "effects: [perspective, perspective]", "listed twice"},
+      {least + "camera: {fov_degrees: 3}", "camera.fov_degrees: expected"},
+      {least + "camera: {type: perspective, fov_degrees: 180}",
+       "camera.fov_degrees: expected a number in (0, 180), found '180'"},
+      {least + "camera: {type: perspective, from: [0, 0, 0]}",
+       "camera: expected `from` apart"},
+      {least + "camera: {type: perspective, from: [0, 0]}",
+       "camera.from: expected a list of three"},
+      {least + "illumination: {width: 63}", "expected an even number"},
+      {least + "illumination: {known: {sun: {}}}",
+       "illumination.known.sun: unknown key"},
+      {least + "illumination: {known: {sky: {cloud: 1}}}",
+       "illumination.known.sky.cloud: unknown key; the nearest known one is "
+       "illumination.known.sky.clouds"},
+      {least + "reflectance: {known: {lambertian: [1, 2, 0]}}",
+       "reflectance.known.lambertian: expected a number in [0, 1] or a list"},
+      {least + "reflectance: {known: [a]}",
+       "reflectance.known: expected the name of a file, found a list of 1"},
+      {least + "truth: {brdf: }", "truth.brdf: expected the name of a file"},
+      {"geometry: {sphere: {}}", "image: expected, found nothing"},
+      {"image: {file: a.exr}", "geometry: expected, found nothing"},
+      {"image: {file: a, width: 3, height: 3}\ngeometry: {sphere: {}}",
+       "image: expected either file or width and height"},
+      {"image: {width: 3}\ngeometry: {sphere: {}}", "both width and height"},
+      {"image: {file: a}\ngeometry: {sphere: {}, mesh: b.obj}",
+       "geometry: expected one of sphere, mesh and normals, found 2"},
+      {"image: {file: a}\ngeometry: {sphere: {}, fit: none}",
+       "geometry.fit: expected with geometry.mesh only"},
+      {"image: {file: a}\ngeometry: {sphere: {radius: 2}}",
+       "geometry.sphere: expected {}, found a map"},
+      {"image: {file: a}\ngeometry: {normals: n.exr}\ncamera: {type: "
+       "perspective}",
+       "camera.type: expected orthographic"},
+      {"", "image: expected, found nothing"},
+      {"just words", "expected a map of problem, image"},
+  };
+  for (const auto& c : cases) {
+    const std::string message = ErrorOf(c.text);
+    EXPECT_EQ(0u, message.find(path_ + ": ")) << message;
+    EXPECT_NE(std::string::npos, message.find(c.message)) << c.text << "\n"
+                                                          << message;
+  }
+}
+
+TEST_F(ProblemFile, OverridesAreCheckedAsTheFileIs) {
+  const StatusOr<Problem> read =
+      Read(kLeast, {"solver.seconds=7", "image.file=/x/b.exr",
+                    "reflectance.lobes=1", "effects=none"});
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_EQ(7.0, read->solver.seconds);
+  EXPECT_EQ("/x/b.exr", read->image.file);
+  EXPECT_EQ(1, read->reflectance.lobes);
+  EXPECT_EQ(EffectsMode::kNone, read->effects.mode);
+  EXPECT_NE(std::string::npos,
+            ErrorOf(kLeast, {"solver.second=7"}).find("solver.seconds"));
+  EXPECT_NE(std::string::npos,
+            ErrorOf(kLeast, {"solver.seconds=x"}).find("found 'x'"));
+}
+
+TEST_F(ProblemFile, KnownPartsMustFitTheKind) {
+  const struct {
+    const char* kind;
+    bool brdf, light, ok;
+  } cases[] = {
+      {"joint", false, false, true},
+      {"joint", true, false, false},
+      {"joint", false, true, false},
+      {"reflectance", false, true, true},
+      {"reflectance", false, false, false},
+      {"illumination", true, false, true},
+      {"illumination", false, false, false},
+  };
+  for (const auto& c : cases) {
+    std::vector<std::string> overrides = {std::string("problem=") + c.kind};
+    if (c.brdf) overrides.emplace_back("reflectance.known=a.binary");
+    if (c.light) overrides.emplace_back("illumination.known=a.exr");
+    const StatusOr<Problem> read = Read(kLeast, overrides);
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(c.ok, CheckSolvable(*read).ok()) << c.kind;
+  }
+}
+
+TEST_F(ProblemFile, MissingAndHugeFilesAreRefused) {
+  EXPECT_FALSE(ReadProblem(dir_.File("none.yaml"), {}).ok());
+  EXPECT_NE(std::string::npos,
+            ErrorOf(std::string((1 << 20) + 1, ' ')).find(path_));
+}
+
+TEST_F(ProblemFile, DamagedTextNeverCrashes) {
+  const std::string text = std::string(kLeast) +
+                           "camera: {type: perspective, from: [0, 1, 5]}\n"
+                           "effects: [sharp_lobes]\nsolver: {seconds: 5}\n";
+  std::mt19937 rng(5);
+  const std::string marks = "{}[]:,*&!'\"-#|> \n\t%@0a\x01\xff";
+  for (int i = 0; i < 2000; ++i) {
+    std::string damaged = text;
+    for (unsigned k = 0; k <= rng() % 4; ++k) {
+      damaged[rng() % damaged.size()] = marks[rng() % marks.size()];
+    }
+    const StatusOr<Problem> read = Read(damaged);
+    if (!read.ok()) {
+      EXPECT_EQ(0u, read.status().message().find(path_)) << damaged;
+    }
+  }
+}
+
+TEST_F(ProblemFile, JsonHasTheKeysOfTheFileAndReadsBack) {
+  const StatusOr<Problem> read = Read(
+      kLeast, {"camera={type: perspective, fov_degrees: 40}",
+               "effects=[perspective]", "solver.seed=4", "likelihood.scale=0.1",
+               "truth.brdf=b.binary", "geometry={mesh: m.obj, fit: none}"});
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  const nlohmann::json json = ProblemToJson(*read);
+  EXPECT_EQ("joint", json["problem"]);
+  EXPECT_EQ(0.1, json["likelihood"]["scale"]);
+  EXPECT_EQ("auto", json["likelihood"]["epsilon"]);
+  EXPECT_EQ(dir_.File("b.binary"), json["truth"]["brdf"]);
+  // JSON is YAML: the resolved problem is a problem file.
+  const StatusOr<Problem> again = Read(json.dump(2));
+  ASSERT_TRUE(again.ok()) << again.status().message();
+  EXPECT_EQ(json, ProblemToJson(*again));
+}
+
+TEST_F(ProblemFile, JsonOfABuiltInSceneReadsBack) {
+  const StatusOr<Problem> read = Read(
+      "image: {width: 8, height: 8}\ngeometry: {sphere: {}}\n"
+      "reflectance: {known: {cook_torrance: {}}}\n"
+      "illumination: {known: {sky: {clouds: 0.25}}}\n");
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  const nlohmann::json json = ProblemToJson(*read);
+  EXPECT_EQ(0.25, json["illumination"]["known"]["sky"]["clouds"]);
+  const StatusOr<Problem> again = Read(json.dump());
+  ASSERT_TRUE(again.ok()) << again.status().message();
+  EXPECT_EQ(json, ProblemToJson(*again));
+}
+
+}  // namespace
+}  // namespace ibrdf
