@@ -1,0 +1,135 @@
+#include "solvers/baselines/cook_torrance_cost.h"
+
+#include <glog/logging.h>
+
+#include <array>
+#include <cmath>
+
+#include "ibrdf/base/parallel_for.h"
+
+namespace ibrdf {
+namespace {
+constexpr double kPi = 3.14159265358979323846;
+// exp(it) is 0: no diffuse part.
+constexpr double kLogZero = -1000.0;
+}  // namespace
+
+CookTorrance FromCookTorranceVector(const CookTorranceVector& parameters) {
+  CookTorrance brdf;
+  for (int c = 0; c < 3; ++c) {
+    FromLogParameters(
+        {parameters[c], parameters[3 + c], parameters[6], parameters[7]}, c,
+        &brdf);
+  }
+  return brdf;
+}
+
+CookTorranceCost::CookTorranceCost(const Transport& transport, const Image& map,
+                                   const LogObservations& observed,
+                                   double smoothing, int num_threads)
+    : transport_(transport),
+      map_(map),
+      observed_(observed),
+      smoothing_(smoothing),
+      num_threads_(num_threads) {
+  CHECK_EQ(map.width, transport.map_width());
+  CHECK_EQ(map.height, transport.map_height());
+  CHECK_EQ(observed.values.size(), size_t{3} * transport.num_points());
+  CHECK_GT(observed.floor, 0.0);
+  CHECK_GT(smoothing, 0.0);
+  const BrdfGridShape& shape = transport.grid_shape();
+  for (int i = 0; i < shape.num_nodes(); ++i) {
+    node_angles_.push_back(shape.NodeAngles(i));
+  }
+  set_num_residuals(static_cast<int>(observed.values.size()));
+  mutable_parameter_block_sizes()->push_back(kCookTorranceParameters);
+}
+
+std::vector<float> CookTorranceCost::RenderFields(double log_roughness,
+                                                  double logit_f0,
+                                                  int num_fields) const {
+  const size_t nodes = node_angles_.size();
+  std::array<std::vector<float>, 4> fields;
+  std::array<const float*, 4> pointers{};
+  for (int k = 0; k < num_fields; ++k) {
+    fields[k].assign(nodes, static_cast<float>(1.0 / kPi));
+    pointers[k] = fields[k].data();
+  }
+  const CookTorranceLog lobe(kLogZero, 0.0, log_roughness, logit_f0);
+  const int rows = transport_.grid_shape().h;
+  const size_t row = nodes / rows;
+  ParallelFor(rows, num_threads_, [&](int64_t h, int) {
+    for (size_t i = h * row; i < (h + 1) * row; ++i) {
+      const Eigen::Vector3d& a = node_angles_[i];
+      Eigen::Vector4d gradient;
+      fields[1][i] = static_cast<float>(
+          EvaluateCookTorrance(lobe, a[0], a[1], a[2], &gradient));
+      for (int k = 2; k < num_fields; ++k) {
+        fields[k][i] = static_cast<float>(gradient[k]);
+      }
+    }
+  });
+  std::vector<float> radiance(size_t{3} * num_fields * transport_.num_points());
+  transport_.RenderLobes(pointers.data(), num_fields, map_.rgb.data(),
+                         radiance.data());
+  return radiance;
+}
+
+std::vector<float> CookTorranceCost::UnitRadiance(double log_roughness,
+                                                  double logit_f0) const {
+  return RenderFields(log_roughness, logit_f0, 2);
+}
+
+bool CookTorranceCost::Evaluate(double const* const* parameters,
+                                double* residuals, double** jacobians) const {
+  const Eigen::Map<const CookTorranceVector> p(parameters[0]);
+  const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
+  const int num_fields = with_jacobian ? 4 : 2;
+  const std::vector<float> radiance = RenderFields(p[6], p[7], num_fields);
+  const double s = smoothing_;
+  for (int i = 0; i < transport_.num_points(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const auto field = [&](int k) -> double {
+        return radiance[(static_cast<size_t>(i) * num_fields + k) * 3 + c];
+      };
+      const double diffuse = std::exp(p[c]) * field(0);
+      const double specular_colour = std::exp(p[3 + c]);
+      const double specular = specular_colour * field(1);
+      const double E = diffuse + specular + observed_.floor;
+      const int row = 3 * i + c;
+      const double d = std::log(E) - observed_.values[row];
+      if (!std::isfinite(d)) return false;  // step rejected
+      const double root = std::sqrt(d * d + s * s);
+      residuals[row] = d * std::sqrt(2.0 / (root + s));
+      if (!with_jacobian) continue;
+      const double dr_dE = std::sqrt(0.5 * (root + s)) / root / E;
+      Eigen::Map<CookTorranceVector> J(jacobians[0] +
+                                       row * kCookTorranceParameters);
+      J.setZero();
+      J[c] = dr_dE * diffuse;
+      J[3 + c] = dr_dE * specular;
+      J[6] = dr_dE * specular_colour * field(2);
+      J[7] = dr_dE * specular_colour * field(3);
+      if (!J.allFinite()) return false;
+    }
+  }
+  return true;
+}
+
+double CookTorranceCost::Misfit(const CookTorranceVector& parameters) const {
+  const std::vector<float> radiance =
+      UnitRadiance(parameters[6], parameters[7]);
+  double sum = 0.0;
+  for (int i = 0; i < transport_.num_points(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const size_t at = static_cast<size_t>(i) * 6 + c;
+      const double E = std::exp(parameters[c]) * radiance[at] +
+                       std::exp(parameters[3 + c]) * radiance[at + 3];
+      sum +=
+          std::abs(std::log(E + observed_.floor) - observed_.values[3 * i + c]);
+    }
+  }
+  return sum / static_cast<double>(observed_.values.size());
+}
+
+}  // namespace ibrdf

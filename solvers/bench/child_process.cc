@@ -1,0 +1,97 @@
+#include "solvers/bench/child_process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <thread>
+
+namespace ibrdf {
+namespace {
+
+constexpr std::chrono::milliseconds kPoll(20);
+
+// Largest resident memory of a running process so far, KiB; 0 where the system
+// does not tell.
+long ResidentPeak(pid_t child) {
+  std::ifstream status("/proc/" + std::to_string(child) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.rfind("VmHWM:", 0) == 0) {
+      return std::strtol(line.c_str() + std::strlen("VmHWM:"), nullptr, 10);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
+                               const std::string& log,
+                               const std::atomic<bool>* stop) {
+  const int output =
+      ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (output < 0) return InvalidInput(log, std::strerror(errno));
+  std::vector<char*> arguments;
+  for (const std::string& a : argv) {
+    arguments.push_back(const_cast<char*>(a.c_str()));
+  }
+  arguments.push_back(nullptr);
+  rusage own{};
+  ::getrusage(RUSAGE_SELF, &own);
+  const auto begin = std::chrono::steady_clock::now();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::dup2(output, STDOUT_FILENO);
+    ::dup2(output, STDERR_FILENO);
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+  }
+  ::close(output);
+  if (child < 0) {
+    return Status(StatusCode::kInternal,
+                  argv[0] + ": fork: " + std::strerror(errno));
+  }
+  int status = 0;
+  rusage usage{};
+  long sampled = 0;
+  bool stopped = false;
+  for (;;) {
+    const pid_t ended = ::wait4(child, &status, WNOHANG, &usage);
+    if (ended == child) break;
+    if (ended < 0 && errno != EINTR) {
+      return Status(StatusCode::kInternal,
+                    argv[0] + ": wait4: " + std::strerror(errno));
+    }
+    sampled = std::max(sampled, ResidentPeak(child));
+    if (stop != nullptr && *stop && !stopped) {
+      ::kill(child, SIGINT);
+      stopped = true;
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+  ChildResult result;
+  result.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin)
+          .count();
+  // ru_maxrss counts the copy of this process before exec too, and is the
+  // child's own peak only above our size.
+  const long peak = sampled == 0 || usage.ru_maxrss > own.ru_maxrss
+                        ? usage.ru_maxrss
+                        : sampled;
+  result.peak_mb = static_cast<double>(peak) / 1024.0;
+  if (WIFSIGNALED(status)) {
+    result.signal = WTERMSIG(status);
+  } else {
+    result.exit_code = WEXITSTATUS(status);
+  }
+  return result;
+}
+
+}  // namespace ibrdf

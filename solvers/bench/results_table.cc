@@ -1,0 +1,141 @@
+#include "solvers/bench/results_table.h"
+
+#include <fcntl.h>
+#include <glog/logging.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "io/atomic_file.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr size_t kMaxBytes = size_t{1} << 28;
+
+std::string Line(const ResultsRow& cells) {
+  std::string line;
+  for (size_t i = 0; i < cells.size(); ++i) {
+    CHECK_EQ(cells[i].find_first_of(",\"\r\n"), std::string::npos) << cells[i];
+    line += (i == 0 ? "" : ",") + cells[i];
+  }
+  return line + "\n";
+}
+
+ResultsRow Cells(const std::string& line) {
+  ResultsRow cells(1);
+  for (const char c : line) {
+    if (c == ',') {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+Status WriteAll(int file, const std::string& path, const std::string& text) {
+  size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t n = ::write(file, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return InvalidInput(path, std::strerror(errno));
+    done += static_cast<size_t>(n);
+  }
+  if (::fsync(file) != 0) return InvalidInput(path, std::strerror(errno));
+  return OkStatus();
+}
+
+}  // namespace
+
+const std::vector<std::string>& JointColumns() {
+  static const std::vector<std::string> columns = {
+      "material",
+      "map",
+      "geometry",
+      "lobes",
+      "method",
+      "seconds",
+      "peak_mb",
+      "misfit",
+      "brdf_log_rmse",
+      "brdf_log_rmse_aligned",
+      "brdf_log_rmse_below80",
+      "illumination_relative_log_rmse",
+      "illumination_relative_log_rmse_aligned",
+      "status",
+      "cook_torrance_misfit",
+      "cook_torrance_brdf_log_rmse",
+      "cook_torrance_brdf_log_rmse_aligned",
+      "constant_map_relative_log_rmse",
+      "constant_map_relative_log_rmse_aligned"};
+  return columns;
+}
+
+StatusOr<std::vector<ResultsRow>> ReadResults(
+    const std::string& path, const std::vector<std::string>& columns) {
+  std::vector<ResultsRow> rows;
+  if (!std::filesystem::exists(path)) return rows;
+  const StatusOr<std::string> text = ReadFile(path, kMaxBytes);
+  if (!text.ok()) return text.status();
+  size_t begin = 0;
+  for (size_t end; (end = text->find('\n', begin)) != std::string::npos;
+       begin = end + 1) {
+    rows.push_back(Cells(text->substr(begin, end - begin)));
+    if (rows.size() == 1 && rows[0] != columns) {
+      return InvalidInput(path + ": line 1",
+                          "expected the columns " + Line(columns));
+    }
+    if (rows.back().size() != columns.size()) {
+      return InvalidInput(path + ": line " + std::to_string(rows.size()),
+                          "expected " + std::to_string(columns.size()) +
+                              " cells, found " +
+                              std::to_string(rows.back().size()));
+    }
+  }
+  if (!rows.empty()) rows.erase(rows.begin());
+  return rows;
+}
+
+Status AppendResult(const std::string& path,
+                    const std::vector<std::string>& columns,
+                    const ResultsRow& row) {
+  CHECK_EQ(row.size(), columns.size());
+  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file < 0) return InvalidInput(path, std::strerror(errno));
+  ::flock(file, LOCK_EX);
+  off_t size = ::lseek(file, 0, SEEK_END);
+  char last = '\n';
+  while (size > 0 && ::pread(file, &last, 1, size - 1) == 1 && last != '\n') {
+    --size;
+  }
+  Status status;
+  if (::ftruncate(file, size) != 0) {
+    status = InvalidInput(path, std::strerror(errno));
+  } else {
+    ::lseek(file, size, SEEK_SET);
+    status = WriteAll(file, path, (size == 0 ? Line(columns) : "") + Line(row));
+  }
+  ::close(file);
+  return status;
+}
+
+std::string ResultsMarkdown(const std::string& heading,
+                            const std::vector<std::string>& columns,
+                            const std::vector<ResultsRow>& rows) {
+  const auto line = [](const ResultsRow& cells) {
+    std::string text = "|";
+    for (const std::string& cell : cells) text += " " + cell + " |";
+    return text + "\n";
+  };
+  std::string text = heading + "\n" + line(columns) + "|";
+  for (size_t i = 0; i < columns.size(); ++i) text += " --- |";
+  text += "\n";
+  for (const ResultsRow& row : rows) text += line(row);
+  return text;
+}
+
+}  // namespace ibrdf
