@@ -80,9 +80,8 @@ LobePrior EmbeddingPrior(const NeuralBrdfModel& model, double prior_sigma) {
   }
   all /= 3.0 * materials;
   for (int c = 0; c < 3; ++c) prior.colour_mean[c] = mean[c];
-  prior.colour_sigma =
-      std::max(std::sqrt(std::max(square / (3.0 * materials) - all * all, 0.0)),
-               0.5);
+  prior.colour_sigma = std::max(
+      std::sqrt(std::max(square / (3.0 * materials) - all * all, 0.0)), 0.5);
   return prior;
 }
 

@@ -5,7 +5,8 @@
 namespace ibrdf {
 namespace {
 
-// The biases of the last layer carry the level of the map: no prior to speak of.
+// The biases of the last layer carry the level of the map: no prior to speak
+// of.
 constexpr float kBiasStd = 10.0f;
 // Free texels: log radiance of natural light spreads over a few units.
 constexpr float kTexelStd = 3.0f;

@@ -24,59 +24,85 @@ double Dot(const std::vector<float>& a, const std::vector<float>& b) {
   return sum;
 }
 
-// Quadratic form of differences between neighbouring texels of a planar map
-// [3][H][W]; columns wrap. See IlluminationPriorOptions.
+// Differences between neighbouring texels of a planar map [3][H][W]; columns
+// wrap. See IlluminationPriorOptions.
 class EdgePrior {
  public:
-  EdgePrior(int height, int width, double edge_std)
-      : height_(height), width_(width) {
-    if (edge_std <= 0.0) return;
+  EdgePrior(int height, int width, const IlluminationPriorOptions& options)
+      : height_(height), width_(width), delta_(options.edge_delta) {
+    if (options.edge_scale <= 0.0) return;
+    const double scale = options.edge_scale * options.edge_scale;
     const double row_angle = kPi / height;
+    const double equator = TexelSolidAngle(height / 2, height, width);
     for (int r = 0; r < height; ++r) {
       const double column_angle =
-          std::max(2 * kPi / width * std::sin((r + 0.5) * row_angle), 1e-3);
-      const double share =
-          TexelSolidAngle(r, height, width) / (row_angle * row_angle);
-      along_.push_back(share / (edge_std * edge_std * column_angle));
-      down_.push_back(share / (edge_std * edge_std * row_angle));
+          2 * kPi / width * std::sin((r + 0.5) * row_angle);
+      share_.push_back(TexelSolidAngle(r, height, width) / equator);
+      along_.push_back(1.0 / (scale * column_angle));
+      down_.push_back(1.0 / (scale * row_angle));
     }
   }
 
-  // 1/2 of the form; adds its gradient to `gradient` where given.
-  double Evaluate(const float* map, float* gradient) const {
-    if (along_.empty()) return 0.0;
+  // The sum; with `gradient`, adds its gradient and keeps the weights of later
+  // products.
+  double Evaluate(const float* map, float* gradient) {
+    if (share_.empty()) return 0.0;
     double sum = 0.0;
-    for (int c = 0; c < 3; ++c) {
-      for (int r = 0; r < height_; ++r) {
-        for (int x = 0; x < width_; ++x) {
-          const size_t here = Index(c, r, x);
-          sum += Edge(map, gradient, here, Index(c, r, (x + 1) % width_),
-                      along_[r]);
-          if (r + 1 < height_) {
-            sum += Edge(map, gradient, here, Index(c, r + 1, x), down_[r]);
-          }
-        }
+    if (gradient != nullptr) weights_.clear();
+    ForEachEdge([&](size_t a, size_t b, double share, double inverse_square) {
+      double d[3], t2 = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        d[c] = static_cast<double>(map[b + c * Plane()]) - map[a + c * Plane()];
+        t2 += d[c] * d[c] * inverse_square;
       }
-    }
+      const double root = std::sqrt(t2 + delta_ * delta_);
+      sum += share * t2 / (root + delta_);
+      if (gradient == nullptr) return;
+      const double weight = share * inverse_square / root;
+      weights_.push_back(static_cast<float>(weight));
+      for (int c = 0; c < 3; ++c) {
+        gradient[b + c * Plane()] += static_cast<float>(weight * d[c]);
+        gradient[a + c * Plane()] -= static_cast<float>(weight * d[c]);
+      }
+    });
     return sum;
   }
 
- private:
-  size_t Index(int c, int r, int x) const {
-    return (static_cast<size_t>(c) * height_ + r) * width_ + x;
+  // out += (iteratively reweighted) Hessian of the last gradient's point times
+  // v.
+  void AddProduct(const float* v, float* out) const {
+    if (share_.empty()) return;
+    size_t edge = 0;
+    ForEachEdge([&](size_t a, size_t b, double, double) {
+      const float weight = weights_[edge++];
+      for (int c = 0; c < 3; ++c) {
+        const float d = weight * (v[b + c * Plane()] - v[a + c * Plane()]);
+        out[b + c * Plane()] += d;
+        out[a + c * Plane()] -= d;
+      }
+    });
   }
-  static double Edge(const float* map, float* gradient, size_t a, size_t b,
-                     double weight) {
-    const double d = static_cast<double>(map[b]) - map[a];
-    if (gradient != nullptr) {
-      gradient[b] += static_cast<float>(weight * d);
-      gradient[a] -= static_cast<float>(weight * d);
+
+ private:
+  size_t Plane() const { return static_cast<size_t>(height_) * width_; }
+
+  template <typename Function>
+  void ForEachEdge(const Function& f) const {
+    for (int r = 0; r < height_; ++r) {
+      const size_t row = static_cast<size_t>(r) * width_;
+      for (int x = 0; x < width_; ++x) {
+        f(row + x, row + (x + 1) % width_, share_[r], along_[r]);
+        if (r + 1 < height_) {
+          f(row + x, row + width_ + x, share_[r], down_[r]);
+        }
+      }
     }
-    return 0.5 * weight * d * d;
   }
 
   const int height_, width_;
-  std::vector<double> along_, down_;
+  const double delta_;
+  std::vector<double> share_, along_, down_;
+  std::vector<float> weights_;
 };
 
 // Everything the objective and its products share.
@@ -90,7 +116,7 @@ class Objective {
         options_(options),
         mean_(prior_mean),
         model_(model),
-        edges_(model->height(), model->width(), options.prior.edge_std) {
+        edges_(model->height(), model->width(), options.prior) {
     for (const float s : model->PriorStd()) {
       inverse_variance_.push_back(
           1.0f / static_cast<float>(options.prior.weight_sigma *
@@ -135,8 +161,8 @@ class Objective {
     }
     std::vector<float> by_log;
     if (gradient != nullptr) by_log.assign(log_map_.size(), 0.0f);
-    cost.prior += edges_.Evaluate(log_map_.data(),
-                                  gradient != nullptr ? by_log.data() : nullptr);
+    cost.prior += edges_.Evaluate(
+        log_map_.data(), gradient != nullptr ? by_log.data() : nullptr);
     for (size_t i = 0; i < mean_.size(); ++i) {
       const double d = static_cast<double>(parameters[i]) - mean_[i];
       cost.prior += 0.5 * inverse_variance_[i] * d * d;
@@ -167,11 +193,12 @@ class Objective {
     light_.Apply(d_map.data(), dE.data());
     for (size_t i = 0; i < dE.size(); ++i) dE[i] *= weight_[i];
     std::vector<float> by_log(d_log.size(), 0.0f);
-    edges_.Evaluate(d_log.data(), by_log.data());
+    edges_.AddProduct(d_log.data(), by_log.data());
     AddMapAdjoint(dE, &by_log);
     Hv->resize(v.size());
     model_->Vjp(by_log.data(), Hv->data());
-    for (size_t i = 0; i < v.size(); ++i) (*Hv)[i] += inverse_variance_[i] * v[i];
+    for (size_t i = 0; i < v.size(); ++i)
+      (*Hv)[i] += inverse_variance_[i] * v[i];
   }
 
   // Call after Evaluate with a gradient: keeps the map that products use.
@@ -266,8 +293,8 @@ IlluminationCost GaussNewton(Objective* objective,
       best = objective->Evaluate(candidate.data(), nullptr);
       if (best.total() < cost.total()) {
         accepted = true;
-        damping = std::clamp(length == 1.0f ? damping / 4 : damping * 2, 1e-4,
-                             1e6);
+        damping =
+            std::clamp(length == 1.0f ? damping / 4 : damping * 2, 1e-4, 1e6);
         break;
       }
     }
@@ -373,14 +400,11 @@ void ToRadianceMap(const std::vector<float>& log_radiance,
   }
 }
 
-IlluminationCost EvaluateIllumination(const LightOperator& light,
-                                      const Observations& observed,
-                                      const IlluminationStepOptions& options,
-                                      const std::vector<float>& prior_mean,
-                                      const float* parameters,
-                                      IlluminationModel* model,
-                                      std::vector<double>* E,
-                                      std::vector<float>* map) {
+IlluminationCost EvaluateIllumination(
+    const LightOperator& light, const Observations& observed,
+    const IlluminationStepOptions& options,
+    const std::vector<float>& prior_mean, const float* parameters,
+    IlluminationModel* model, std::vector<double>* E, std::vector<float>* map) {
   Objective objective(light, observed, options, prior_mean, model);
   const IlluminationCost cost = objective.Evaluate(parameters, nullptr);
   if (E != nullptr) *E = objective.E();

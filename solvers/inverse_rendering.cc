@@ -26,10 +26,15 @@ constexpr double kStartShare = 0.4;    // of the time, at most
 constexpr double kCoarseShare = 0.65;  // of the time, starts included
 // More points than this are thinned to every other row and column first.
 constexpr size_t kCoarsePoints = 4000;
-constexpr double kFirstScale = 0.2;     // b of the starts: tolerant
+// The BRDF grid of the first stages: a fifth of the nodes of the last one.
+constexpr BrdfGridShape kCoarseGrid = {48, 20, 12};
+constexpr double kFirstScale = 0.2;      // b of the starts: tolerant
 constexpr double kSmallestScale = 3e-3;  // below any real image's noise
-constexpr double kLightChromaStd = 0.3;  // log, of natural light's mean colour
-constexpr double kEpsilonShare = 1e-5;   // of the mean radiance
+// Standard deviation of log (red / green) and log (blue / green) of a map's
+// mean log radiance: 0.25 and 0.43 over nine maps
+// (experiments/light_statistics).
+constexpr double kLightChromaStd = 0.35;
+constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
 
 double Now() {
   return std::chrono::duration<double>(
@@ -43,11 +48,14 @@ struct State {
   std::vector<float> light;   // empty: known
 };
 
-// A set of points with its observations.
+// A set of points with its observations, and the lobes on its BRDF grid.
 struct Level {
   std::vector<ShadingPoint> points;
+  BrdfGridShape grid;
   Observations observed;
   std::unique_ptr<Transport> transport;
+  std::unique_ptr<LobeModel> lobes;
+  Level* lobe_level = nullptr;  // where lobes are fitted; null: here
 };
 
 class Estimator {
@@ -61,10 +69,7 @@ class Estimator {
     likelihood_.scale = problem_.scale.value_or(kFirstScale);
     State best = ChooseStart();
     const State first = first_state_;
-    Level* coarse = Coarse();
-    if (coarse != full_.get()) {
-      Rounds("coarse", coarse, kCoarseShare, &best);
-    }
+    Rounds("coarse", coarse_.get(), kCoarseShare, &best);
     Rounds("full", full_.get(), 1.0, &best);
     return Finish(first, best);
   }
@@ -76,30 +81,34 @@ class Estimator {
   bool lobes_unknown() const { return !problem_.known_brdf.has_value(); }
   bool light_unknown() const { return !problem_.known_map.has_value(); }
   std::function<bool()> StopAfter(double share) const {
-    return [this, share] {
-      return Interrupted() || Elapsed() > share * Budget();
-    };
+    return
+        [this, share] { return Interrupted() || Elapsed() > share * Budget(); };
   }
-  Level* Coarse() {
-    return coarse_ != nullptr ? coarse_.get() : full_.get();
-  }
+  const LobeModel& lobes() const { return *full_->lobes; }
 
   Status Prepare() {
-    full_ = MakeLevel(problem_.points);
+    full_ = MakeLevel(problem_.points, problem_.transport.grid);
     if (full_->observed.num_valid == 0) {
       return InvalidInput("image",
                           "no pixel of the object is finite and positive in "
                           "all three channels");
     }
+    std::vector<ShadingPoint> thin = problem_.points;
     if (problem_.points.size() > kCoarsePoints) {
-      std::vector<ShadingPoint> thin;
+      thin.clear();
       for (const ShadingPoint& p : problem_.points) {
         const int x = p.pixel % problem_.image.width;
         const int y = p.pixel / problem_.image.width;
         if (x % 2 == 0 && y % 2 == 0) thin.push_back(p);
       }
-      coarse_ = MakeLevel(thin);
-      if (coarse_->observed.num_valid == 0) coarse_.reset();
+    }
+    coarse_ = MakeLevel(thin, kCoarseGrid);
+    if (coarse_->observed.num_valid == 0) {
+      coarse_ = MakeLevel(problem_.points, kCoarseGrid);
+    } else if (thin.size() < problem_.points.size()) {
+      // A few dozen lobe parameters do not need every pixel.
+      thin_ = MakeLevel(std::move(thin), problem_.transport.grid);
+      full_->lobe_level = thin_.get();
     }
     double mean = 0.0;
     for (size_t i = 0; i < full_->observed.radiance.size(); ++i) {
@@ -109,9 +118,6 @@ class Estimator {
     likelihood_.epsilon = problem_.epsilon.value_or(kEpsilonShare * mean);
 
     if (lobes_unknown()) {
-      lobes_ = std::make_unique<LobeModel>(problem_.model, problem_.lobes,
-                                           problem_.transport.grid,
-                                           problem_.num_threads);
       prior_ = EmbeddingPrior(problem_.model, problem_.prior_sigma);
     }
     if (light_unknown()) {
@@ -123,8 +129,7 @@ class Estimator {
         unet.num_threads = problem_.num_threads;
         light_ = MakeUnetIllumination(unet);
       } else {
-        light_ =
-            MakeFreeIllumination(problem_.map_width, problem_.map_height);
+        light_ = MakeFreeIllumination(problem_.map_width, problem_.map_height);
       }
       const double zero[3] = {0, 0, 0};
       light_mean_ = light_->ConstantMap(zero);
@@ -132,8 +137,15 @@ class Estimator {
     return OkStatus();
   }
 
-  std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points) const {
+  std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points,
+                                   const BrdfGridShape& grid) const {
     auto level = std::make_unique<Level>();
+    // A known BRDF comes on one grid.
+    level->grid = lobes_unknown() ? grid : problem_.known_brdf->shape;
+    if (lobes_unknown()) {
+      level->lobes = std::make_unique<LobeModel>(
+          problem_.model, problem_.lobes, level->grid, problem_.num_threads);
+    }
     std::vector<double> radiance;
     for (const ShadingPoint& p : points) {
       const float* rgb = problem_.image.rgb.data() + size_t{3} * p.pixel;
@@ -149,17 +161,18 @@ class Estimator {
     if (level->transport == nullptr) {
       TransportOptions options = problem_.transport;
       options.num_threads = problem_.num_threads;
+      options.grid = level->grid;
       level->transport = std::make_unique<Transport>(
           level->points, problem_.map_height, problem_.map_width, options);
     }
     return *level->transport;
   }
 
-  BrdfGrid GridOf(const State& state) const {
+  BrdfGrid GridOf(const Level& level, const State& state) const {
     if (!lobes_unknown()) return *problem_.known_brdf;
     std::vector<float> fields;
-    lobes_->Tabulate(state.lobes.data(), false, &fields);
-    return lobes_->Combine(state.lobes.data(), fields, 1);
+    level.lobes->Tabulate(state.lobes.data(), false, &fields);
+    return level.lobes->Combine(state.lobes.data(), fields, 1);
   }
 
   std::vector<float> MapOf(const State& state) const {
@@ -177,7 +190,7 @@ class Estimator {
     TraceEntry entry;
     entry.stage = stage;
     const Transport& transport = TransportOf(level);
-    const BrdfGrid grid = GridOf(state);
+    const BrdfGrid grid = GridOf(*level, state);
     std::vector<double> E(level->observed.radiance.size());
     std::vector<float> map;
     if (light_unknown()) {
@@ -204,7 +217,7 @@ class Estimator {
     entry.misfit = absolute / (3.0 * o.num_valid);
     if (lobes_unknown()) {
       entry.reflectance_prior =
-          LobePriorCostValue(*lobes_, prior_, state.lobes);
+          LobePriorCostValue(lobes(), prior_, state.lobes);
     }
     entry.cost =
         entry.likelihood + entry.reflectance_prior + entry.illumination_prior;
@@ -233,7 +246,8 @@ class Estimator {
   void LightStep(Level* level, int iterations, int cg_iterations, double share,
                  State* state) {
     if (!light_unknown()) return;
-    const LightOperator light = TransportOf(level).ByLight(GridOf(*state));
+    const LightOperator light =
+        TransportOf(level).ByLight(GridOf(*level, *state));
     IlluminationStepOptions o = LightOptions(share);
     o.max_iterations = iterations;
     o.max_cg_iterations = cg_iterations;
@@ -249,7 +263,8 @@ class Estimator {
     o.max_iterations = iterations;
     o.tolerance = problem_.solver.tolerance;
     o.should_stop = StopAfter(share);
-    SolveReflectance(TransportOf(level), *lobes_, MapOf(*state),
+    if (level->lobe_level != nullptr) level = level->lobe_level;
+    SolveReflectance(TransportOf(level), *level->lobes, MapOf(*state),
                      level->observed, o, &state->lobes);
   }
 
@@ -269,13 +284,13 @@ class Estimator {
       }
     }
     const std::vector<double> d =
-        GaugeShift(*lobes_, prior_, state->lobes, mean, kLightChromaStd);
+        GaugeShift(lobes(), prior_, state->lobes, mean, kLightChromaStd);
     double back[3];
     for (int c = 0; c < 3; ++c) {
       back[c] = -d[c];
-      for (int k = 0; k < lobes_->num_lobes(); ++k) {
-        state->lobes[static_cast<size_t>(k) * lobes_->lobe_size() +
-                     lobes_->code_size() + c] += d[c];
+      for (int k = 0; k < lobes().num_lobes(); ++k) {
+        state->lobes[static_cast<size_t>(k) * lobes().lobe_size() +
+                     lobes().code_size() + c] += d[c];
       }
     }
     light_->ShiftChannels(back, state->light.data());
@@ -291,17 +306,17 @@ class Estimator {
     double shift[3] = {0, 0, 0};
     for (size_t i = 0; i < E.size(); ++i) {
       if (!o.valid[i / 3]) continue;
-      shift[i % 3] += (std::log(o.radiance[i]) -
-                       std::log(std::max(E[i], 0.0) + 1e-30)) /
-                      o.num_valid;
+      shift[i % 3] +=
+          (std::log(o.radiance[i]) - std::log(std::max(E[i], 0.0) + 1e-30)) /
+          o.num_valid;
     }
     if (light_unknown()) {
       light_->ShiftChannels(shift, state->light.data());
     } else if (lobes_unknown()) {
-      for (int k = 0; k < lobes_->num_lobes(); ++k) {
+      for (int k = 0; k < lobes().num_lobes(); ++k) {
         for (int c = 0; c < 3; ++c) {
-          state->lobes[static_cast<size_t>(k) * lobes_->lobe_size() +
-                       lobes_->code_size() + c] += shift[c];
+          state->lobes[static_cast<size_t>(k) * lobes().lobe_size() +
+                       lobes().code_size() + c] += shift[c];
         }
       }
     }
@@ -311,7 +326,7 @@ class Estimator {
   // fraction of its strength.
   State StartFrom(const MaterialCode& material, const MaterialCode& matte) {
     State state;
-    for (int k = 0; k < lobes_->num_lobes(); ++k) {
+    for (int k = 0; k < lobes().num_lobes(); ++k) {
       const MaterialCode& m = k == 0 ? material : matte;
       state.lobes.insert(state.lobes.end(), m.code.begin(), m.code.end());
       const double a = m.log_colour - (k == 0 ? 0.0 : 1.0);
@@ -343,7 +358,7 @@ class Estimator {
 
   // Runs several starts cheaply and returns the one of least cost.
   State ChooseStart() {
-    Level* level = Coarse();
+    Level* level = coarse_.get();
     if (!lobes_unknown()) {
       State state;
       MatchLevel(level, &state);
@@ -373,8 +388,7 @@ class Estimator {
       LobeStep(level, light_unknown() ? 4 : 6, share, &state);
       LightStep(level, 2, 10, share, &state);
       FixGauge(&state);
-      const TraceEntry entry =
-          Evaluate("start " + material.name, level, state);
+      const TraceEntry entry = Evaluate("start " + material.name, level, state);
       Report(entry);
       if (entry.cost < best_cost) {
         best_cost = entry.cost;
@@ -398,8 +412,8 @@ class Estimator {
       LightStep(level, 3, 15, share, &next);
       LobeStep(level, 5, share, &next);
       FixGauge(&next);
-      const TraceEntry after = Evaluate(
-          stage + " round " + std::to_string(round + 1), level, next);
+      const TraceEntry after =
+          Evaluate(stage + " round " + std::to_string(round + 1), level, next);
       ++iterations_;
       if (!(after.cost < before.cost)) return;
       *state = next;
@@ -451,7 +465,7 @@ class Estimator {
     }
     if (lobes_unknown()) {
       estimate.lobe_parameters = best.lobes;
-      estimate.brdf = lobes_->ToMerl(best.lobes.data());
+      estimate.brdf = lobes().ToMerl(best.lobes.data());
     }
     estimate.scale = likelihood_.scale;
     estimate.epsilon = likelihood_.epsilon;
@@ -468,8 +482,7 @@ class Estimator {
   const std::atomic<bool>* stop_;
   const double start_;
   RobustLogLikelihood likelihood_;
-  std::unique_ptr<Level> full_, coarse_;
-  std::unique_ptr<LobeModel> lobes_;
+  std::unique_ptr<Level> full_, coarse_, thin_;
   LobePrior prior_;
   std::unique_ptr<IlluminationModel> light_;
   std::vector<float> light_mean_;

@@ -56,13 +56,14 @@ struct Estimate {
   std::vector<double> lobe_parameters;  // as LobeModel; empty if known
   MerlTable brdf;                       // empty if known
   Image map;                            // [H, W]; the known one if known
-  Image render;                         // radiance at the object's pixels, else 0
-  double scale = 0.0;                   // b used at the end
+  Image render;        // radiance at the object's pixels, else 0
+  double scale = 0.0;  // b used at the end
   double epsilon = 0.0;
   double misfit = 0.0;
   double seconds = 0.0;
   int64_t pixels_used = 0;
-  std::string start;  // in words: the reflectance that the best start began with
+  std::string
+      start;  // in words: the reflectance that the best start began with
   std::vector<TraceEntry> trace;
   // kOk; kNoImprovement or kInterrupted: this is the best iterate found.
   Status status;

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "ibrdf/base/version.h"
 #include "ibrdf/light/environment_map.h"
@@ -28,7 +28,9 @@ struct Truth {
   Image illumination;
 };
 
-Json Metric(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+Json Metric(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
 
 // Pixels that the estimate renders.
 Mask ObjectMask(const InverseProblem& inverse) {
@@ -173,8 +175,9 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
   if (!estimate.brdf.raw.empty()) {
     IBRDF_RETURN_IF_ERROR(WriteMerl(estimate.brdf, path("brdf.binary")));
     const Json brdf = {
-        {"model", problem.reflectance.model.empty() ? "default"
-                                                    : problem.reflectance.model},
+        {"model", problem.reflectance.model.empty()
+                      ? "default"
+                      : problem.reflectance.model},
         {"formula",
          "raw = sum over lobes of colour * density(code) ^ exponent"},
         {"exponent", inverse.model.exponent},

@@ -1,9 +1,9 @@
 #include "solvers/costs/log_radiance_cost.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <glog/logging.h>
 
 namespace ibrdf {
 namespace {
@@ -92,8 +92,7 @@ bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
         if (dE == nullptr) continue;
         double* d = dE->data() + row * columns + k * lobe_size;
         for (int z = 0; z < codes; ++z) d[z] = colour * field(1 + z);
-        d[codes + c] =
-            lobe[codes + c] < LobeModel::kMaxLogColour ? term : 0.0;
+        d[codes + c] = lobe[codes + c] < LobeModel::kMaxLogColour ? term : 0.0;
       }
     }
     for (int c = 0; c < 3; ++c) finite &= std::isfinite((*E)[3 * i + c]);

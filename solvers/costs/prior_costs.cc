@@ -1,9 +1,9 @@
 #include "solvers/costs/prior_costs.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <glog/logging.h>
 
 namespace ibrdf {
 
@@ -14,8 +14,8 @@ LobePriorCost::LobePriorCost(int num_lobes, int code_size,
   set_num_residuals(num_lobes * (code_size + 4));
 }
 
-bool LobePriorCost::Evaluate(double const* const* parameters,
-                             double* residuals, double** jacobians) const {
+bool LobePriorCost::Evaluate(double const* const* parameters, double* residuals,
+                             double** jacobians) const {
   const int columns = num_lobes_ * (code_size_ + 3);
   double* J = jacobians != nullptr ? jacobians[0] : nullptr;
   if (J != nullptr) std::fill(J, J + num_residuals() * columns, 0.0);

@@ -11,9 +11,9 @@ namespace ibrdf {
 // likelihood, one robust loss per pixel and channel however many share a block.
 // r is smooth in t, with r ~ t / sqrt(delta) near 0.
 struct RobustLogLikelihood {
-  double scale = 0.02;     // b, natural log
-  double epsilon = 1e-6;   // radiance
-  double delta = 0.5;      // in units of b
+  double scale = 0.02;    // b, natural log
+  double epsilon = 1e-6;  // radiance
+  double delta = 0.5;     // in units of b
 };
 
 // The residual of t and dr/dt; both finite for any finite t.

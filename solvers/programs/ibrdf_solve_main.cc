@@ -19,8 +19,7 @@ namespace {
 std::atomic<bool> stop_requested{false};
 void RequestStop(int) { stop_requested = true; }
 
-Status Solve(const std::string& file,
-             const std::vector<std::string>& overrides,
+Status Solve(const std::string& file, const std::vector<std::string>& overrides,
              const std::string& folder, const CommonFlags& flags) {
   const StatusOr<Problem> problem = ReadProblem(file, overrides);
   if (!problem.ok()) return problem.status();
@@ -32,8 +31,8 @@ Status Solve(const std::string& file,
   const bool terminal = ::isatty(STDOUT_FILENO) != 0;
   if (!flags.quiet) {
     std::printf("%zu pixels of the object, map %dx%d; effects: %s\n",
-                inverse->points.size(), inverse->map_width,
-                inverse->map_height, DescribeEffects(*problem).c_str());
+                inverse->points.size(), inverse->map_width, inverse->map_height,
+                DescribeEffects(*problem).c_str());
   }
   const SolveProgress progress = [&](const TraceEntry& e, double share) {
     if (flags.quiet) return;

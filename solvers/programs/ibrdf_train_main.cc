@@ -41,12 +41,10 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
   if (!wrong.empty()) return InvalidInput("command line", wrong);
   if (options.points_per_code % kFlowBlock != 0) {
     return InvalidInput("command line: --points-per-code",
-                        "expected a multiple of " +
-                            std::to_string(kFlowBlock));
+                        "expected a multiple of " + std::to_string(kFlowBlock));
   }
-  const StatusOr<TrainingData> all =
-      ReadTrainingData(flags.data, SplitByComma(flags.leave_out), flags.points,
-                       common.seed);
+  const StatusOr<TrainingData> all = ReadTrainingData(
+      flags.data, SplitByComma(flags.leave_out), flags.points, common.seed);
   if (!all.ok()) return all.status();
   // A sixteenth of the points is never trained on.
   const int train_points = all->num_points - all->num_points / 16;
@@ -76,10 +74,10 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
       ScoreModel(*model, held_out, common.threads);
   std::vector<double> by_material;
   for (size_t m = 0; m + 2 < scores.size(); m += 3) {
-    by_material.push_back(std::sqrt((scores[m] * scores[m] +
-                                     scores[m + 1] * scores[m + 1] +
-                                     scores[m + 2] * scores[m + 2]) /
-                                    3));
+    by_material.push_back(
+        std::sqrt((scores[m] * scores[m] + scores[m + 1] * scores[m + 1] +
+                   scores[m + 2] * scores[m + 2]) /
+                  3));
     if (!common.quiet) {
       const std::string& name = model->names[m];
       std::printf("%-28s %.4f\n", name.substr(0, name.rfind('.')).c_str(),

@@ -1,12 +1,12 @@
 #include "solvers/trainer/flow_trainer.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numeric>
 #include <random>
-
-#include <glog/logging.h>
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/flow/coupling_flow.h"
@@ -20,7 +20,7 @@ constexpr int64_t kWarmUpSteps = 200;
 constexpr double kFinalRate = 0.01;  // of the first
 constexpr double kGradientNorm = 1.0;
 constexpr float kCodeStart = 0.3f;  // norm of the first codes
-constexpr int kChunks = 8;  // gradient buffers, joined in order
+constexpr int kChunks = 8;          // gradient buffers, joined in order
 
 double Seconds() {
   return std::chrono::duration<double>(
@@ -133,11 +133,10 @@ class Trainer {
                             state_.weights.data());
     for (int b = 0; b < batch; ++b) {
       const int m = order[b];
-      state_.code_adam.Step(code_gradients.data() + b * code_size_,
-                            rate * options_.code_learning_rate,
-                            ++state_.code_steps[m],
-                            static_cast<size_t>(m) * code_size_, code_size_,
-                            state_.codes.data());
+      state_.code_adam.Step(
+          code_gradients.data() + b * code_size_,
+          rate * options_.code_learning_rate, ++state_.code_steps[m],
+          static_cast<size_t>(m) * code_size_, code_size_, state_.codes.data());
       ProjectToUnitBall(state_.codes.data() + m * code_size_, code_size_);
     }
     flow_.SetWeights(state_.weights);
@@ -163,11 +162,12 @@ class Trainer {
   };
 
   double Schedule() const {
-    const double t = static_cast<double>(state_.step) /
-                     static_cast<double>(options_.steps);
+    const double t =
+        static_cast<double>(state_.step) / static_cast<double>(options_.steps);
     const double warm =
         std::min(1.0, (state_.step + 1.0) / static_cast<double>(kWarmUpSteps));
-    return warm * (kFinalRate + (1 - kFinalRate) * 0.5 * (1 + std::cos(M_PI * t)));
+    return warm *
+           (kFinalRate + (1 - kFinalRate) * 0.5 * (1 + std::cos(M_PI * t)));
   }
 
   double AddGradient(int distribution, uint64_t seed, double scale,
@@ -235,7 +235,8 @@ void FitColours(const TrainingData& data, int num_threads,
 double QuickScore(NeuralBrdfModel model, const TrainingData& held_out,
                   int num_threads) {
   const int all = static_cast<int>(held_out.names.size());
-  const int some = std::min(all, 24), points = std::min(2048, held_out.num_points);
+  const int some = std::min(all, 24),
+            points = std::min(2048, held_out.num_points);
   TrainingData part = held_out.Slice(0, points);
   NeuralBrdfModel few = model;
   few.names.clear();
@@ -308,15 +309,16 @@ StatusOr<NeuralBrdfModel> TrainFlow(
     const bool last = trainer.state().step == options.steps;
     const bool stopped = stop != nullptr && stop->load();
     if (!options.checkpoint.empty() &&
-        (last || stopped || now - last_checkpoint > options.checkpoint_seconds)) {
+        (last || stopped ||
+         now - last_checkpoint > options.checkpoint_seconds)) {
       IBRDF_RETURN_IF_ERROR(
           SaveCheckpoint(options.checkpoint, identity, trainer.state()));
       last_checkpoint = now;
     }
     if (stopped) {
-      return Status(StatusCode::kInterrupted,
-                    "training stopped at step " +
-                        std::to_string(trainer.state().step));
+      return Status(
+          StatusCode::kInterrupted,
+          "training stopped at step " + std::to_string(trainer.state().step));
     }
     if (report && (last || now - last_report > options.report_seconds)) {
       report({trainer.state().step, trainer.state().seconds,

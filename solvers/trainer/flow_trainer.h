@@ -48,8 +48,8 @@ struct TrainerProgress {
 //
 // train: points to learn from. held_out: other points of the same
 // distributions, for the score. report: called about every report_seconds.
-// stop: set by the caller to end early; a checkpoint is written and kInterrupted
-// returned.
+// stop: set by the caller to end early; a checkpoint is written and
+// kInterrupted returned.
 StatusOr<NeuralBrdfModel> TrainFlow(
     const TrainingData& train, const TrainingData& held_out,
     const TrainerOptions& options,

@@ -1,11 +1,11 @@
 #include "solvers/trainer/training_data.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <random>
-
-#include <glog/logging.h>
 
 #include "ibrdf/brdf/brdf_grid.h"
 #include "io/merl.h"
@@ -19,7 +19,8 @@ TrainingData TrainingData::Slice(int begin, int end) const {
   TrainingData part;
   part.names = names;
   part.num_points = end - begin;
-  const auto copy = [&](const std::vector<float>& from, std::vector<float>* to) {
+  const auto copy = [&](const std::vector<float>& from,
+                        std::vector<float>* to) {
     for (size_t row = 0; row < from.size() / num_points; ++row) {
       const float* start = from.data() + row * num_points;
       to->insert(to->end(), start + begin, start + end);
@@ -35,7 +36,8 @@ std::vector<int> ShuffledBins(uint64_t seed) {
   for (int i = 0; i < kMerlThetaH; ++i) {
     for (int j = 0; j < kMerlThetaD; ++j) {
       for (int k = 0; k < kMerlPhiD; ++k) {
-        if (MerlBinAboveHorizon(i, j, k)) bins.push_back(MerlTable::Bin(i, j, k));
+        if (MerlBinAboveHorizon(i, j, k))
+          bins.push_back(MerlTable::Bin(i, j, k));
       }
     }
   }
@@ -73,7 +75,8 @@ StatusOr<TrainingData> ReadTrainingData(
         std::find_if(files.begin(), files.end(),
                      [&](const fs::path& f) { return f.stem() == name; });
     if (found == files.end()) {
-      return InvalidInput(folder, "has no material '" + name + "' to leave out");
+      return InvalidInput(folder,
+                          "has no material '" + name + "' to leave out");
     }
     files.erase(found);
   }

@@ -17,7 +17,8 @@ thread_local bool inside_parallel_for = false;
 class Pool {
  public:
   static Pool& Instance() {
-    static Pool* pool = new Pool();  // never destroyed: threads may outlive main
+    static Pool* pool =
+        new Pool();  // never destroyed: threads may outlive main
     return *pool;
   }
 

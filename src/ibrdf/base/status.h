@@ -44,13 +44,11 @@ inline Status InvalidInput(const std::string& where, const std::string& what) {
 template <typename T>
 class [[nodiscard]] StatusOr {
  public:
-  StatusOr(T value) : state_(std::move(value)) {}          // NOLINT
-  StatusOr(Status status) : state_(std::move(status)) {}   // NOLINT
+  StatusOr(T value) : state_(std::move(value)) {}         // NOLINT
+  StatusOr(Status status) : state_(std::move(status)) {}  // NOLINT
 
   bool ok() const { return std::holds_alternative<T>(state_); }
-  Status status() const {
-    return ok() ? OkStatus() : std::get<Status>(state_);
-  }
+  Status status() const { return ok() ? OkStatus() : std::get<Status>(state_); }
   const T& value() const& { return std::get<T>(state_); }
   T& value() & { return std::get<T>(state_); }
   T&& value() && { return std::get<T>(std::move(state_)); }
@@ -67,8 +65,8 @@ class [[nodiscard]] StatusOr {
 }  // namespace ibrdf
 
 // Returns early from a function that returns Status or StatusOr.
-#define IBRDF_RETURN_IF_ERROR(expr)               \
-  do {                                            \
-    ::ibrdf::Status ibrdf_status_ = (expr);       \
+#define IBRDF_RETURN_IF_ERROR(expr)                \
+  do {                                             \
+    ::ibrdf::Status ibrdf_status_ = (expr);        \
     if (!ibrdf_status_.ok()) return ibrdf_status_; \
   } while (false)

@@ -1,9 +1,9 @@
 #include "ibrdf/brdf/lobe_model.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <glog/logging.h>
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/flow/coupling_flow_reference.h"
@@ -74,8 +74,7 @@ void LobeModel::TabulateReference(const double* parameters, bool derivatives,
   const size_t n = grid_.num_nodes();
   const int stride = derivatives ? 1 + code_size() : 1;
   fields->resize(n * stride * num_lobes_);
-  const CouplingFlowReference<double> flow(model_.shape,
-                                           model_.weights.data());
+  const CouplingFlowReference<double> flow(model_.shape, model_.weights.data());
   for (int k = 0; k < num_lobes_; ++k) {
     const double* z = parameters + static_cast<size_t>(k) * lobe_size();
     float* value = fields->data() + static_cast<size_t>(k) * stride * n;
@@ -119,7 +118,8 @@ MerlTable LobeModel::ToMerl(const double* parameters) const {
   for (int i = 0; i < kMerlThetaH; ++i) {
     for (int j = 0; j < kMerlThetaD; ++j) {
       for (int k = 0; k < kMerlPhiD; ++k) {
-        if (MerlBinAboveHorizon(i, j, k)) bins.push_back(MerlTable::Bin(i, j, k));
+        if (MerlBinAboveHorizon(i, j, k))
+          bins.push_back(MerlTable::Bin(i, j, k));
       }
     }
   }

@@ -40,8 +40,8 @@ class LobeModel {
                          std::vector<float>* fields) const;
 
   // BRDF on the grid from shapes [num_lobes][stride fields][nodes].
-  BrdfGrid Combine(const double* parameters,
-                   const std::vector<float>& fields, int stride) const;
+  BrdfGrid Combine(const double* parameters, const std::vector<float>& fields,
+                   int stride) const;
 
   // At the bin centres of a MERL table; -1 in bins below the horizon.
   MerlTable ToMerl(const double* parameters) const;

@@ -1,10 +1,10 @@
 #include "ibrdf/flow/coupling_flow.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
-
-#include <glog/logging.h>
 
 #include "ibrdf/base/parallel_for.h"
 
@@ -240,9 +240,9 @@ void CouplingFlow::TrainingPass::Backward(const float* adjoint, float* gradient,
     for (int o = 0; o < first.out_count; ++o) {
       const float g = bias_[static_cast<size_t>(l) * v.rows + first.out + o];
       const size_t row = static_cast<size_t>(o) * shape.code_size;
-      float* gw =
-          codes + l * static_cast<size_t>(first.out_count) * shape.code_size +
-          row;
+      float* gw = codes +
+                  l * static_cast<size_t>(first.out_count) * shape.code_size +
+                  row;
       for (int k = 0; k < shape.code_size; ++k) {
         gw[k] += g * code_[k];
         code_gradient[k] += g * w[row + k];

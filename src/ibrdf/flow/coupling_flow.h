@@ -35,8 +35,8 @@ class CouplingFlow {
   // Also d log density / d code as [code_size][count] and / d x as [3][count];
   // either may be null.
   void LogDensityWithGradient(const float* x, int64_t count, const float* code,
-                              int num_threads, float* log_density,
-                              float* dcode, float* dx) const;
+                              int num_threads, float* log_density, float* dcode,
+                              float* dx) const;
 
   // Samples: x = F^-1(latent) with its log density (may be null).
   void Inverse(const float* latent, int64_t count, const float* code,

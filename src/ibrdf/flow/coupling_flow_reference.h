@@ -64,8 +64,7 @@ class CouplingFlowReference {
       const T root = sqrt(std::max(v0 * v0 + 2 * dv * c, T(0)));
       T a = v0 + root > T(0) ? 2 * c / (v0 + root) : T(0);
       a = std::clamp(a, T(0), T(1));
-      p[d.transformed] =
-          std::clamp(s.knot[b] + a * s.width[b], T(0), T(1));
+      p[d.transformed] = std::clamp(s.knot[b] + a * s.width[b], T(0), T(1));
       log_density += log((v0 + a * dv) / s.total);
     }
     std::copy(p, p + 3, x);
@@ -74,9 +73,9 @@ class CouplingFlowReference {
 
  private:
   struct Spline {
-    std::vector<T> width, slope;        // [bins], [bins + 1] before scaling
-    std::vector<T> knot, area_before;   // left knots, areas left of them
-    std::vector<T> softmax, squash;     // squash: ds/dp of the slopes
+    std::vector<T> width, slope;       // [bins], [bins + 1] before scaling
+    std::vector<T> knot, area_before;  // left knots, areas left of them
+    std::vector<T> softmax, squash;    // squash: ds/dp of the slopes
     T total = T(0);
   };
   struct LayerTape {

@@ -92,11 +92,10 @@ void Conditioner(const FlowView& v, int layer, const float* a, const float* b,
   const float* w = v.weights + layer * v.weights_per_layer;
   for (int i = 0; i < v.num_dense; ++i) {
     const FlowDense& d = v.dense[i];
-    const float* bias = i == 0 ? v.first_bias + layer * d.out_count
-                               : w + d.bias_offset;
-    Product<false>(d.out_count, kP, d.in_count, w + d.weight_offset,
-                   d.in_count, 1, rows + d.in * kP, kP, rows + d.out * kP, kP,
-                   bias);
+    const float* bias =
+        i == 0 ? v.first_bias + layer * d.out_count : w + d.bias_offset;
+    Product<false>(d.out_count, kP, d.in_count, w + d.weight_offset, d.in_count,
+                   1, rows + d.in * kP, kP, rows + d.out * kP, kP, bias);
     if (d.activation) ActivateRows(rows + d.out * kP, d.out_count);
   }
 }
@@ -107,9 +106,7 @@ struct Spline {
   Vf total;
 };
 
-inline Vf SlopeScale(Vf p) {
-  return kSlopeRangeF / (kSlopeRangeF + Abs(p));
-}
+inline Vf SlopeScale(Vf p) { return kSlopeRangeF / (kSlopeRangeF + Abs(p)); }
 
 inline void MakeSpline(int n, const float* params, int p, Spline* s) {
   for (int k = 0; k <= n; ++k) {
@@ -188,8 +185,7 @@ void Forward(const FlowView& v, const float* x, float* tape, float* u,
       const Vf a = Min((xi - r.knot) / r.width, Splat(1.0f));
       const Vf slope = r.v0 + a * r.dv;
       const Vf inverse = 1.0f / s.total;
-      const Vf y =
-          (r.area + a * r.width * (r.v0 + 0.5f * a * r.dv)) * inverse;
+      const Vf y = (r.area + a * r.width * (r.v0 + 0.5f * a * r.dv)) * inverse;
       Store(x_in + p, xi);
       Store(y_out + p, y);
       Store(ut + p, Clamp01(y));
@@ -222,10 +218,10 @@ inline void SplineAdjoint(int n, const float* params, int p, Vf xi, Vf y,
     const Vi below = r.bin > k;
     const Vi here = r.bin == k;
     const Vf both = 0.5f * s.width[k] * (Select(below, gn, zero) - share);
-    ge[k] += both + Select(here,
-                           gn * r.width * (a - 0.5f * a * a) +
-                               (1.0f - a) * per_slope,
-                           zero);
+    ge[k] +=
+        both +
+        Select(here, gn * r.width * (a - 0.5f * a * a) + (1.0f - a) * per_slope,
+               zero);
     ge[k + 1] +=
         both + Select(here, gn * r.width * 0.5f * a * a + a * per_slope, zero);
     gw[k] = Select(below, gn * (mean - slope) - da, zero) +
@@ -265,8 +261,8 @@ void Backward(const FlowView& v, const float* tape, const float* adjoint,
               float* scratch, float* weight_gradient, float* bias_gradient,
               float* dcode, float* dx) {
   const size_t layer_floats = static_cast<size_t>(v.rows + 2) * kP;
-  float* grows = scratch;                       // [rows][64]
-  float* gu = scratch + v.rows * kP;            // [3][64]
+  float* grows = scratch;                         // [rows][64]
+  float* gu = scratch + v.rows * kP;              // [3][64]
   float* transposed = scratch + 2 * v.rows * kP;  // [64][padded in_count]
   for (int i = 0; i < 3 * kP; i += kLanes) Store(gu + i, Vf{});
   if (dcode != nullptr) {
@@ -295,12 +291,12 @@ void Backward(const FlowView& v, const float* tape, const float* adjoint,
           for (int p = 0; p < kP; p += kLanes) sum += Load(g + o * kP + p);
           gb[o] += Sum(sum);
         }
-        const int padded = (d.in_count + 2 * kLanes - 1) / (2 * kLanes) *
-                           (2 * kLanes);
+        const int padded =
+            (d.in_count + 2 * kLanes - 1) / (2 * kLanes) * (2 * kLanes);
         TransposeRows(rows + d.in * kP, d.in_count, padded, transposed);
         float* gw = weight_gradient + l * v.padded_per_layer + d.padded_offset;
-        Product<true>(d.out_count, padded, kP, g, kP, 1, transposed, padded,
-                      gw, PaddedCount(d.in_count), nullptr);
+        Product<true>(d.out_count, padded, kP, g, kP, 1, transposed, padded, gw,
+                      PaddedCount(d.in_count), nullptr);
       }
       if (i > 0 || dx != nullptr || l > 0) {
         Product<true>(d.in_count, kP, d.out_count, w + d.weight_offset, 1,

@@ -43,8 +43,8 @@ struct FlowKernels {
   // [layers][rows], added to); dcode [code_size][64]; dx [3][64].
   // scratch: FlowScratchFloats(rows).
   void (*backward)(const FlowView&, const float* tape, const float* adjoint,
-                   float* scratch, float* weight_gradient,
-                   float* bias_gradient, float* dcode, float* dx);
+                   float* scratch, float* weight_gradient, float* bias_gradient,
+                   float* dcode, float* dx);
   // u -> x and its log density. scratch: [rows][64].
   void (*inverse)(const FlowView&, const float* u, float* scratch, float* x,
                   float* log_density);

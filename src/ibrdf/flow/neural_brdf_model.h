@@ -19,7 +19,7 @@ struct NeuralBrdfModel {
 
   // The embedding: one code per training distribution (material and channel).
   std::vector<std::string> names;  // "material.red" ...
-  std::vector<float> codes;        // [names.size()][code_size], in the unit ball
+  std::vector<float> codes;  // [names.size()][code_size], in the unit ball
   // log of the colour (raw MERL units) with which a code fits its table.
   std::vector<float> log_colours;  // [names.size()]
 
