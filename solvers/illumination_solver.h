@@ -17,7 +17,7 @@ namespace ibrdf {
 // share = solid angle of the texel relative to one at the equator. Log radiance
 // of natural light differs over an angle by about its root, with the heavy
 // tails of lamps, horizons and windows: the mean of |l_i - l_j| / sqrt(angle)
-// per channel is 0.25 to 1.9, 0.84 on average, over nine outdoor and indoor
+// per channel is 0.25 to 1.8, 0.68 on average, over nine outdoor and indoor
 // maps at 64x32 (experiments/light_statistics). edge_scale 0 turns it off.
 struct IlluminationPriorOptions {
   double weight_sigma = 1.0;

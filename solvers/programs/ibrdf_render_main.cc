@@ -15,6 +15,7 @@
 #include "io/merl.h"
 #include "io/png.h"
 #include "io/problem_file.h"
+#include "io/tone_map.h"
 #include "solvers/programs/common_flags.h"
 #include "solvers/render_scene.h"
 
@@ -57,26 +58,12 @@ class ProgressLine {
   int shown_ = -1;
 };
 
-// The brightest but one percent of the object's values reach white.
+// The brightest but one percent of the object's pixels reach white.
 Rgb8Image Preview(const Image& image, const Mask& mask) {
-  std::vector<float> values;
-  for (size_t p = 0; p < image.num_pixels(); ++p) {
-    if (mask.inside[p] == 0) continue;
-    values.insert(values.end(), &image.rgb[3 * p], &image.rgb[3 * p] + 3);
-  }
-  float white = 1.0f;
-  if (!values.empty()) {
-    const auto nth =
-        values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
-    std::nth_element(values.begin(), nth, values.end());
-    if (*nth > 0.0f) white = *nth;
-  }
+  const double exposure = ExposureOf(image, mask, 99.0);
   Rgb8Image out(image.width, image.height);
   for (size_t k = 0; k < image.rgb.size(); ++k) {
-    const double v = std::clamp(double{image.rgb[k]} / white, 0.0, 1.0);
-    const double encoded =
-        v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-    out.rgb[k] = static_cast<uint8_t>(std::lround(255.0 * encoded));
+    out.rgb[k] = EncodeSrgb(exposure * image.rgb[k]);
   }
   return out;
 }

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""Statistics of log radiance of environment maps, from which the illumination prior takes its scales.
+
+usage: light_statistics.py MAPS_DIR [--leave-out city,studio,forest] [--width 64]
+For every Radiance .hdr map (averaged to WIDTH x WIDTH/2): the mean over texels, weighted by solid angle, of
+|l_i - l_j| / sqrt(angle) for neighbours along a row; the root mean square of the same; the mean log radiance of
+red and blue less that of green; the standard deviation of log radiance. needs numpy
+"""
+import argparse
+import pathlib
+
+import numpy as np
+
+
+def read_rgbe(path):
+    """[H, W, 3] radiance of a new-RLE Radiance file with rows from the top."""
+    data = path.read_bytes()
+    start = data.index(b"\n\n") + 2
+    end = data.index(b"\n", start)
+    _, height, _, width = data[start:end].split()
+    height, width = int(height), int(width)
+    code = np.frombuffer(data, np.uint8, offset=end + 1)
+    rgbe = np.zeros((height, width, 4), np.uint8)
+    at = 0
+    for y in range(height):
+        at += 4
+        for channel in range(4):
+            x = 0
+            while x < width:
+                count = int(code[at])
+                at += 1
+                if count > 128:
+                    count -= 128
+                    rgbe[y, x:x + count, channel] = code[at]
+                    at += 1
+                else:
+                    rgbe[y, x:x + count, channel] = code[at:at + count]
+                    at += count
+                x += count
+    return rgbe[..., :3] * np.exp2(rgbe[..., 3:].astype(float) - 136)
+
+
+def statistics(radiance, width):
+    height, factor = width // 2, radiance.shape[1] // width
+    m = radiance.reshape(height, factor, width, factor, 3).mean((1, 3))
+    log = np.log(m + 1e-6 * m.max())
+    sine = np.sin(np.pi * (np.arange(height) + 0.5) / height)
+    weight = (sine / sine.mean())[:, None, None]
+    step = (np.roll(log, -1, 1) - log) / np.sqrt(2 * np.pi / width * sine)[:, None, None]
+    mean = (log * weight).mean((0, 1))
+    return ((np.abs(step) * weight).mean(), np.sqrt((step ** 2 * weight).mean()), mean[0] - mean[1], mean[2] - mean[1],
+            np.sqrt((((log - mean) ** 2) * weight).mean()))
+
+
+def main():
+    ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    ap.add_argument("maps", type=pathlib.Path)
+    ap.add_argument("--leave-out", default="city,studio,forest")
+    ap.add_argument("--width", type=int, default=64)
+    args = ap.parse_args()
+    left_out = set(args.leave_out.split(","))
+    rows = []
+    print(f"{'map':28s} {'mean |step|':>12s} {'rms step':>9s} {'red-green':>10s} {'blue-green':>11s} {'std':>6s}")
+    for path in sorted(args.maps.glob("*.hdr")):
+        if path.stem in left_out:
+            continue
+        rows.append(statistics(read_rgbe(path), args.width))
+        print(f"{path.stem:28s} {rows[-1][0]:12.2f} {rows[-1][1]:9.2f} {rows[-1][2]:10.2f} {rows[-1][3]:11.2f} {rows[-1][4]:6.2f}")
+    r = np.array(rows)
+    print(f"{'mean (chroma: rms)':28s} {r[:, 0].mean():12.2f} {r[:, 1].mean():9.2f} {np.sqrt((r[:, 2] ** 2).mean()):10.2f} "
+          f"{np.sqrt((r[:, 3] ** 2).mean()):11.2f} {r[:, 4].mean():6.2f}")
+
+
+if __name__ == "__main__":
+    main()
