@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -84,9 +85,11 @@ TEST_F(LobeModelTest, ReferenceDerivativesMatchDifferences) {
   std::vector<float> slow, up, down;
   lobes_.TabulateReference(parameters_.data(), true, &slow);
   const size_t n = kGrid.num_nodes();
-  // Tables hold floats: 6e-8 of a value over 2h = 2e-3 is 3e-5 of it, and a
-  // kink of the second derivative of a spline within h adds h times its size.
+  // Tables hold floats: 6e-8 of a value over 2h = 2e-3 is 3e-5 of it, and
+  // h^2 / 6 times a third derivative of hundreds as much. A knot of a spline
+  // passes a node within h now and then, where the derivative jumps.
   constexpr double kStep = 1e-3, kTolerance = 2e-3;
+  constexpr double kMostAtKnots = 0.02;  // share of nodes
   for (int k = 0; k < 2; ++k) {
     for (int d = 0; d < 4; ++d) {
       std::vector<double> p = parameters_;
@@ -94,17 +97,21 @@ TEST_F(LobeModelTest, ReferenceDerivativesMatchDifferences) {
       lobes_.TabulateReference(p.data(), false, &up);
       p[7 * k + d] -= 2 * kStep;
       lobes_.TabulateReference(p.data(), false, &down);
-      double scale = 0.0, error = 0.0;
+      double scale = 0.0;
+      std::vector<double> errors;
       for (size_t i = 0; i < n; ++i) {
         const double value = slow[5 * k * n + i];
         const double numeric =
             (double{up[k * n + i]} - down[k * n + i]) / (2 * kStep) / value;
         const double analytic = slow[(5 * k + 1 + d) * n + i] / value;
         scale = std::max(scale, std::abs(analytic));
-        error = std::max(error, std::abs(numeric - analytic));
+        errors.push_back(std::abs(numeric - analytic));
       }
       EXPECT_GT(scale, 0.05);  // codes matter in this model
-      EXPECT_LE(error, kTolerance * (1 + scale)) << k << " " << d;
+      const auto wrong =
+          std::count_if(errors.begin(), errors.end(),
+                        [&](double e) { return e > kTolerance * (1 + scale); });
+      EXPECT_LE(wrong, kMostAtKnots * n) << k << " " << d;
     }
   }
 }
