@@ -142,7 +142,9 @@ Status WriteModel(const NeuralBrdfModel& model, const std::string& path) {
                                  {"exponent", model.exponent},
                                  {"names", model.names},
                                  {"note", model.note}};
-  const std::string text = header.dump();
+  // A name may come from a file whose name is not UTF-8: replaced, not thrown.
+  const std::string text = header.dump(
+      -1, ' ', false, nlohmann::json::error_handler_t::replace);
   std::string bytes = kMagic + std::to_string(kVersion) + "\n" +
                       std::to_string(text.size()) + "\n" + text;
   for (const std::vector<float>* values :

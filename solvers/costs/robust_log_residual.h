@@ -18,7 +18,8 @@ struct RobustLogLikelihood {
 
 // The residual of t and dr/dt; both finite for any finite t.
 inline double RobustResidual(double t, double delta, double* dr_dt) {
-  const double root = std::sqrt(t * t + delta * delta);
+  // hypot: t * t may overflow.
+  const double root = std::hypot(t, delta);
   // rho = t^2 / (root + delta): no cancellation at small t.
   const double s = std::sqrt(2.0 / (root + delta));
   if (dr_dt != nullptr) *dr_dt = 1.0 / (root * s);

@@ -1,0 +1,228 @@
+#include "solvers/inverse_rendering.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/solvers/solver_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+constexpr int kSize = 12;  // pixels a side
+
+// A sphere of the model's first material under a smooth map; a budget of time
+// that no test needs, so that iterations alone end it.
+class InverseRenderingTest : public ::testing::TestWithParam<ProblemKind> {
+ protected:
+  InverseRenderingTest() {
+    problem_.points = SpherePoints(kSize);
+    problem_.image = Image(kSize, kSize);
+    problem_.model = TinyModel(3);
+    problem_.transport = TinyTransportOptions();
+    problem_.num_threads = 1;
+    problem_.map_width = 16;
+    problem_.map_height = 8;
+    problem_.illumination_prior = IlluminationPrior::kNone;
+    problem_.solver.seconds = 1e6;
+    problem_.solver.max_iterations = 2;
+    SetKind(ProblemKind::kJoint);
+    // Not a code of the embedding, so that there is something to find.
+    parameters_ = {0.3,  -0.4, 0.2, 0.1,  5.0, 4.6, 4.2,
+                   -0.5, 0.1,  0.3, -0.2, 3.0, 3.5, 3.3};
+    const LobeModel lobes(problem_.model, 2, problem_.transport.grid, 1);
+    std::vector<float> fields;
+    lobes.Tabulate(parameters_.data(), false, &fields);
+    truth_ = lobes.Combine(parameters_.data(), fields, 1);
+    const Transport transport(problem_.points, 8, 16, problem_.transport);
+    std::vector<double> E(3 * problem_.points.size());
+    transport.Render(truth_, map_.rgb.data(), E.data());
+    for (size_t i = 0; i < E.size(); ++i) {
+      problem_.image.rgb[3 * problem_.points[i / 3].pixel + i % 3] =
+          static_cast<float>(E[i] * std::exp(0.02 * std::sin(11.0 * i)));
+    }
+  }
+
+  void SetKind(ProblemKind kind) {
+    problem_.kind = kind;
+    problem_.known_map.reset();
+    problem_.known_brdf.reset();
+    if (kind == ProblemKind::kReflectance) problem_.known_map = map_;
+    if (kind == ProblemKind::kIllumination) problem_.known_brdf = truth_;
+  }
+  Estimate Solve(const std::atomic<bool>* stop = nullptr) const {
+    const StatusOr<Estimate> e = SolveInverseRendering(problem_, nullptr, stop);
+    EXPECT_TRUE(e.ok()) << e.status().message();
+    return *e;
+  }
+  // All parts are there and finite.
+  void ExpectWhole(const Estimate& e) const {
+    const bool lobes = problem_.kind != ProblemKind::kIllumination;
+    EXPECT_EQ(lobes ? size_t{14} : size_t{0}, e.lobe_parameters.size());
+    EXPECT_EQ(lobes ? size_t{3} * kMerlBins : size_t{0}, e.brdf.raw.size());
+    ASSERT_EQ(16, e.map.width);
+    ASSERT_EQ(8, e.map.height);
+    ASSERT_EQ(size_t{3 * 128}, e.map.rgb.size());
+    ASSERT_EQ(problem_.image.rgb.size(), e.render.rgb.size());
+    for (const double v : e.lobe_parameters) EXPECT_TRUE(std::isfinite(v));
+    for (const double v : e.brdf.raw) ASSERT_TRUE(std::isfinite(v));
+    for (const float v : e.map.rgb) EXPECT_TRUE(std::isfinite(v) && v >= 0.0f);
+    for (const float v : e.render.rgb) EXPECT_TRUE(std::isfinite(v));
+    EXPECT_TRUE(std::isfinite(e.misfit));
+    EXPECT_GT(e.scale, 0.0);
+    EXPECT_GT(e.epsilon, 0.0);
+    ASSERT_FALSE(e.trace.empty());
+    for (const TraceEntry& t : e.trace) {
+      EXPECT_TRUE(std::isfinite(t.cost)) << t.stage;
+      EXPECT_NEAR(t.cost,
+                  t.likelihood + t.reflectance_prior + t.illumination_prior,
+                  1e-9 * std::abs(t.cost));
+    }
+  }
+
+  InverseProblem problem_;
+  const Image map_ = SmoothMap(8, 16);
+  std::vector<double> parameters_;
+  BrdfGrid truth_;
+};
+
+TEST_P(InverseRenderingTest, ImprovesOnItsStartAndRendersItsEstimate) {
+  SetKind(GetParam());
+  problem_.solver.max_iterations = 6;
+  const Estimate e = Solve();
+  ExpectWhole(e);
+  EXPECT_EQ(StatusCode::kOk, e.status.code()) << e.status.message();
+  EXPECT_EQ(static_cast<int64_t>(problem_.points.size()), e.pixels_used);
+  // The misfit of the start is of order 1; the wobble on the image is 0.013.
+  EXPECT_LT(e.misfit, 0.5 * e.trace.front().misfit);
+  EXPECT_LT(e.misfit, 0.1);
+  EXPECT_EQ(e.misfit, e.trace.back().misfit);
+  double sum = 0.0;
+  for (size_t i = 0; i < 3 * problem_.points.size(); ++i) {
+    const size_t at = 3 * problem_.points[i / 3].pixel + i % 3;
+    ASSERT_GT(e.render.rgb[at], 0.0f);
+    sum += std::abs(std::log(e.render.rgb[at] + e.epsilon) -
+                    std::log(problem_.image.rgb[at] + e.epsilon));
+  }
+  // The render is stored as float.
+  EXPECT_NEAR(sum / (3.0 * problem_.points.size()), e.misfit, 1e-6);
+  if (GetParam() == ProblemKind::kReflectance) {
+    EXPECT_EQ(map_.rgb, e.map.rgb);
+  }
+}
+
+TEST_P(InverseRenderingTest, ThreadsDoNotChangeBits) {
+  SetKind(GetParam());
+  const Estimate one = Solve();
+  problem_.num_threads = 2;
+  problem_.transport.num_threads = 2;
+  const Estimate two = Solve();
+  EXPECT_EQ(one.lobe_parameters, two.lobe_parameters);
+  EXPECT_EQ(one.map.rgb, two.map.rgb);
+  EXPECT_EQ(one.render.rgb, two.render.rgb);
+  EXPECT_EQ(one.brdf.raw, two.brdf.raw);
+  EXPECT_EQ(one.misfit, two.misfit);
+}
+
+TEST_P(InverseRenderingTest, StopFlagLeavesAWholeEstimate) {
+  SetKind(GetParam());
+  const std::atomic<bool> stop{true};
+  const Estimate e = Solve(&stop);
+  EXPECT_EQ(StatusCode::kInterrupted, e.status.code());
+  ExpectWhole(e);
+}
+
+TEST_P(InverseRenderingTest, StopFromProgressEndsEarly) {
+  SetKind(GetParam());
+  std::atomic<bool> stop{false};
+  problem_.solver.max_iterations = 1000;
+  int reports = 0;
+  const StatusOr<Estimate> e = SolveInverseRendering(
+      problem_,
+      [&](const TraceEntry&, double share) {
+        EXPECT_TRUE(share >= 0.0 && share <= 1.0);
+        if (++reports == 2) stop = true;
+      },
+      &stop);
+  ASSERT_TRUE(e.ok());
+  EXPECT_EQ(StatusCode::kInterrupted, e->status.code());
+  ExpectWhole(*e);
+}
+
+TEST_P(InverseRenderingTest, NoIterationsKeepTheStart) {
+  SetKind(GetParam());
+  problem_.solver.max_iterations = 0;
+  const Estimate e = Solve();
+  ExpectWhole(e);
+  EXPECT_EQ(StatusCode::kNoImprovement, e.status.code());
+}
+
+TEST_P(InverseRenderingTest, ImageWithoutAValueIsRefused) {
+  SetKind(GetParam());
+  for (const float value :
+       {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(),
+        std::numeric_limits<float>::infinity()}) {
+    std::fill(problem_.image.rgb.begin(), problem_.image.rgb.end(), value);
+    const Status s = SolveInverseRendering(problem_, nullptr, nullptr).status();
+    EXPECT_EQ(StatusCode::kInvalidInput, s.code()) << value;
+    EXPECT_NE(std::string::npos, s.message().find("image"));
+  }
+}
+
+TEST_P(InverseRenderingTest, OnePixelAndWildPixelsGiveFiniteEstimates) {
+  SetKind(GetParam());
+  problem_.image.At(6, 6)[0] = 1e9f;
+  problem_.image.At(5, 6)[1] = std::numeric_limits<float>::quiet_NaN();
+  problem_.image.At(4, 6)[2] = -3.0f;
+  problem_.image.At(7, 6)[2] = 1e-9f;
+  Estimate e = Solve();
+  ExpectWhole(e);
+  EXPECT_EQ(static_cast<int64_t>(problem_.points.size()) - 2, e.pixels_used);
+  problem_.points = {problem_.points[problem_.points.size() / 2]};
+  ExpectWhole(Solve());
+}
+
+INSTANTIATE_TEST_SUITE_P(Problems, InverseRenderingTest,
+                         ::testing::Values(ProblemKind::kJoint,
+                                           ProblemKind::kReflectance,
+                                           ProblemKind::kIllumination),
+                         [](const ::testing::TestParamInfo<ProblemKind>& p) {
+                           return p.param == ProblemKind::kJoint ? "Joint"
+                                  : p.param == ProblemKind::kReflectance
+                                      ? "Reflectance"
+                                      : "Illumination";
+                         });
+
+TEST_F(InverseRenderingTest, TheImagesUnitMovesTheMapAlone) {
+  SetKind(ProblemKind::kIllumination);
+  const Estimate one = Solve();
+  for (float& v : problem_.image.rgb) v *= 1000.0f;
+  const Estimate scaled = Solve();
+  // Rounding, amplified by a handful of iterations.
+  EXPECT_NEAR(one.misfit, scaled.misfit, 0.05 * one.misfit);
+  for (size_t i = 0; i < one.map.rgb.size(); ++i) {
+    EXPECT_NEAR(std::log(one.map.rgb[i] * 1000), std::log(scaled.map.rgb[i]),
+                0.05);
+  }
+}
+
+TEST_F(InverseRenderingTest, UNetPriorRunsEndToEnd) {
+  problem_.illumination_prior = IlluminationPrior::kUNet;
+  problem_.solver.max_iterations = 1;
+  const Estimate e = Solve();
+  ExpectWhole(e);
+  EXPECT_LT(e.misfit, e.trace.front().misfit);
+}
+
+TEST_F(InverseRenderingTest, GivenScaleAndEpsilonAreUsed) {
+  problem_.scale = 0.125;
+  problem_.epsilon = 0.25;
+  const Estimate e = Solve();
+  EXPECT_EQ(0.125, e.scale);
+  EXPECT_EQ(0.25, e.epsilon);
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,228 @@
+#include "solvers/solve_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "ibrdf/image/rgb8_image.h"
+#include "io/exr.h"
+#include "io/image_file.h"
+#include "io/merl.h"
+#include "io/model_file.h"
+#include "io/png.h"
+#include "io/problem_file.h"
+#include "tests/solvers/solver_testing.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+// A folder with an image of 12x10, its mask, a model and a problem file.
+class SolveProblemTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    Image image(12, 10);
+    for (size_t i = 0; i < image.rgb.size(); ++i) {
+      image.rgb[i] = static_cast<float>(1.0 + 0.5 * std::sin(0.1 * i));
+    }
+    ASSERT_TRUE(WriteExr(image, dir_.File("input.exr")).ok());
+    ASSERT_TRUE(WriteExr(SmoothMap(8, 16), dir_.File("truth.exr")).ok());
+    WriteMask("mask.png", 12, 10);
+    ASSERT_TRUE(WriteModel(TinyModel(2), dir_.File("tiny.ibrdf")).ok());
+    WriteBytes(dir_.File("joint.yaml"),
+               "problem: joint\n"
+               "image: {file: input.exr, mask: mask.png}\n"
+               "geometry: {sphere: {}}\n"
+               "reflectance: {model: tiny.ibrdf, lobes: 2}\n"
+               "illumination: {width: 16, height: 8, prior: none}\n"
+               "solver: {seconds: 10, max_iterations: 1}\n"
+               "truth: {illumination: truth.exr}\n");
+  }
+  // White but for the last column.
+  void WriteMask(const std::string& name, int width, int height) const {
+    Rgb8Image mask(width, height);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x + 1 < width; ++x) {
+        for (int c = 0; c < 3; ++c) {
+          mask.rgb[3 * (static_cast<size_t>(y) * width + x) + c] = 255;
+        }
+      }
+    }
+    ASSERT_TRUE(WritePng(mask, dir_.File(name)).ok());
+  }
+  StatusOr<InverseProblem> Load(const std::vector<std::string>& overrides) {
+    const StatusOr<Problem> problem =
+        ReadProblem(dir_.File("joint.yaml"), overrides);
+    if (!problem.ok()) return problem.status();
+    problem_ = *problem;
+    return LoadInverseProblem(problem_, 5, 1);
+  }
+  void ExpectRefused(const std::vector<std::string>& overrides,
+                     const std::string& word) {
+    const Status s = Load(overrides).status();
+    EXPECT_EQ(StatusCode::kInvalidInput, s.code()) << word;
+    EXPECT_NE(std::string::npos, s.message().find(word)) << s.message();
+    EXPECT_EQ(std::string::npos, s.message().find('\n'));
+  }
+
+  const TempDir dir_;
+  Problem problem_;
+};
+
+TEST_F(SolveProblemTest, LoadsWhatTheFileNames) {
+  const StatusOr<InverseProblem> p = Load({});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  EXPECT_EQ(ProblemKind::kJoint, p->kind);
+  EXPECT_EQ(12, p->image.width);
+  EXPECT_EQ(10, p->image.height);
+  EXPECT_EQ(6, p->model.num_codes());
+  EXPECT_EQ(uint64_t{5}, p->seed);
+  EXPECT_FALSE(p->known_map.has_value());
+  EXPECT_FALSE(p->known_brdf.has_value());
+  ASSERT_FALSE(p->points.empty());
+  for (const ShadingPoint& point : p->points) EXPECT_NE(11, point.pixel % 12);
+  EXPECT_EQ(uint64_t{9}, Load({"solver.seed=9"})->seed);
+}
+
+TEST_F(SolveProblemTest, KnownPartsAreLoadedAtTheProblemsSize) {
+  const StatusOr<InverseProblem> p =
+      Load({"problem=reflectance",
+            "illumination={known: truth.exr, width: 8, height: 4}"});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  ASSERT_TRUE(p->known_map.has_value());
+  EXPECT_EQ(p->map_width, p->known_map->width);
+  EXPECT_EQ(p->map_height, p->known_map->height);
+  const StatusOr<InverseProblem> q =
+      Load({"problem=illumination", "reflectance={known: {lambertian: 0.5}}"});
+  if (q.ok()) {
+    ASSERT_TRUE(q->known_brdf.has_value());
+    EXPECT_NEAR(0.5 / kPi, q->known_brdf->values[0], 1e-5);
+  } else {
+    ADD_FAILURE() << q.status().message();
+  }
+}
+
+TEST_F(SolveProblemTest, MissingFilesAreNamed) {
+  ExpectRefused({"image.file=nowhere.exr"}, "nowhere.exr");
+  ExpectRefused({"image.mask=nomask.png"}, "nomask.png");
+  ExpectRefused({"reflectance.model=nomodel.ibrdf"}, "nomodel.ibrdf");
+  ExpectRefused({"geometry={mesh: nomesh.obj}"}, "nomesh.obj");
+  ExpectRefused({"problem=illumination", "reflectance={known: no.binary}"},
+                "no.binary");
+  ExpectRefused({"problem=reflectance", "illumination={known: no.exr}"},
+                "no.exr");
+}
+
+TEST_F(SolveProblemTest, MaskOfAnotherSizeIsRefused) {
+  WriteMask("small.png", 11, 10);
+  ExpectRefused({"image.mask=small.png"}, "12x10");
+}
+
+TEST_F(SolveProblemTest, EmptyMaskIsRefused) {
+  WriteMask("one.png", 12, 10);
+  ASSERT_TRUE(WritePng(Rgb8Image(12, 10), dir_.File("black.png")).ok());
+  ExpectRefused({"image.mask=black.png"}, "");
+}
+
+TEST_F(SolveProblemTest, ModelWithoutCodesIsRefused) {
+  ASSERT_TRUE(WriteModel(TinyModel(0), dir_.File("bare.ibrdf")).ok());
+  ExpectRefused({"reflectance.model=bare.ibrdf"}, "bare.ibrdf");
+}
+
+TEST_F(SolveProblemTest, MethodThatIsNotThereIsRefused) {
+  ExpectRefused({"solver.method=adam"}, "solver.method");
+}
+
+TEST_F(SolveProblemTest, ResultsAreWholeAndReadBack) {
+  const StatusOr<InverseProblem> p = Load({});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  InverseProblem inverse = *p;
+  inverse.transport = TinyTransportOptions();
+  const StatusOr<Estimate> e = SolveInverseRendering(inverse, nullptr, nullptr);
+  ASSERT_TRUE(e.ok()) << e.status().message();
+  const std::string out = dir_.File("out/deep");
+  std::string text;
+  const Status written = WriteResults(problem_, inverse, *e, out, &text);
+  ASSERT_TRUE(written.ok()) << written.message();
+
+  const char* names[] = {"result.json",      "brdf.binary", "brdf.json",
+                         "illumination.exr", "render.exr",  "residual.exr",
+                         "overview.png",     "render.png",  "residual.png",
+                         "illumination.png", "brdf.png",    "input.png"};
+  for (const char* name : names) {
+    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(out)) {
+    // Nothing temporary is left.
+    const std::string ext = entry.path().extension();
+    EXPECT_TRUE(ext == ".json" || ext == ".binary" || ext == ".exr" ||
+                ext == ".png" || ext == ".html")
+        << entry.path();
+  }
+  EXPECT_EQ(e->brdf.raw, ReadMerl(out + "/brdf.binary")->raw);
+  EXPECT_EQ(16, ReadImage(out + "/illumination.exr")->width);
+  EXPECT_EQ(12, ReadImage(out + "/render.exr")->width);
+
+  const nlohmann::json result =
+      nlohmann::json::parse(ReadBytes(out + "/result.json"));
+  for (const char* key : {"status", "problem", "effects", "metrics", "trace"}) {
+    EXPECT_TRUE(result.contains(key)) << key;
+  }
+  for (const char* key : {"seconds", "misfit", "illumination_relative_log_rmse",
+                          "illumination_relative_log_rmse_aligned"}) {
+    EXPECT_TRUE(result["metrics"].contains(key)) << key;
+    EXPECT_NE(std::string::npos, text.find(key));
+  }
+  EXPECT_FALSE(result["metrics"].contains("brdf_log_rmse"));  // no truth given
+  ASSERT_EQ(e->trace.size(), result["trace"].size());
+  for (const char* key : {"seconds", "cost", "likelihood", "reflectance_prior",
+                          "illumination_prior"}) {
+    EXPECT_TRUE(result["trace"][0].contains(key)) << key;
+  }
+  EXPECT_EQ(e->misfit, result["metrics"]["misfit"].get<double>());
+
+  const nlohmann::json brdf =
+      nlohmann::json::parse(ReadBytes(out + "/brdf.json"));
+  ASSERT_EQ(size_t{2}, brdf["lobes"].size());
+  for (int k = 0; k < 2; ++k) {
+    for (int d = 0; d < 4; ++d) {
+      EXPECT_EQ(e->lobe_parameters[7 * k + d],
+                brdf["lobes"][k]["code"][d].get<double>());
+    }
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_DOUBLE_EQ(std::exp(e->lobe_parameters[7 * k + 4 + c]),
+                       brdf["lobes"][k]["colour_raw_merl"][c].get<double>());
+    }
+  }
+}
+
+TEST_F(SolveProblemTest, ResultsOfAKnownReflectanceHoldNoBrdf) {
+  const StatusOr<InverseProblem> p =
+      Load({"problem=illumination", "reflectance={known: {lambertian: 0.5}}"});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  InverseProblem inverse = *p;
+  const StatusOr<Estimate> e = SolveInverseRendering(inverse, nullptr, nullptr);
+  ASSERT_TRUE(e.ok()) << e.status().message();
+  const std::string out = dir_.File("out");
+  ASSERT_TRUE(WriteResults(problem_, inverse, *e, out, nullptr).ok());
+  EXPECT_TRUE(std::filesystem::exists(out + "/result.json"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/brdf.binary"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/brdf.json"));
+}
+
+TEST_F(SolveProblemTest, FolderThatCannotBeMadeIsNamed) {
+  const StatusOr<InverseProblem> p = Load({"solver.max_iterations=0"});
+  ASSERT_TRUE(p.ok());
+  const StatusOr<Estimate> e = SolveInverseRendering(*p, nullptr, nullptr);
+  ASSERT_TRUE(e.ok());
+  const std::string out = dir_.File("input.exr") + "/out";
+  const Status s = WriteResults(problem_, *p, *e, out, nullptr);
+  EXPECT_EQ(StatusCode::kInvalidInput, s.code());
+  EXPECT_NE(std::string::npos, s.message().find(out));
+}
+
+}  // namespace
+}  // namespace ibrdf
