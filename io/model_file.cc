@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.h"
+#include "io/checksum.h"
 
 namespace ibrdf {
 namespace {
@@ -18,14 +19,6 @@ constexpr int kVersion = 1;
 constexpr size_t kMaxBytes = size_t{256} << 20;
 // Rounding of a code that was projected to the unit sphere in float.
 constexpr double kBallSlack = 1e-4;
-
-uint64_t Fnv1a(const char* data, size_t size) {
-  uint64_t hash = 0xcbf29ce484222325ULL;
-  for (size_t i = 0; i < size; ++i) {
-    hash = (hash ^ static_cast<unsigned char>(data[i])) * 0x100000001b3ULL;
-  }
-  return hash;
-}
 
 // Takes the text up to the next newline off `rest`.
 bool TakeLine(const std::string& bytes, size_t* at, std::string* line) {
@@ -143,8 +136,8 @@ Status WriteModel(const NeuralBrdfModel& model, const std::string& path) {
                                  {"names", model.names},
                                  {"note", model.note}};
   // A name may come from a file whose name is not UTF-8: replaced, not thrown.
-  const std::string text = header.dump(
-      -1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const std::string text =
+      header.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   std::string bytes = kMagic + std::to_string(kVersion) + "\n" +
                       std::to_string(text.size()) + "\n" + text;
   for (const std::vector<float>* values :

@@ -7,12 +7,13 @@
 #include <sstream>
 
 #include "io/atomic_file.h"
+#include "io/checksum.h"
 #include "solvers/trainer/flow_trainer.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr char kMagic[] = "ibrdf-checkpoint 1\n";
+constexpr char kMagic[] = "ibrdf-checkpoint 2\n";
 constexpr size_t kMaxBytes = size_t{1} << 30;
 
 template <typename T>
@@ -64,6 +65,8 @@ Status SaveCheckpoint(const std::string& path, const std::string& identity,
   Append(state.code_adam.mean, &bytes);
   Append(state.code_adam.square, &bytes);
   Append(state.code_steps, &bytes);
+  const uint64_t checksum = Fnv1a(bytes.data(), bytes.size());
+  bytes.append(reinterpret_cast<const char*>(&checksum), sizeof(checksum));
   return WriteFileAtomically(path, bytes);
 }
 
@@ -84,10 +87,19 @@ StatusOr<bool> LoadCheckpoint(const std::string& path,
   const size_t floats = 3 * (state->weights.size() + state->codes.size());
   const size_t expected = at + sizeof(state->step) + sizeof(state->seconds) +
                           floats * sizeof(float) +
-                          state->code_steps.size() * sizeof(int64_t);
+                          state->code_steps.size() * sizeof(int64_t) +
+                          sizeof(uint64_t);
   if (bytes->size() != expected) {
     return InvalidInput(path, "truncated checkpoint, expected " +
                                   std::to_string(expected) + " bytes");
+  }
+  uint64_t checksum = 0;
+  std::memcpy(&checksum, bytes->data() + expected - sizeof(checksum),
+              sizeof(checksum));
+  if (checksum != Fnv1a(bytes->data(), expected - sizeof(checksum))) {
+    return InvalidInput(path + ": checksum",
+                        "does not match, the file is damaged; remove it to "
+                        "start afresh");
   }
   std::memcpy(&state->step, bytes->data() + at, sizeof(state->step));
   at += sizeof(state->step);

@@ -38,11 +38,12 @@ inline IlluminationUnetOptions TinyUnetOptions() {
   return options;
 }
 
-// A sphere of some 20 points under a map of 16x8, two lobes of a random model.
+// A sphere of some 20 points under a map of 16x8, two lobes of a smooth random
+// model.
 struct TinyScene {
   const std::vector<ShadingPoint> points = SpherePoints(5);
   const Transport transport{points, 8, 16, TinyTransportOptions()};
-  const NeuralBrdfModel model = TinyModel(2);
+  const NeuralBrdfModel model = SmoothTinyModel(2);
   const LobeModel lobes{model, 2, TinyTransportOptions().grid, 1};
 
   // Different codes inside the ball, colours of a mid-grey surface.

@@ -1,5 +1,6 @@
 // A small random BRDF model, quick to evaluate, for tests of what uses one.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -44,6 +45,23 @@ inline NeuralBrdfModel TinyModel(int materials, uint64_t seed = 1,
     model.log_colours.push_back(4.0f + 0.5f * normal(rng));
   }
   model.note = "random";
+  return model;
+}
+
+// The same with the knots of every spline at fixed places: a density is then
+// smooth in the code, which differences over wide steps need. (Where a code
+// moves knots, the derivative jumps as one passes a node of the grid.)
+inline NeuralBrdfModel SmoothTinyModel(int materials, uint64_t seed = 1) {
+  NeuralBrdfModel model = TinyModel(materials, seed);
+  const DenseLayer last = model.shape.DenseLayers().back();
+  // Rows of the last layer: bins + 1 slopes, then the bins' widths.
+  const int slopes = (model.shape.bins + 1) * last.in_count;
+  for (int l = 0; l < model.shape.layers; ++l) {
+    float* layer = model.weights.data() + l * model.shape.WeightsPerLayer();
+    std::fill(layer + last.weight_offset + slopes,
+              layer + last.weight_offset + last.out_count * last.in_count,
+              0.0f);
+  }
   return model;
 }
 
