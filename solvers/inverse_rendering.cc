@@ -46,6 +46,9 @@ double Now() {
 struct State {
   std::vector<double> lobes;  // empty: known
   std::vector<float> light;   // empty: known
+  // Where the prior of `light` is centred: a constant map at the image's level,
+  // whatever the image's unit.
+  std::vector<float> light_mean;
 };
 
 // A set of points with its observations, and the lobes on its BRDF grid.
@@ -131,8 +134,6 @@ class Estimator {
       } else {
         light_ = MakeFreeIllumination(problem_.map_width, problem_.map_height);
       }
-      const double zero[3] = {0, 0, 0};
-      light_mean_ = light_->ConstantMap(zero);
     }
     return OkStatus();
   }
@@ -189,6 +190,8 @@ class Estimator {
                       std::vector<float>* map_out = nullptr) {
     TraceEntry entry;
     entry.stage = stage;
+    entry.scale = likelihood_.scale;
+    entry.pixels = level->observed.num_valid;
     const Transport& transport = TransportOf(level);
     const BrdfGrid grid = GridOf(*level, state);
     std::vector<double> E(level->observed.radiance.size());
@@ -196,7 +199,7 @@ class Estimator {
     if (light_unknown()) {
       const LightOperator light = transport.ByLight(grid);
       const IlluminationCost cost = EvaluateIllumination(
-          light, level->observed, LightOptions(0.0), light_mean_,
+          light, level->observed, LightOptions(0.0), state.light_mean,
           state.light.data(), light_.get(), &E, &map);
       entry.illumination_prior = cost.prior;
     } else {
@@ -251,8 +254,8 @@ class Estimator {
     IlluminationStepOptions o = LightOptions(share);
     o.max_iterations = iterations;
     o.max_cg_iterations = cg_iterations;
-    SolveIllumination(light, level->observed, o, light_mean_, light_.get(),
-                      &state->light);
+    SolveIllumination(light, level->observed, o, state->light_mean,
+                      light_.get(), &state->light);
   }
 
   void LobeStep(Level* level, int iterations, double share, State* state) {
@@ -294,12 +297,16 @@ class Estimator {
       }
     }
     light_->ShiftChannels(back, state->light.data());
+    light_->ShiftChannels(back, state->light_mean.data());
   }
 
   // The state with a constant map (where unknown) at the image's level, or with
   // the colours at the image's level where the light is known.
   void MatchLevel(Level* level, State* state) {
-    if (light_unknown()) state->light = light_mean_;
+    if (light_unknown()) {
+      const double zero[3] = {0, 0, 0};
+      state->light = state->light_mean = light_->ConstantMap(zero);
+    }
     std::vector<double> E;
     Evaluate("level", level, *state, &E);
     const Observations& o = level->observed;
@@ -312,6 +319,7 @@ class Estimator {
     }
     if (light_unknown()) {
       light_->ShiftChannels(shift, state->light.data());
+      state->light_mean = state->light;
     } else if (lobes_unknown()) {
       for (int k = 0; k < lobes().num_lobes(); ++k) {
         for (int c = 0; c < 3; ++c) {
@@ -485,7 +493,6 @@ class Estimator {
   std::unique_ptr<Level> full_, coarse_, thin_;
   LobePrior prior_;
   std::unique_ptr<IlluminationModel> light_;
-  std::vector<float> light_mean_;
   State first_state_;
   std::string start_name_;
   std::vector<TraceEntry> trace_;

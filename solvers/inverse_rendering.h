@@ -41,11 +41,14 @@ struct InverseProblem {
   TransportOptions transport;
 };
 
-// One line of the trace: the best state after a step.
+// One line of the trace: the best state after a step. Costs of lines with another
+// scale or another number of pixels do not compare; misfits do.
 struct TraceEntry {
   std::string stage;
   double seconds = 0.0;
-  double cost = 0.0;        // likelihood + priors, nats, at the final scale b
+  double scale = 0.0;       // b of the likelihood then
+  int64_t pixels = 0;       // that took part: the first stages thin them
+  double cost = 0.0;        // likelihood + priors, nats
   double likelihood = 0.0;  // sum |log E - log I| / b, smoothed
   double reflectance_prior = 0.0;
   double illumination_prior = 0.0;

@@ -92,6 +92,8 @@ Json TraceJson(const Estimate& estimate) {
   for (const TraceEntry& t : estimate.trace) {
     trace.push_back({{"stage", t.stage},
                      {"seconds", t.seconds},
+                     {"scale", t.scale},
+                     {"pixels", t.pixels},
                      {"cost", Metric(t.cost)},
                      {"likelihood", Metric(t.likelihood)},
                      {"reflectance_prior", Metric(t.reflectance_prior)},

@@ -195,6 +195,19 @@ INSTANTIATE_TEST_SUITE_P(Problems, InverseRenderingTest,
                                       : "Illumination";
                          });
 
+TEST_F(InverseRenderingTest, TheImagesUnitMovesTheMapAlone) {
+  SetKind(ProblemKind::kIllumination);
+  const Estimate one = Solve();
+  for (float& v : problem_.image.rgb) v *= 1000.0f;
+  const Estimate scaled = Solve();
+  // Rounding, amplified by a handful of iterations.
+  EXPECT_NEAR(one.misfit, scaled.misfit, 0.05 * one.misfit);
+  for (size_t i = 0; i < one.map.rgb.size(); ++i) {
+    EXPECT_NEAR(std::log(one.map.rgb[i] * 1000), std::log(scaled.map.rgb[i]),
+                0.05);
+  }
+}
+
 TEST_F(InverseRenderingTest, UNetPriorRunsEndToEnd) {
   problem_.illumination_prior = IlluminationPrior::kUNet;
   problem_.solver.max_iterations = 1;
