@@ -79,12 +79,19 @@ TEST_F(CookTorranceFitTest, JacobianMatchesFiniteDifferences) {
   for (const CookTorranceVector& p : {ordinary, sharp, rough}) {
     const double* blocks[] = {p.data()};
     ceres::GradientChecker::ProbeResults results;
-    EXPECT_TRUE(checker.Probe(blocks, kFloatDerivative, &results))
-        << p.transpose() << "\n"
-        << results.error_log;
+    checker.Probe(blocks, kFloatDerivative, &results);
+    ASSERT_TRUE(results.return_value);
+    // Against the row's largest entry: float noise of the radiance drowns
+    // entries where the roughness hardly matters.
+    const ceres::Matrix& J = results.jacobians[0];
+    const ceres::Matrix difference = J - results.numeric_jacobians[0];
+    for (int i = 0; i < J.rows(); ++i) {
+      EXPECT_LT(difference.row(i).cwiseAbs().maxCoeff(),
+                kFloatDerivative * J.row(i).cwiseAbs().maxCoeff())
+          << p.transpose() << " row " << i;
+    }
   }
-  // Far out entries are almost zero beside others of their row: the error of a
-  // central difference is held against the row's largest entry.
+  // Far out, Ridders' large relative steps fail: central differences.
   const int rows = cost.num_residuals();
   for (const CookTorranceVector& p : {dark_metal, black}) {
     std::vector<double> r(rows), up(rows), down(rows);
