@@ -14,8 +14,8 @@ struct CookTorranceFitOptions {
   std::vector<double> start_roughness = {0.05, 0.2, 0.5};
   double start_f0 = 0.1;
   double smoothing = 0.005;  // of the Laplacian's |d|, natural log
-  int max_iterations = 100;  // of each start
-  double tolerance = 1e-6;   // relative decrease of the cost to stop at
+  int max_iterations = 25;  // of each start
+  double tolerance = 1e-5;   // relative decrease of the cost to stop at
   int num_threads = 0;       // <= 0: all
 };
 
