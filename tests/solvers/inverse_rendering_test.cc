@@ -99,7 +99,9 @@ TEST_P(InverseRenderingTest, ImprovesOnItsStartAndRendersItsEstimate) {
   // With both unknown, the priors of the few texels and codes hold the maximum
   // of the posterior away from these few pixels.
   EXPECT_LT(e.misfit, 0.25 * e.trace.front().misfit);
-  if (GetParam() != ProblemKind::kJoint) EXPECT_LT(e.misfit, 0.1);
+  if (GetParam() != ProblemKind::kJoint) {
+    EXPECT_LT(e.misfit, 0.1);
+  }
   EXPECT_EQ(e.misfit, e.trace.back().misfit);
   double sum = 0.0;
   for (size_t i = 0; i < 3 * problem_.points.size(); ++i) {
