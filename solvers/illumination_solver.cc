@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "ibrdf/light/environment_map.h"
+#include "solvers/stop_callback.h"
 
 namespace ibrdf {
 namespace {
@@ -338,19 +339,6 @@ class CeresObjective final : public ceres::FirstOrderFunction {
  private:
   Objective* objective_;
   const int size_;
-};
-
-class StopCallback final : public ceres::IterationCallback {
- public:
-  explicit StopCallback(const std::function<bool()>& stop) : stop_(stop) {}
-  ceres::CallbackReturnType operator()(
-      const ceres::IterationSummary&) override {
-    return stop_ && stop_() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-                            : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const std::function<bool()>& stop_;
 };
 
 IlluminationCost Lbfgs(Objective* objective,

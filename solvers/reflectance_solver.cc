@@ -4,24 +4,9 @@
 
 #include <Eigen/Dense>
 
+#include "solvers/stop_callback.h"
+
 namespace ibrdf {
-namespace {
-
-class StopCallback final : public ceres::IterationCallback {
- public:
-  explicit StopCallback(const std::function<bool()>& stop) : stop_(stop) {}
-  ceres::CallbackReturnType operator()(
-      const ceres::IterationSummary&) override {
-    return stop_ && stop_() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
-                            : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const std::function<bool()>& stop_;
-};
-
-}  // namespace
-
 double SolveReflectance(const Transport& transport, const LobeModel& lobes,
                         const std::vector<float>& map,
                         const Observations& observed,
