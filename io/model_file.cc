@@ -15,7 +15,7 @@ namespace ibrdf {
 namespace {
 
 constexpr char kMagic[] = "ibrdf-model ";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr size_t kMaxBytes = size_t{256} << 20;
 // Rounding of a code that was projected to the unit sphere in float.
 constexpr double kBallSlack = 1e-4;
@@ -44,10 +44,25 @@ Status ParseHeader(const std::string& path, const std::string& text,
                    NeuralBrdfModel* model) {
   try {
     const nlohmann::json header = nlohmann::json::parse(text);
-    model->shape.layers = header.at("layers").get<int>();
-    model->shape.bins = header.at("bins").get<int>();
-    model->shape.code_size = header.at("code_size").get<int>();
-    model->shape.widths = header.at("widths").get<std::vector<int>>();
+    const std::string flow = header.at("flow").get<std::string>();
+    if (flow == "triangular") {
+      TriangularShape& shape = model->shape.triangular;
+      shape.bins = header.at("bins").get<std::array<int, 3>>();
+      shape.code_size = header.at("code_size").get<int>();
+      shape.widths = header.at("widths").get<std::vector<int>>();
+      shape.marginal_widths =
+          header.at("marginal_widths").get<std::vector<int>>();
+    } else if (flow == "coupling") {
+      model->shape.architecture = FlowArchitecture::kCoupling;
+      CouplingShape& shape = model->shape.coupling;
+      shape.layers = header.at("layers").get<int>();
+      shape.bins = header.at("bins").get<int>();
+      shape.code_size = header.at("code_size").get<int>();
+      shape.widths = header.at("widths").get<std::vector<int>>();
+    } else {
+      return InvalidInput(path + ": flow",
+                          "expected triangular or coupling, found " + flow);
+    }
     model->exponent = header.at("exponent").get<double>();
     model->names = header.at("names").get<std::vector<std::string>>();
     model->note = header.at("note").get<std::string>();
@@ -72,10 +87,10 @@ StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
   size_t at = magic;
   std::string version, length;
   if (bytes.compare(0, magic, kMagic) != 0 || !TakeLine(bytes, &at, &version)) {
-    return InvalidInput(path, "not a model file, expected \"ibrdf-model 1\"");
+    return InvalidInput(path, "not a model file, expected \"ibrdf-model 2\"");
   }
   if (version != std::to_string(kVersion)) {
-    return InvalidInput(path + ": version", "expected 1, found " + version);
+    return InvalidInput(path + ": version", "expected 2, found " + version);
   }
   if (bytes.size() < at + sizeof(uint64_t)) {
     return InvalidInput(path, "truncated model file");
@@ -97,7 +112,7 @@ StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
   IBRDF_RETURN_IF_ERROR(
       ParseHeader(path, bytes.substr(at, header_size), &model));
   at += header_size;
-  const size_t codes = model.names.size() * model.shape.code_size;
+  const size_t codes = model.names.size() * model.shape.code_size();
   const size_t floats = model.shape.NumWeights() + codes + model.names.size();
   if (end - at != floats * sizeof(float)) {
     return InvalidInput(path, "expected " + std::to_string(floats) +
@@ -115,8 +130,8 @@ StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
   }
   for (int i = 0; i < model.num_codes(); ++i) {
     double sum = 0.0;
-    for (int k = 0; k < model.shape.code_size; ++k) {
-      const double v = model.codes[i * model.shape.code_size + k];
+    for (int k = 0; k < model.shape.code_size(); ++k) {
+      const double v = model.codes[i * model.shape.code_size() + k];
       sum += v * v;
     }
     if (std::sqrt(sum) > 1.0 + kBallSlack) {
@@ -128,13 +143,21 @@ StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
 }
 
 Status WriteModel(const NeuralBrdfModel& model, const std::string& path) {
-  const nlohmann::json header = {{"layers", model.shape.layers},
-                                 {"bins", model.shape.bins},
-                                 {"code_size", model.shape.code_size},
-                                 {"widths", model.shape.widths},
-                                 {"exponent", model.exponent},
-                                 {"names", model.names},
-                                 {"note", model.note}};
+  nlohmann::json header = {{"code_size", model.shape.code_size()},
+                           {"exponent", model.exponent},
+                           {"names", model.names},
+                           {"note", model.note}};
+  if (model.shape.architecture == FlowArchitecture::kTriangular) {
+    header["flow"] = "triangular";
+    header["bins"] = model.shape.triangular.bins;
+    header["widths"] = model.shape.triangular.widths;
+    header["marginal_widths"] = model.shape.triangular.marginal_widths;
+  } else {
+    header["flow"] = "coupling";
+    header["layers"] = model.shape.coupling.layers;
+    header["bins"] = model.shape.coupling.bins;
+    header["widths"] = model.shape.coupling.widths;
+  }
   // A name may come from a file whose name is not UTF-8: replaced, not thrown.
   const std::string text =
       header.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

@@ -7,7 +7,7 @@
 
 namespace ibrdf {
 
-// Format, version 1: the line "ibrdf-model 1\n"; a decimal byte count and "\n";
+// Format, version 2: the line "ibrdf-model 2\n"; a decimal byte count and "\n";
 // that many bytes of JSON (shape, exponent, names, note); the float32 arrays
 // weights, codes and log_colours, little endian; a 64-bit FNV-1a checksum of
 // everything before it. Refused with a message that names file and field:

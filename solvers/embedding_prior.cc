@@ -17,7 +17,7 @@ double SquaredDistance(const std::vector<double>& a,
 }  // namespace
 
 std::vector<MaterialCode> MaterialCodes(const NeuralBrdfModel& model) {
-  const int size = model.shape.code_size;
+  const int size = model.shape.code_size();
   std::vector<MaterialCode> materials;
   for (int i = 0; i + 2 < model.num_codes(); i += 3) {
     MaterialCode m;
@@ -39,7 +39,7 @@ std::vector<MaterialCode> SpreadMaterials(const NeuralBrdfModel& model,
   const std::vector<MaterialCode> all = MaterialCodes(model);
   std::vector<MaterialCode> taken;
   if (all.empty()) return taken;
-  std::vector<double> mean(model.shape.code_size, 0.0);
+  std::vector<double> mean(model.shape.code_size(), 0.0);
   for (const MaterialCode& m : all) {
     for (size_t k = 0; k < mean.size(); ++k) {
       mean[k] += m.code[k] / static_cast<double>(all.size());

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "ibrdf/brdf/lobe_model.h"
-#include "ibrdf/flow/coupling_flow.h"
+#include "ibrdf/flow/brdf_flow.h"
 #include "ibrdf/light/environment_map.h"
 #include "solvers/costs/log_radiance_cost.h"
 #include "solvers/embedding_prior.h"
@@ -346,7 +346,8 @@ class Estimator {
   // The material whose peak stands out least from its reflectance at wide
   // angles.
   MaterialCode MostMatte() const {
-    const CouplingFlow flow(problem_.model.shape, problem_.model.weights);
+    const std::unique_ptr<BrdfFlow> flow =
+        BrdfFlow::Create(problem_.model.shape, problem_.model.weights);
     const std::vector<MaterialCode> all = MaterialCodes(problem_.model);
     double least = std::numeric_limits<double>::infinity();
     MaterialCode best = all.front();
@@ -355,7 +356,7 @@ class Estimator {
       // Two points [3][2]: theta_h = 0 and wide, theta_d = 18 degrees.
       const float x[6] = {0.02f, 0.8f, 0.2f, 0.2f, 0.5f, 0.5f};
       float value[2];
-      flow.LogDensity(x, 2, code.data(), 1, value, nullptr);
+      flow->LogDensity(x, 2, code.data(), 1, value, nullptr, nullptr);
       if (value[0] - value[1] < least) {
         least = value[0] - value[1];
         best = m;

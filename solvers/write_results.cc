@@ -104,7 +104,7 @@ Json TraceJson(const Estimate& estimate) {
 }
 
 Json LobesJson(const InverseProblem& inverse, const Estimate& estimate) {
-  const int codes = inverse.model.shape.code_size, size = codes + 3;
+  const int codes = inverse.model.shape.code_size(), size = codes + 3;
   Json lobes = Json::array();
   for (int k = 0; k < inverse.lobes; ++k) {
     const double* p = estimate.lobe_parameters.data() + k * size;

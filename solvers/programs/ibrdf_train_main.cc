@@ -1,5 +1,6 @@
 // The trainer of the flow and its embedding.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -9,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "ibrdf/flow/flow_kernels.h"
 #include "io/model_file.h"
 #include "solvers/programs/common_flags.h"
 #include "solvers/trainer/flow_trainer.h"
@@ -22,9 +22,24 @@ void RequestStop(int) { stop_requested = true; }
 
 struct TrainFlags {
   std::string data, out, leave_out, note;
-  int points = 131072;
+  int columns = 2048;
   bool fresh = false;
+  std::string flow = "triangular";
+  std::vector<int> bins = {24, 12, 12};
+  std::vector<int> widths = {64, 64, 64};
 };
+
+void SetShape(const TrainFlags& flags, FlowShape* shape) {
+  if (flags.flow == "coupling") {
+    shape->architecture = FlowArchitecture::kCoupling;
+    shape->coupling.bins = flags.bins[0];
+    shape->coupling.widths = flags.widths;
+  } else {
+    std::copy(flags.bins.begin(), flags.bins.end(),
+              shape->triangular.bins.begin());
+    shape->triangular.widths = flags.widths;
+  }
+}
 
 std::vector<std::string> SplitByComma(const std::string& text) {
   std::vector<std::string> parts;
@@ -37,19 +52,24 @@ std::vector<std::string> SplitByComma(const std::string& text) {
 
 Status Train(const TrainFlags& flags, const CommonFlags& common,
              TrainerOptions options) {
+  SetShape(flags, &options.shape);
   const std::string wrong = options.shape.Validate();
   if (!wrong.empty()) return InvalidInput("command line", wrong);
-  if (options.points_per_code % kFlowBlock != 0) {
-    return InvalidInput("command line: --points-per-code",
-                        "expected a multiple of " + std::to_string(kFlowBlock));
+  if (options.columns_per_code % 16 != 0) {
+    return InvalidInput("command line: --columns-per-code",
+                        "expected a multiple of 16");
+  }
+  if (options.points_per_column % 4 != 0) {
+    return InvalidInput("command line: --points-per-column",
+                        "expected a multiple of 4");
   }
   const StatusOr<TrainingData> all = ReadTrainingData(
-      flags.data, SplitByComma(flags.leave_out), flags.points, common.seed);
+      flags.data, SplitByComma(flags.leave_out), flags.columns, common.seed);
   if (!all.ok()) return all.status();
-  // A sixteenth of the points is never trained on.
-  const int train_points = all->num_points - all->num_points / 16;
-  const TrainingData train = all->Slice(0, train_points);
-  const TrainingData held_out = all->Slice(train_points, all->num_points);
+  // An eighth of the columns is never trained on.
+  const int train_columns = all->num_columns() - all->num_columns() / 8;
+  const TrainingData train = all->Slice(0, train_columns);
+  const TrainingData held_out = all->Slice(train_columns, all->num_columns());
   options.checkpoint = flags.out + ".checkpoint";
   options.seed = common.seed;
   options.num_threads = common.threads;
@@ -60,7 +80,7 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
   const auto report = [&](const TrainerProgress& p) {
     if (common.quiet) return;
     std::printf(
-        "step %6lld / %lld  %7.1f s  train log-RMSE %.4f  held-out points "
+        "step %6lld / %lld  %7.1f s  train log-RMSE %.4f  held-out columns "
         "%.4f\n",
         static_cast<long long>(p.step), static_cast<long long>(options.steps),
         p.seconds, p.training_rmse, p.held_out_rmse);
@@ -89,14 +109,15 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
       static_cast<double>(by_material.size());
   char score[160];
   std::snprintf(score, sizeof(score),
-                "mean log-RMSE over %zu materials at points not trained on, "
+                "mean log-RMSE over %zu materials at columns not trained on, "
                 "one code per channel: %.4f",
                 by_material.size(), mean);
   std::printf("%s\n", score);
   model->note = flags.note + (flags.note.empty() ? "" : " ") + score + "; " +
                 std::to_string(options.steps) + " steps of " +
                 std::to_string(options.codes_per_step) + " codes x " +
-                std::to_string(options.points_per_code) + " points, seed " +
+                std::to_string(options.columns_per_code) + " columns x " +
+                std::to_string(options.points_per_column) + " points, seed " +
                 std::to_string(options.seed) + ".";
   IBRDF_RETURN_IF_ERROR(WriteModel(*model, flags.out));
   std::remove(options.checkpoint.c_str());
@@ -118,9 +139,10 @@ int Main(int argc, char** argv) {
   app.add_option("--leave-out", flags.leave_out,
                  "comma-separated materials not to train on");
   app.add_option("--note", flags.note, "text kept in the model: data, licence");
-  app.add_option("--points", flags.points,
-                 "random bins of each table to use; 1/16 of them are held out")
-      ->check(CLI::Range(1024, 1 << 21))
+  app.add_option("--columns", flags.columns,
+                 "random columns (theta_d, phi_d) of each table to use; 1/8 of "
+                 "them are held out")
+      ->check(CLI::Range(64, 16200))
       ->capture_default_str();
   app.add_flag("--fresh", flags.fresh, "ignore an existing checkpoint");
   app.add_option("--steps", options.steps, "Adam steps")
@@ -130,16 +152,33 @@ int Main(int argc, char** argv) {
                  "distributions in a step")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  app.add_option("--points-per-code", options.points_per_code,
-                 "points of each, a multiple of 64")
-      ->check(CLI::Range(64, 65536))
+  app.add_option("--columns-per-code", options.columns_per_code,
+                 "columns of each, a multiple of 16")
+      ->check(CLI::Range(16, 16384))
       ->capture_default_str();
-  app.add_option("--layers", options.shape.layers, "coupling layers")
+  app.add_option("--points-per-column", options.points_per_column,
+                 "theta_h of each column, a multiple of 4")
+      ->check(CLI::Range(4, 1024))
       ->capture_default_str();
-  app.add_option("--bins", options.shape.bins, "bins of a spline")
+  app.add_option("--flow", flags.flow,
+                 "triangular, or coupling: the alternating stack, for "
+                 "comparison")
+      ->check(CLI::IsMember({"triangular", "coupling"}))
       ->capture_default_str();
-  app.add_option("--widths", options.shape.widths,
-                 "conditioner widths, outermost first")
+  app.add_option("--bins", flags.bins,
+                 "bins of the splines of theta_h, theta_d and phi_d; of the "
+                 "coupling stack the first counts")
+      ->expected(3)
+      ->capture_default_str();
+  app.add_option("--widths", flags.widths,
+                 "hidden layers of theta_h's conditioner; of the coupling "
+                 "stack's, outermost first")
+      ->capture_default_str();
+  app.add_option("--marginal-widths", options.shape.triangular.marginal_widths,
+                 "hidden layers of the other conditioners")
+      ->capture_default_str();
+  app.add_option("--layers", options.shape.coupling.layers,
+                 "layers of the coupling stack")
       ->capture_default_str();
   app.add_option("--exponent", options.exponent,
                  "reflectance = colour * density ^ exponent")

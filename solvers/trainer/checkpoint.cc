@@ -13,7 +13,7 @@
 namespace ibrdf {
 namespace {
 
-constexpr char kMagic[] = "ibrdf-checkpoint 2\n";
+constexpr char kMagic[] = "ibrdf-checkpoint 3\n";
 constexpr size_t kMaxBytes = size_t{1} << 30;
 
 template <typename T>
@@ -34,14 +34,25 @@ std::string DescribeTraining(const TrainerOptions& options,
                              const TrainingData& data) {
   std::ostringstream text;
   text.precision(17);
-  text << "layers " << options.shape.layers << " bins " << options.shape.bins
-       << " code " << options.shape.code_size << " widths";
-  for (const int w : options.shape.widths) text << ' ' << w;
-  text << " exponent " << options.exponent << " steps " << options.steps
-       << " batch " << options.codes_per_step << 'x' << options.points_per_code
+  const FlowShape& shape = options.shape;
+  if (shape.architecture == FlowArchitecture::kTriangular) {
+    text << "triangular bins";
+    for (const int n : shape.triangular.bins) text << ' ' << n;
+    text << " widths";
+    for (const int w : shape.triangular.widths) text << ' ' << w;
+    text << " marginal";
+    for (const int w : shape.triangular.marginal_widths) text << ' ' << w;
+  } else {
+    text << "coupling layers " << shape.coupling.layers << " bins "
+         << shape.coupling.bins << " widths";
+    for (const int w : shape.coupling.widths) text << ' ' << w;
+  }
+  text << " code " << shape.code_size() << " exponent " << options.exponent
+       << " steps " << options.steps << " batch " << options.codes_per_step
+       << 'x' << options.columns_per_code << 'x' << options.points_per_column
        << " rates " << options.learning_rate << ' '
        << options.code_learning_rate << " huber " << options.huber << " seed "
-       << options.seed << " points " << data.num_points;
+       << options.seed << " columns " << data.num_columns();
   // The data themselves: their names and a sum that any change moves.
   double sum = 0.0;
   for (size_t i = 0; i < data.log_raw.size(); ++i) {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "ibrdf/base/parallel_for.h"
-#include "ibrdf/flow/coupling_flow.h"
+#include "ibrdf/flow/brdf_flow.h"
 #include "solvers/trainer/adam.h"
 #include "solvers/trainer/checkpoint.h"
 
@@ -66,11 +66,9 @@ void ProjectToUnitBall(float* code, int size) {
 class Trainer {
  public:
   Trainer(const TrainingData& data, const TrainerOptions& options)
-      : data_(data),
-        options_(options),
-        code_size_(options.shape.code_size),
-        flow_(options.shape, InitialFlowWeights(options.shape, options.seed)) {
-    state_.weights = flow_.weights();
+      : data_(data), options_(options), code_size_(options.shape.code_size()) {
+    state_.weights = InitialFlowWeights(options.shape, options.seed);
+    flow_ = BrdfFlow::Create(options.shape, state_.weights);
     state_.weight_adam = Adam(state_.weights.size());
     state_.codes.resize(data.names.size() * code_size_);
     state_.code_adam = Adam(state_.codes.size());
@@ -80,14 +78,15 @@ class Trainer {
     const float scale = kCodeStart / std::sqrt(static_cast<float>(code_size_));
     for (float& z : state_.codes) z = scale * normal(rng);
     for (Chunk& chunk : chunks_) {
-      chunk.gradient.resize(flow_.PaddedGradientSize());
+      chunk.gradient.resize(flow_->GradientSize());
+      chunk.pass = flow_->NewTrainingPass();
     }
   }
 
   TrainingState& state() { return state_; }
 
   // Call after the state was replaced.
-  void StateLoaded() { flow_.SetWeights(state_.weights); }
+  void StateLoaded() { flow_->SetWeights(state_.weights); }
 
   // Returns the mean squared residual of the step's points.
   double Step() {
@@ -99,7 +98,7 @@ class Trainer {
     std::iota(order.begin(), order.end(), 0);
     std::shuffle(order.begin(), order.end(), rng);
     const int batch = std::min(options_.codes_per_step, distributions);
-    const int n = options_.points_per_code;
+    const int n = options_.columns_per_code * options_.points_per_column;
     std::vector<uint64_t> seeds(batch);
     for (uint64_t& s : seeds) s = rng();
 
@@ -107,17 +106,20 @@ class Trainer {
     std::vector<double> sums(batch);
     const double scale = options_.exponent / (static_cast<double>(batch) * n);
     ParallelFor(kChunks, options_.num_threads, [&](int64_t chunk, int) {
-      Chunk& c = chunks_[chunk];
-      std::fill(c.gradient.begin(), c.gradient.end(), 0.0f);
-      for (int b = static_cast<int>(chunk); b < batch; b += kChunks) {
-        sums[b] = AddGradient(order[b], seeds[b], scale, &c,
-                              code_gradients.data() + b * code_size_);
-      }
+      const int begin = static_cast<int>(chunk * batch / kChunks);
+      const int end = static_cast<int>((chunk + 1) * batch / kChunks);
+      std::fill(chunks_[chunk].gradient.begin(), chunks_[chunk].gradient.end(),
+                0.0f);
+      if (begin == end) return;
+      AddGradient(order.data() + begin, seeds.data() + begin, end - begin,
+                  scale, &chunks_[chunk],
+                  code_gradients.data() + begin * code_size_,
+                  sums.data() + begin);
     });
 
     std::vector<float> gradient(state_.weights.size(), 0.0f);
     for (Chunk& c : chunks_) {
-      flow_.UnpadGradient(c.gradient.data(), gradient.data());
+      flow_->AddGradient(c.gradient.data(), gradient.data());
     }
     double norm = 0.0;
     for (const float g : gradient) norm += static_cast<double>(g) * g;
@@ -139,7 +141,7 @@ class Trainer {
           static_cast<size_t>(m) * code_size_, code_size_, state_.codes.data());
       ProjectToUnitBall(state_.codes.data() + m * code_size_, code_size_);
     }
-    flow_.SetWeights(state_.weights);
+    flow_->SetWeights(state_.weights);
     return std::accumulate(sums.begin(), sums.end(), 0.0) /
            (static_cast<double>(batch) * n);
   }
@@ -158,7 +160,7 @@ class Trainer {
  private:
   struct Chunk {
     std::vector<float> gradient;
-    std::vector<CouplingFlow::TrainingPass> passes;  // room, reused
+    std::unique_ptr<BrdfFlow::TrainingPass> pass;
   };
 
   double Schedule() const {
@@ -170,94 +172,140 @@ class Trainer {
            (kFinalRate + (1 - kFinalRate) * 0.5 * (1 + std::cos(M_PI * t)));
   }
 
-  double AddGradient(int distribution, uint64_t seed, double scale,
-                     Chunk* chunk, float* code_gradient) const {
-    const int n = options_.points_per_code;
-    const float* code =
-        state_.codes.data() + static_cast<size_t>(distribution) * code_size_;
-    const float* log_raw = data_.LogRaw(distribution);
+  // The share of `count` distributions of a step; sums: of their squared
+  // residuals.
+  void AddGradient(const int* distributions, const uint64_t* seeds, int count,
+                   double scale, Chunk* chunk, float* code_gradients,
+                   double* sums) const {
+    const int columns = options_.columns_per_code;
+    const int points = options_.points_per_column;
+    FlowColumns x(count * columns, points);
+    const size_t per_code = static_cast<size_t>(columns) * points;
+    std::vector<float> codes(static_cast<size_t>(count) * code_size_);
+    std::vector<float> target(per_code * count), value(per_code * count);
+    for (int b = 0; b < count; ++b) {
+      std::copy_n(state_.codes.data() +
+                      static_cast<size_t>(distributions[b]) * code_size_,
+                  code_size_, codes.data() + b * code_size_);
+      DrawPoints(distributions[b], seeds[b], b * columns, &x, target.data());
+    }
+    chunk->pass->Forward(x, count, codes.data(), value.data());
+    std::vector<float> one_value(per_code), one_target(per_code), psi(per_code);
+    for (int b = 0; b < count; ++b) {
+      // [points][columns of all codes] <-> [points][columns of this one].
+      const auto each = [&](auto f) {
+        for (int i = 0; i < points; ++i) {
+          for (int c = 0; c < columns; ++c) {
+            f(static_cast<size_t>(i) * columns + c,
+              static_cast<size_t>(i) * x.columns + b * columns + c);
+          }
+        }
+      };
+      each([&](size_t to, size_t from) {
+        one_value[to] = value[from];
+        one_target[to] = target[from];
+      });
+      sums[b] = Residuals(one_value, one_target, options_.exponent,
+                          options_.huber, &psi);
+      each([&](size_t from, size_t to) {
+        value[to] = psi[from] * static_cast<float>(scale);
+      });
+    }
+    chunk->pass->Backward(value.data(), chunk->gradient.data(), code_gradients);
+  }
+
+  // Random columns and, in each, theta_h from equal strata.
+  void DrawPoints(int distribution, uint64_t seed, int first, FlowColumns* x,
+                  float* target) const {
     std::mt19937_64 rng(seed);
-    std::uniform_int_distribution<int> pick(0, data_.num_points - 1);
-    std::vector<float> x(3 * static_cast<size_t>(n)), target(n), value(n),
-        psi(n);
-    for (int p = 0; p < n; ++p) {
-      const int at = pick(rng);
-      const int block = p / kFlowBlock, lane = p % kFlowBlock;
-      for (int i = 0; i < 3; ++i) {
-        x[(block * 3 + i) * kFlowBlock + lane] =
-            data_.x[static_cast<size_t>(i) * data_.num_points + at];
+    std::uniform_int_distribution<int> pick(0, data_.num_columns() - 1);
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    const int points = x->points;
+    for (int c = first; c < first + options_.columns_per_code; ++c) {
+      const int column = pick(rng);
+      x->x_d[c] = data_.columns.x_d[column];
+      x->x_p[c] = data_.columns.x_p[column];
+      x->cosine[c] = data_.columns.cosine[column];
+      x->sine[c] = data_.columns.sine[column];
+      const float* log_raw = data_.LogRaw(distribution, column);
+      const int count = data_.count[column];
+      const float stratum =
+          static_cast<float>(count) / static_cast<float>(points);
+      for (int i = 0; i < points; ++i) {
+        const int at = std::min(
+            count - 1,
+            static_cast<int>((static_cast<float>(i) + uniform(rng)) * stratum));
+        x->x_h[static_cast<size_t>(i) * x->columns + c] =
+            data_.columns
+                .x_h[static_cast<size_t>(at) * data_.num_columns() + column];
+        target[static_cast<size_t>(i) * x->columns + c] = log_raw[at];
       }
-      target[p] = log_raw[at];
     }
-    const int blocks = n / kFlowBlock;
-    std::vector<CouplingFlow::TrainingPass>& passes = chunk->passes;
-    while (static_cast<int>(passes.size()) < blocks) passes.emplace_back(flow_);
-    for (int b = 0; b < blocks; ++b) {
-      passes[b].Forward(x.data() + b * 3 * kFlowBlock, code,
-                        value.data() + b * kFlowBlock);
-    }
-    const double sum =
-        Residuals(value, target, options_.exponent, options_.huber, &psi);
-    for (float& v : psi) v *= static_cast<float>(scale);
-    for (int b = 0; b < blocks; ++b) {
-      passes[b].Backward(psi.data() + b * kFlowBlock, chunk->gradient.data(),
-                         code_gradient);
-    }
-    return sum;
   }
 
   const TrainingData& data_;
   const TrainerOptions& options_;
   const int code_size_;
-  CouplingFlow flow_;
+  std::unique_ptr<BrdfFlow> flow_;
   TrainingState state_;
   Chunk chunks_[kChunks];
 };
 
+// Calls f(distribution, log density, log raw) at every bin.
+template <typename F>
+void ForEachBin(const NeuralBrdfModel& model, const TrainingData& data,
+                int num_threads, F f) {
+  const std::unique_ptr<BrdfFlow> flow =
+      BrdfFlow::Create(model.shape, model.weights);
+  std::vector<float> value(data.columns.num_points());
+  const int columns = data.num_columns(), size = model.shape.code_size();
+  for (int m = 0; m < model.num_codes(); ++m) {
+    flow->LogDensityOnColumns(data.columns, model.codes.data() + m * size,
+                              num_threads, value.data(), nullptr);
+    for (int c = 0; c < columns; ++c) {
+      const float* log_raw = data.LogRaw(m, c);
+      for (int i = 0; i < data.count[c]; ++i) {
+        f(m, value[static_cast<size_t>(i) * columns + c], log_raw[i]);
+      }
+    }
+  }
+}
+
 // Residuals' mean per distribution is the log colour (with the sign turned).
 void FitColours(const TrainingData& data, int num_threads,
                 NeuralBrdfModel* model) {
-  const CouplingFlow flow(model->shape, model->weights);
-  std::vector<float> value(data.num_points);
+  std::vector<double> sum(model->num_codes()), count(model->num_codes());
+  ForEachBin(*model, data, num_threads, [&](int m, double value, double raw) {
+    sum[m] += raw - model->exponent * value;
+    count[m] += 1;
+  });
   for (int m = 0; m < model->num_codes(); ++m) {
-    flow.LogDensity(data.x.data(), data.num_points,
-                    model->codes.data() + m * model->shape.code_size,
-                    num_threads, value.data(), nullptr);
-    double mean = 0.0;
-    for (int p = 0; p < data.num_points; ++p) {
-      mean += data.LogRaw(m)[p] - model->exponent * value[p];
-    }
-    model->log_colours[m] = static_cast<float>(mean / data.num_points);
+    model->log_colours[m] = static_cast<float>(sum[m] / count[m]);
   }
 }
 
 // Root mean square over a spread of distributions.
-double QuickScore(NeuralBrdfModel model, const TrainingData& held_out,
+double QuickScore(const NeuralBrdfModel& model, const TrainingData& held_out,
                   int num_threads) {
   const int all = static_cast<int>(held_out.names.size());
-  const int some = std::min(all, 24),
-            points = std::min(2048, held_out.num_points);
-  TrainingData part = held_out.Slice(0, points);
+  const int some = std::min(all, 24), size = model.shape.code_size();
   NeuralBrdfModel few = model;
   few.names.clear();
   few.codes.clear();
-  TrainingData picked;
-  picked.num_points = points;
-  picked.x = part.x;
+  std::vector<int> picked;
   for (int i = 0; i < some; ++i) {
     const int m = static_cast<int>(static_cast<int64_t>(i) * all / some);
+    picked.push_back(m);
     few.names.push_back(model.names[m]);
-    picked.names.push_back(model.names[m]);
-    few.codes.insert(few.codes.end(),
-                     model.codes.begin() + m * model.shape.code_size,
-                     model.codes.begin() + (m + 1) * model.shape.code_size);
-    picked.log_raw.insert(picked.log_raw.end(), part.LogRaw(m),
-                          part.LogRaw(m) + points);
+    few.codes.insert(few.codes.end(), model.codes.begin() + m * size,
+                     model.codes.begin() + (m + 1) * size);
   }
   few.log_colours.assign(some, 0.0f);
-  FitColours(picked, num_threads, &few);
+  const TrainingData part =
+      held_out.Select(picked).Slice(0, std::min(128, held_out.num_columns()));
+  FitColours(part, num_threads, &few);
   double sum = 0.0;
-  for (const double s : ScoreModel(few, picked, num_threads)) sum += s * s;
+  for (const double s : ScoreModel(few, part, num_threads)) sum += s * s;
   return std::sqrt(sum / some);
 }
 
@@ -265,23 +313,17 @@ double QuickScore(NeuralBrdfModel model, const TrainingData& held_out,
 
 std::vector<double> ScoreModel(const NeuralBrdfModel& model,
                                const TrainingData& data, int num_threads) {
-  const CouplingFlow flow(model.shape, model.weights);
-  std::vector<float> value(data.num_points);
-  std::vector<double> scores;
+  std::vector<double> sum(model.num_codes()), count(model.num_codes());
+  ForEachBin(model, data, num_threads, [&](int m, double value, double raw) {
+    const double log_fit = model.exponent * value + model.log_colours[m];
+    const double r = std::log(std::exp(log_fit) + kLogFloor) - raw;
+    sum[m] += r * r;
+    count[m] += 1;
+  });
   for (int m = 0; m < model.num_codes(); ++m) {
-    flow.LogDensity(data.x.data(), data.num_points,
-                    model.codes.data() + m * model.shape.code_size, num_threads,
-                    value.data(), nullptr);
-    double sum = 0.0;
-    for (int p = 0; p < data.num_points; ++p) {
-      const double log_fit = model.exponent * value[p] + model.log_colours[m];
-      const double r =
-          std::log(std::exp(log_fit) + kLogFloor) - data.LogRaw(m)[p];
-      sum += r * r;
-    }
-    scores.push_back(std::sqrt(sum / data.num_points));
+    sum[m] = std::sqrt(sum[m] / count[m]);
   }
-  return scores;
+  return sum;
 }
 
 StatusOr<NeuralBrdfModel> TrainFlow(
@@ -289,7 +331,6 @@ StatusOr<NeuralBrdfModel> TrainFlow(
     const TrainerOptions& options,
     const std::function<void(const TrainerProgress&)>& report,
     const std::atomic<bool>* stop) {
-  CHECK_EQ(0, options.points_per_code % kFlowBlock);
   Trainer trainer(train, options);
   const std::string identity = DescribeTraining(options, train);
   if (!options.checkpoint.empty()) {
@@ -330,7 +371,7 @@ StatusOr<NeuralBrdfModel> TrainFlow(
     }
   }
   NeuralBrdfModel model = trainer.Model();
-  FitColours(train.Slice(0, std::min(train.num_points, 16384)),
+  FitColours(train.Slice(0, std::min(train.num_columns(), 512)),
              options.num_threads, &model);
   return model;
 }

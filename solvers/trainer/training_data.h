@@ -1,4 +1,4 @@
-// Measured tables as points of the flow's unit cube.
+// Measured tables as columns of the flow's unit cube.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -6,36 +6,54 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/flow/brdf_flow.h"
 
 namespace ibrdf {
 
-// A random subset of bins, the same for all materials, with the logarithm of
-// raw value + kLogFloor of every distribution (material and channel).
-struct TrainingData {
-  std::vector<std::string> names;  // "material.red", ".green", ".blue", ...
-  int num_points = 0;
-  std::vector<float> x;        // [3][num_points], cube coordinates
-  std::vector<float> log_raw;  // [names.size()][num_points]
-
-  const float* LogRaw(int distribution) const {
-    return log_raw.data() + static_cast<size_t>(distribution) * num_points;
-  }
-  // The points [begin, end) of every distribution.
-  TrainingData Slice(int begin, int end) const;
-};
-
 inline constexpr double kLogFloor = 1e-6;
 
-// Bins above the horizon in a seeded random order.
-std::vector<int> ShuffledBins(uint64_t seed);
+// Columns of constant (theta_d, phi_d), the same for all materials, with the
+// logarithm of raw value + kLogFloor of every distribution (material and
+// channel) at the theta_h above the horizon.
+struct TrainingData {
+  std::vector<std::string> names;  // "material.red", ".green", ".blue", ...
+  FlowColumns columns;             // points: the kMerlThetaH of a table
+  std::vector<int> count;          // [columns], theta_h above the horizon: >= 1
+  std::vector<float> log_raw;      // [names.size()][columns][kMerlThetaH]
 
-// Coordinates of bins, as TrainingData::x.
-std::vector<float> CubeCoordinates(const std::vector<int>& bins);
+  int num_columns() const { return columns.columns; }
+  // [kMerlThetaH], of which the first count[column] mean something.
+  const float* LogRaw(int distribution, int column) const {
+    return log_raw.data() +
+           (static_cast<size_t>(distribution) * num_columns() + column) *
+               kMerlThetaH;
+  }
+  // The columns [begin, end) of every distribution.
+  TrainingData Slice(int begin, int end) const;
+  // Distributions at these indices.
+  TrainingData Select(const std::vector<int>& distributions) const;
+};
 
-// Reads every *.binary of `folder`, in order of name, but those in `leave_out`
-// (names without extension; one that is not there is an error).
+// `count` different columns in a seeded random order, as
+// theta_d * kMerlPhiD + phi_d, drawn by the number of their bins above the
+// horizon: a bin of any of them is then as likely as any other bin.
+std::vector<int> DrawColumns(int count, uint64_t seed);
+
+// Geometry of these columns, without distributions.
+TrainingData ColumnsOfTable(const std::vector<int>& columns);
+
+// Appends the three channels of a table under this name.
+void AddTable(const MerlTable& table, const std::vector<int>& columns,
+              const std::string& name, TrainingData* data);
+
+// Every *.binary of `folder` in order of name, without extension. Fails where
+// there is none.
+StatusOr<std::vector<std::string>> ListTables(const std::string& folder);
+
+// Reads the tables of `folder` but those in `leave_out` (one that is not there
+// is an error).
 StatusOr<TrainingData> ReadTrainingData(
     const std::string& folder, const std::vector<std::string>& leave_out,
-    int num_points, uint64_t seed);
+    int num_columns, uint64_t seed);
 
 }  // namespace ibrdf

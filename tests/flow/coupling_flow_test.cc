@@ -14,9 +14,9 @@ namespace {
 
 // Weights well away from the identity, so that a test sees curved maps:
 // scale 1 is the trainer's start, 4 is rougher than trained models are.
-std::vector<float> Weights(const FlowShape& shape, float scale,
+std::vector<float> Weights(const CouplingShape& shape, float scale,
                            uint64_t seed = 3) {
-  std::vector<float> w = InitialFlowWeights(shape, seed);
+  std::vector<float> w = InitialCouplingWeights(shape, seed);
   const DenseLayer last = shape.DenseLayers().back();
   for (int l = 0; l < shape.layers; ++l) {
     float* layer = w.data() + l * shape.WeightsPerLayer();
@@ -56,19 +56,19 @@ std::vector<float> Points(int count, uint64_t seed = 7) {
 using Reference = CouplingFlowReference<double>;
 
 struct Case {
-  FlowShape shape;
+  CouplingShape shape;
   float scale;
   double code_norm;
 };
 
 std::vector<Case> Cases() {
-  FlowShape usual;
-  FlowShape odd;
+  CouplingShape usual;
+  CouplingShape odd;
   odd.layers = 5;
   odd.bins = 5;
   odd.code_size = 3;
   odd.widths = {19, 7};
-  FlowShape flat;
+  CouplingShape flat;
   flat.layers = 3;
   flat.bins = 32;
   flat.widths = {33};
@@ -161,7 +161,7 @@ TEST(CouplingFlowReference, DensityIntegratesToOne) {
   // (Cases() at scale 4) need a finer rule than a test can afford.
   constexpr double kTolerance = 5e-3;
   for (const Case& c :
-       {Case{FlowShape(), 1.0f, 0.5}, Case{FlowShape(), 2.0f, 1.0}}) {
+       {Case{CouplingShape(), 1.0f, 0.5}, Case{CouplingShape(), 2.0f, 1.0}}) {
     const CouplingFlow flow(c.shape, Weights(c.shape, c.scale));
     const std::vector<float> z = Code(c.shape.code_size, c.code_norm);
     constexpr int kCells = 80;
@@ -238,7 +238,7 @@ TEST_P(CouplingFlowLevels, InverseUndoesForwardToFloatPrecision) {
   // Rounding of a latent coordinate comes back divided by the slopes: densities
   // here stay within e^+-2.5, so 2e-5 is some twenty roundings of the steepest.
   for (const Case& c :
-       {Case{FlowShape(), 1.0f, 0.5}, Case{FlowShape(), 2.0f, 1.0}}) {
+       {Case{CouplingShape(), 1.0f, 0.5}, Case{CouplingShape(), 2.0f, 1.0}}) {
     const CouplingFlow flow(c.shape, Weights(c.shape, c.scale), GetParam());
     const std::vector<float> z = Code(c.shape.code_size, c.code_norm);
     const int n = 1000;
@@ -256,14 +256,14 @@ TEST_P(CouplingFlowLevels, InverseUndoesForwardToFloatPrecision) {
 }
 
 TEST_P(CouplingFlowLevels, TrainingGradientMatchesTheReference) {
-  const FlowShape shape;
+  const CouplingShape shape;
   const std::vector<float> w = Weights(shape, 3.0f);
   const CouplingFlow flow(shape, w, GetParam());
   const Reference reference(shape, w.data());
   const std::vector<float> zf = Code(shape.code_size, 0.8);
   const std::vector<double> z(zf.begin(), zf.end());
-  std::vector<float> x = Points(kFlowBlock);
-  std::vector<float> value(kFlowBlock), adjoint(kFlowBlock);
+  std::vector<float> x = Points(kCouplingBlock);
+  std::vector<float> value(kCouplingBlock), adjoint(kCouplingBlock);
   std::mt19937_64 rng(1);
   std::normal_distribution<float> normal;
   for (float& a : adjoint) a = normal(rng);
@@ -274,8 +274,9 @@ TEST_P(CouplingFlowLevels, TrainingGradientMatchesTheReference) {
   pass.Backward(adjoint.data(), padded.data(), dz.data());
   flow.UnpadGradient(padded.data(), dw.data());
   std::vector<double> rw(w.size(), 0.0), rz(shape.code_size, 0.0);
-  for (int p = 0; p < kFlowBlock; ++p) {
-    const double xp[3] = {x[p], x[kFlowBlock + p], x[2 * kFlowBlock + p]};
+  for (int p = 0; p < kCouplingBlock; ++p) {
+    const double xp[3] = {x[p], x[kCouplingBlock + p],
+                          x[2 * kCouplingBlock + p]};
     std::vector<double> gz(shape.code_size), gw;
     reference.LogDensityWithGradient(xp, z.data(), nullptr, gz.data(), &gw);
     for (size_t i = 0; i < gw.size(); ++i) rw[i] += adjoint[p] * gw[i];
@@ -298,7 +299,7 @@ INSTANTIATE_TEST_SUITE_P(All, CouplingFlowLevels,
                          });
 
 TEST(CouplingFlow, SameBitsForAnyNumberOfThreads) {
-  const FlowShape shape;
+  const CouplingShape shape;
   const CouplingFlow flow(shape, Weights(shape, 3.0f));
   const std::vector<float> z = Code(shape.code_size, 1.0);
   const int n = 1000;
@@ -316,7 +317,7 @@ TEST(CouplingFlow, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(CouplingFlow, StaysFiniteForExtremeWeightsAndCodes) {
-  const FlowShape shape;
+  const CouplingShape shape;
   for (const float scale : {0.0f, 100.0f, 1e4f}) {
     for (const double norm : {0.0, 1.0, 1e3}) {
       const CouplingFlow flow(shape, Weights(shape, scale));

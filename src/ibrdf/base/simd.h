@@ -65,6 +65,20 @@ using Vi [[gnu::vector_size(IBRDF_SIMD_WIDTH * 4), gnu::may_alias]] = int32_t;
 #endif
 }
 
+// base[index[i]] in lane i.
+[[maybe_unused]] inline Vf GatherFloats(const float* base, Vi index) {
+#if IBRDF_SIMD_WIDTH == 16
+  return (Vf)_mm512_mask_i32gather_ps(_mm512_setzero_ps(), 0xffff,
+                                      (__m512i)index, base, 4);
+#elif IBRDF_SIMD_WIDTH == 8
+  return (Vf)_mm256_i32gather_ps(base, (__m256i)index, 4);
+#else
+  Vf v;
+  for (int i = 0; i < kLanes; ++i) v[i] = base[index[i]];
+  return v;
+#endif
+}
+
 // Transposes kLanes vectors of kLanes floats in place, by log2(kLanes) perfect
 // shuffles of pairs.
 [[maybe_unused]] inline void Transpose(Vf* rows) {

@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "ibrdf/base/parallel_for.h"
-#include "ibrdf/flow/coupling_flow_reference.h"
+#include "ibrdf/flow/merl_columns.h"
+#include "ibrdf/flow/reference_flow.h"
 
 namespace ibrdf {
 namespace {
@@ -26,17 +27,18 @@ double Colour(double log_colour) {
 LobeModel::LobeModel(const NeuralBrdfModel& model, int num_lobes,
                      const BrdfGridShape& grid, int num_threads)
     : model_(model),
-      flow_(model.shape, model.weights),
+      flow_(BrdfFlow::Create(model.shape, model.weights)),
       num_lobes_(num_lobes),
       grid_(grid),
       num_threads_(num_threads) {
   CHECK_GE(num_lobes, 1);
-  const int n = grid.num_nodes();
-  nodes_.resize(3 * static_cast<size_t>(n));
-  for (int node = 0; node < n; ++node) {
-    const Eigen::Vector3d x = grid.NodePoint(node);
-    for (int i = 0; i < 3; ++i) {
-      nodes_[static_cast<size_t>(i) * n + node] = static_cast<float>(x[i]);
+  nodes_ = FlowColumns(grid.d * grid.p, grid.h);
+  for (int i = 0; i < grid.h; ++i) {
+    for (int c = 0; c < nodes_.columns; ++c) {
+      const Eigen::Vector3d x = grid.NodePoint(i * nodes_.columns + c);
+      if (i == 0) nodes_.SetColumn(c, x[1], x[2]);
+      nodes_.x_h[static_cast<size_t>(i) * nodes_.columns + c] =
+          static_cast<float>(x[0]);
     }
   }
 }
@@ -51,14 +53,8 @@ void LobeModel::Tabulate(const double* parameters, bool derivatives,
     const double* z = parameters + static_cast<size_t>(k) * lobe_size();
     std::copy(z, z + code_size(), code.begin());
     float* value = fields->data() + static_cast<size_t>(k) * stride * n;
-    if (derivatives) {
-      flow_.LogDensityWithGradient(nodes_.data(), static_cast<int64_t>(n),
-                                   code.data(), num_threads_, value, value + n,
-                                   nullptr);
-    } else {
-      flow_.LogDensity(nodes_.data(), static_cast<int64_t>(n), code.data(),
-                       num_threads_, value, nullptr);
-    }
+    flow_->LogDensityOnColumns(nodes_, code.data(), num_threads_, value,
+                               derivatives ? value + n : nullptr);
     for (size_t i = 0; i < n; ++i) value[i] = Shape(model_.exponent, value[i]);
     for (int d = 1; d < stride; ++d) {
       float* derivative = value + d * n;
@@ -74,18 +70,17 @@ void LobeModel::TabulateReference(const double* parameters, bool derivatives,
   const size_t n = grid_.num_nodes();
   const int stride = derivatives ? 1 + code_size() : 1;
   fields->resize(n * stride * num_lobes_);
-  const CouplingFlowReference<double> flow(model_.shape, model_.weights.data());
+  const ReferenceFlow flow(model_);
   for (int k = 0; k < num_lobes_; ++k) {
     const double* z = parameters + static_cast<size_t>(k) * lobe_size();
     float* value = fields->data() + static_cast<size_t>(k) * stride * n;
     ParallelFor(static_cast<int64_t>(n), num_threads_, [&](int64_t i, int) {
-      const double x[3] = {nodes_[i], nodes_[n + i], nodes_[2 * n + i]};
-      double u[3];
+      const int column = static_cast<int>(i) % nodes_.columns;
+      const double x[3] = {nodes_.x_h[i], nodes_.x_d[column],
+                           nodes_.x_p[column]};
       std::vector<double> dz(code_size());
       const double log_density =
-          derivatives
-              ? flow.LogDensityWithGradient(x, z, nullptr, dz.data(), nullptr)
-              : flow.LogDensity(x, z, u);
+          flow.LogDensity(x, z, derivatives ? dz.data() : nullptr);
       value[i] = Shape(model_.exponent, log_density);
       for (int d = 1; d < stride; ++d) {
         value[d * n + i] =
@@ -114,23 +109,15 @@ BrdfGrid LobeModel::Combine(const double* parameters,
 }
 
 MerlTable LobeModel::ToMerl(const double* parameters) const {
+  const FlowColumns columns = MerlColumns();
+  const size_t n = columns.num_points();
+  std::vector<float> value(n), code(code_size());
   std::vector<int> bins;
-  for (int i = 0; i < kMerlThetaH; ++i) {
-    for (int j = 0; j < kMerlThetaD; ++j) {
-      for (int k = 0; k < kMerlPhiD; ++k) {
-        if (MerlBinAboveHorizon(i, j, k))
-          bins.push_back(MerlTable::Bin(i, j, k));
-      }
+  for (int bin = 0; bin < kMerlBins; ++bin) {
+    if (MerlBinAboveHorizon(bin / (kMerlThetaD * kMerlPhiD),
+                            bin / kMerlPhiD % kMerlThetaD, bin % kMerlPhiD)) {
+      bins.push_back(bin);
     }
-  }
-  const size_t n = bins.size();
-  std::vector<float> x(3 * n), value(n), code(code_size());
-  for (size_t p = 0; p < n; ++p) {
-    const Eigen::Vector3d cube =
-        ToUnitCube(MerlThetaH(bins[p] / (kMerlThetaD * kMerlPhiD)),
-                   MerlThetaD(bins[p] / kMerlPhiD % kMerlThetaD),
-                   MerlPhiD(bins[p] % kMerlPhiD));
-    for (int i = 0; i < 3; ++i) x[i * n + p] = static_cast<float>(cube[i]);
   }
   MerlTable table;
   table.raw.assign(size_t{3} * kMerlBins, -1.0);
@@ -140,12 +127,12 @@ MerlTable LobeModel::ToMerl(const double* parameters) const {
   for (int k = 0; k < num_lobes_; ++k) {
     const double* lobe = parameters + static_cast<size_t>(k) * lobe_size();
     std::copy(lobe, lobe + code_size(), code.begin());
-    flow_.LogDensity(x.data(), static_cast<int64_t>(n), code.data(),
-                     num_threads_, value.data(), nullptr);
-    for (size_t p = 0; p < n; ++p) {
-      const double shape = Shape(model_.exponent, value[p]);
+    flow_->LogDensityOnColumns(columns, code.data(), num_threads_, value.data(),
+                               nullptr);
+    for (const int bin : bins) {
+      const double shape = Shape(model_.exponent, value[bin]);
       for (int c = 0; c < 3; ++c) {
-        table.raw[size_t{kMerlBins} * c + bins[p]] +=
+        table.raw[size_t{kMerlBins} * c + bin] +=
             Colour(lobe[code_size() + c]) * shape;
       }
     }

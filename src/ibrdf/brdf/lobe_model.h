@@ -2,11 +2,12 @@
 // derivatives on the solver's grid.
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/merl_table.h"
-#include "ibrdf/flow/coupling_flow.h"
+#include "ibrdf/flow/brdf_flow.h"
 #include "ibrdf/flow/neural_brdf_model.h"
 
 namespace ibrdf {
@@ -21,7 +22,7 @@ class LobeModel {
             const BrdfGridShape& grid, int num_threads);
 
   int num_lobes() const { return num_lobes_; }
-  int code_size() const { return model_.shape.code_size; }
+  int code_size() const { return model_.shape.code_size(); }
   int lobe_size() const { return code_size() + 3; }
   int num_parameters() const { return num_lobes_ * lobe_size(); }
   int num_fields() const { return num_lobes_ * (1 + code_size()); }
@@ -34,8 +35,8 @@ class LobeModel {
   void Tabulate(const double* parameters, bool derivatives,
                 std::vector<float>* fields) const;
 
-  // The same shapes by the double-precision reference, slow: for checks of
-  // derivatives, which float rounding would hide.
+  // The same shapes by the flow's double-precision reference, slow: for checks
+  // of derivatives, which float rounding would hide.
   void TabulateReference(const double* parameters, bool derivatives,
                          std::vector<float>* fields) const;
 
@@ -52,11 +53,11 @@ class LobeModel {
 
  private:
   NeuralBrdfModel model_;
-  CouplingFlow flow_;
+  std::unique_ptr<BrdfFlow> flow_;
   int num_lobes_;
   BrdfGridShape grid_;
   int num_threads_;
-  std::vector<float> nodes_;  // [3][nodes], cube coordinates
+  FlowColumns nodes_;  // the grid
 };
 
 }  // namespace ibrdf

@@ -11,7 +11,7 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kP = kFlowBlock;
+constexpr int kP = kCouplingBlock;
 // The start's last layer, relative to He scaling: near the identity, yet with
 // enough signal for the hidden layers' first gradients.
 constexpr float kLastLayerScale = 0.1f;
@@ -27,8 +27,9 @@ void Gather(const float* from, int rows, int64_t count, int64_t begin, int n,
   }
 }
 
+template <typename T>
 void Scatter(const float* from, int rows, int64_t count, int64_t begin, int n,
-             float* to) {
+             T* to) {
   for (int r = 0; r < rows; ++r) {
     std::copy(from + r * kP, from + r * kP + n, to + r * count + begin);
   }
@@ -38,16 +39,17 @@ int64_t NumBlocks(int64_t count) { return (count + kP - 1) / kP; }
 
 }  // namespace
 
-const FlowKernels& GetFlowKernels(SimdLevel level) {
+const CouplingKernels& GetCouplingKernels(SimdLevel level) {
 #if defined(IBRDF_HAVE_X86_KERNELS)
-  if (level == SimdLevel::kAvx512) return avx512::kFlowKernels;
-  if (level == SimdLevel::kAvx2) return avx2::kFlowKernels;
+  if (level == SimdLevel::kAvx512) return avx512::kCouplingKernels;
+  if (level == SimdLevel::kAvx2) return avx2::kCouplingKernels;
 #endif
   (void)level;
-  return portable::kFlowKernels;
+  return portable::kCouplingKernels;
 }
 
-std::vector<float> InitialFlowWeights(const FlowShape& shape, uint64_t seed) {
+std::vector<float> InitialCouplingWeights(const CouplingShape& shape,
+                                          uint64_t seed) {
   std::mt19937_64 rng(seed);
   std::normal_distribution<float> normal;
   std::vector<float> weights(shape.NumWeights(), 0.0f);
@@ -75,16 +77,14 @@ std::vector<float> InitialFlowWeights(const FlowShape& shape, uint64_t seed) {
   return weights;
 }
 
-CouplingFlow::CouplingFlow(const FlowShape& shape,
+CouplingFlow::CouplingFlow(const CouplingShape& shape,
                            const std::vector<float>& weights, SimdLevel level)
-    : shape_(shape), kernels_(&GetFlowKernels(level)) {
+    : shape_(shape), kernels_(&GetCouplingKernels(level)) {
   CHECK(shape.Validate().empty()) << shape.Validate();
-  for (const DenseLayer& d : shape.DenseLayers()) {
-    dense_.push_back({d.in, d.in_count, d.out, d.out_count, d.activation,
-                      d.weight_offset, d.bias_offset, padded_per_layer_});
-    padded_per_layer_ +=
-        static_cast<size_t>(d.out_count) * PaddedCount(d.in_count);
-  }
+  dense_ = shape.DenseLayers();
+  padded_per_layer_ = dense_.back().padded_offset +
+                      static_cast<size_t>(dense_.back().out_count) *
+                          PaddedCount(dense_.back().in_count);
   SetWeights(weights);
 }
 
@@ -93,8 +93,8 @@ void CouplingFlow::SetWeights(const std::vector<float>& weights) {
   weights_ = weights;
 }
 
-FlowView CouplingFlow::View(const float* first_bias) const {
-  FlowView v;
+CouplingView CouplingFlow::View(const float* first_bias) const {
+  CouplingView v;
   v.layers = shape_.layers;
   v.bins = shape_.bins;
   v.code_size = shape_.code_size;
@@ -128,30 +128,10 @@ std::vector<float> CouplingFlow::FirstBias(const float* code) const {
 }
 
 void CouplingFlow::LogDensity(const float* x, int64_t count, const float* code,
-                              int num_threads, float* log_density,
-                              float* latent) const {
+                              int num_threads, float* log_density, float* dcode,
+                              float* dx) const {
   const std::vector<float> bias = FirstBias(code);
-  const FlowView v = View(bias.data());
-  if (num_threads <= 0) num_threads = HardwareThreads();
-  std::vector<std::vector<float>> tapes(num_threads);
-  ParallelFor(NumBlocks(count), num_threads, [&](int64_t block, int worker) {
-    tapes[worker].resize(FlowTapeFloats(v));
-    const int64_t begin = block * kP;
-    const int n = static_cast<int>(std::min<int64_t>(kP, count - begin));
-    float points[3 * kP], u[3 * kP], value[kP];
-    Gather(x, 3, count, begin, n, points);
-    kernels_->forward(v, points, tapes[worker].data(), u, value);
-    Scatter(value, 1, count, begin, n, log_density);
-    if (latent != nullptr) Scatter(u, 3, count, begin, n, latent);
-  });
-}
-
-void CouplingFlow::LogDensityWithGradient(const float* x, int64_t count,
-                                          const float* code, int num_threads,
-                                          float* log_density, float* dcode,
-                                          float* dx) const {
-  const std::vector<float> bias = FirstBias(code);
-  const FlowView v = View(bias.data());
+  const CouplingView v = View(bias.data());
   if (num_threads <= 0) num_threads = HardwareThreads();
   struct Worker {
     std::vector<float> tape, scratch, dcode;
@@ -159,19 +139,20 @@ void CouplingFlow::LogDensityWithGradient(const float* x, int64_t count,
   std::vector<Worker> workers(num_threads);
   ParallelFor(NumBlocks(count), num_threads, [&](int64_t block, int worker) {
     Worker& w = workers[worker];
-    w.tape.resize(FlowTapeFloats(v));
-    w.scratch.resize(FlowScratchFloats(v.rows));
-    w.dcode.resize(static_cast<size_t>(v.code_size) * kP);
+    w.tape.resize(CouplingTapeFloats(v));
     const int64_t begin = block * kP;
     const int n = static_cast<int>(std::min<int64_t>(kP, count - begin));
     float points[3 * kP], u[3 * kP], value[kP], gx[3 * kP], ones[kP];
-    std::fill(ones, ones + kP, 1.0f);
     Gather(x, 3, count, begin, n, points);
     kernels_->forward(v, points, w.tape.data(), u, value);
+    Scatter(value, 1, count, begin, n, log_density);
+    if (dcode == nullptr && dx == nullptr) return;
+    w.scratch.resize(CouplingScratchFloats(v.rows));
+    w.dcode.resize(static_cast<size_t>(v.code_size) * kP);
+    std::fill(ones, ones + kP, 1.0f);
     kernels_->backward(v, w.tape.data(), ones, w.scratch.data(), nullptr,
                        nullptr, dcode != nullptr ? w.dcode.data() : nullptr,
                        dx != nullptr ? gx : nullptr);
-    Scatter(value, 1, count, begin, n, log_density);
     if (dcode != nullptr) {
       Scatter(w.dcode.data(), v.code_size, count, begin, n, dcode);
     }
@@ -179,79 +160,163 @@ void CouplingFlow::LogDensityWithGradient(const float* x, int64_t count,
   });
 }
 
-void CouplingFlow::Inverse(const float* latent, int64_t count,
-                           const float* code, int num_threads, float* x,
-                           float* log_density) const {
+void CouplingFlow::LogDensityOnColumns(const FlowColumns& x, const float* code,
+                                       int num_threads, float* log_density,
+                                       float* dcode) const {
+  const int64_t count = x.num_points();
+  std::vector<float> points(x.x_h);
+  points.resize(3 * count);
+  for (int i = 0; i < x.points; ++i) {
+    const int64_t at = static_cast<int64_t>(i) * x.columns;
+    std::copy(x.x_d.begin(), x.x_d.end(), points.begin() + count + at);
+    std::copy(x.x_p.begin(), x.x_p.end(), points.begin() + 2 * count + at);
+  }
+  LogDensity(points.data(), count, code, num_threads, log_density, dcode,
+             nullptr);
+}
+
+void CouplingFlow::Latent(const double* x, int64_t count, const float* code,
+                          int num_threads, double* latent) const {
   const std::vector<float> bias = FirstBias(code);
-  const FlowView v = View(bias.data());
-  if (num_threads <= 0) num_threads = HardwareThreads();
-  std::vector<std::vector<float>> scratch(num_threads);
-  ParallelFor(NumBlocks(count), num_threads, [&](int64_t block, int worker) {
-    scratch[worker].resize(static_cast<size_t>(v.rows) * kP);
+  const CouplingView v = View(bias.data());
+  const std::vector<float> from(x, x + 3 * count);
+  ParallelFor(NumBlocks(count), num_threads, [&](int64_t block, int) {
+    std::vector<float> tape(CouplingTapeFloats(v));
     const int64_t begin = block * kP;
     const int n = static_cast<int>(std::min<int64_t>(kP, count - begin));
-    float u[3 * kP], points[3 * kP], value[kP];
-    Gather(latent, 3, count, begin, n, u);
-    kernels_->inverse(v, u, scratch[worker].data(), points, value);
-    Scatter(points, 3, count, begin, n, x);
-    if (log_density != nullptr) {
-      Scatter(value, 1, count, begin, n, log_density);
-    }
+    float points[3 * kP], u[3 * kP], value[kP];
+    Gather(from.data(), 3, count, begin, n, points);
+    kernels_->forward(v, points, tape.data(), u, value);
+    Scatter(u, 3, count, begin, n, latent);
   });
 }
 
-CouplingFlow::TrainingPass::TrainingPass(const CouplingFlow& flow)
-    : flow_(flow), latent_(3 * kP) {
-  const FlowView v = flow.View(nullptr);
-  tape_.resize(FlowTapeFloats(v));
-  scratch_.resize(FlowScratchFloats(v.rows));
-  bias_.resize(static_cast<size_t>(v.layers) * v.rows);
+void CouplingFlow::Inverse(const double* latent, int64_t count,
+                           const float* code, int num_threads,
+                           double* x) const {
+  const std::vector<float> bias = FirstBias(code);
+  const CouplingView v = View(bias.data());
+  const std::vector<float> from(latent, latent + 3 * count);
+  ParallelFor(NumBlocks(count), num_threads, [&](int64_t block, int) {
+    std::vector<float> scratch(static_cast<size_t>(v.rows) * kP);
+    const int64_t begin = block * kP;
+    const int n = static_cast<int>(std::min<int64_t>(kP, count - begin));
+    float u[3 * kP], points[3 * kP], value[kP];
+    Gather(from.data(), 3, count, begin, n, u);
+    kernels_->inverse(v, u, scratch.data(), points, value);
+    Scatter(points, 3, count, begin, n, x);
+  });
 }
 
-void CouplingFlow::TrainingPass::Forward(const float* x, const float* code,
-                                         float* log_density) {
-  code_.assign(code, code + flow_.shape_.code_size);
-  first_bias_ = flow_.FirstBias(code);
-  flow_.kernels_->forward(flow_.View(first_bias_.data()), x, tape_.data(),
-                          latent_.data(), log_density);
+class CouplingFlow::Pass final : public BrdfFlow::TrainingPass {
+ public:
+  explicit Pass(const CouplingFlow& flow)
+      : flow_(flow),
+        scratch_(CouplingScratchFloats(flow.View(nullptr).rows)),
+        bias_(static_cast<size_t>(flow.shape_.layers) *
+              flow.View(nullptr).rows) {}
+
+  void Forward(const FlowColumns& x, int num_codes, const float* codes,
+               float* log_density) override {
+    const int size = flow_.shape_.code_size;
+    columns_ = x.columns;
+    per_code_ = x.columns / num_codes;
+    num_codes_ = num_codes;
+    points_ = x.points;
+    CHECK_EQ(0, per_code_ * points_ % kP);
+    codes_.assign(codes, codes + static_cast<size_t>(num_codes) * size);
+    const int blocks = per_code_ * points_ / kP;
+    tapes_.resize(static_cast<size_t>(num_codes) * blocks);
+    for (int c = 0; c < num_codes; ++c) {
+      const std::vector<float> first_bias = flow_.FirstBias(codes + c * size);
+      const CouplingView v = flow_.View(first_bias.data());
+      for (int b = 0; b < blocks; ++b) {
+        float point[3 * kP], u[3 * kP], value[kP];
+        for (int p = 0; p < kP; ++p) {
+          const size_t at = At(c, b * kP + p);
+          const size_t column = at % x.columns;
+          point[p] = x.x_h[at];
+          point[kP + p] = x.x_d[column];
+          point[2 * kP + p] = x.x_p[column];
+        }
+        std::vector<float>& tape = tapes_[c * blocks + b];
+        tape.resize(CouplingTapeFloats(v));
+        flow_.kernels_->forward(v, point, tape.data(), u, value);
+        for (int p = 0; p < kP; ++p) log_density[At(c, b * kP + p)] = value[p];
+      }
+    }
+  }
+
+  void Backward(const float* adjoint, float* gradient,
+                float* code_gradient) override {
+    const CouplingShape& shape = flow_.shape_;
+    const int blocks = per_code_ * points_ / kP, size = shape.code_size;
+    for (int c = 0; c < num_codes_; ++c) {
+      const float* code = codes_.data() + static_cast<size_t>(c) * size;
+      const std::vector<float> first_bias = flow_.FirstBias(code);
+      const CouplingView v = flow_.View(first_bias.data());
+      std::fill(bias_.begin(), bias_.end(), 0.0f);
+      for (int b = 0; b < blocks; ++b) {
+        float g[kP];
+        for (int p = 0; p < kP; ++p) g[p] = adjoint[At(c, b * kP + p)];
+        flow_.kernels_->backward(v, tapes_[c * blocks + b].data(), g,
+                                 scratch_.data(), gradient, bias_.data(),
+                                 nullptr, nullptr);
+      }
+      AddCodeGradient(v, code, gradient, code_gradient + c * size);
+    }
+  }
+
+ private:
+  // Index [points][columns] of the k-th point of a code.
+  size_t At(int code, int k) const {
+    return static_cast<size_t>(k / per_code_) * columns_ +
+           static_cast<size_t>(code) * per_code_ + k % per_code_;
+  }
+
+  // The code's weights see the sums of the biases' gradients.
+  void AddCodeGradient(const CouplingView& v, const float* code,
+                       float* gradient, float* code_gradient) const {
+    const CouplingShape& shape = flow_.shape_;
+    float* biases = gradient + v.layers * v.padded_per_layer;
+    float* codes = biases + bias_.size();
+    for (size_t i = 0; i < bias_.size(); ++i) biases[i] += bias_[i];
+    const DenseLayer& first = flow_.dense_[0];
+    for (int l = 0; l < shape.layers; ++l) {
+      const float* w = flow_.weights_.data() + l * shape.WeightsPerLayer() +
+                       shape.CodeWeightOffset();
+      for (int o = 0; o < first.out_count; ++o) {
+        const float g = bias_[static_cast<size_t>(l) * v.rows + first.out + o];
+        const size_t row = static_cast<size_t>(o) * shape.code_size;
+        float* gw = codes +
+                    l * static_cast<size_t>(first.out_count) * shape.code_size +
+                    row;
+        for (int k = 0; k < shape.code_size; ++k) {
+          gw[k] += g * code[k];
+          code_gradient[k] += g * w[row + k];
+        }
+      }
+    }
+  }
+
+  const CouplingFlow& flow_;
+  int columns_ = 0, per_code_ = 1, num_codes_ = 0, points_ = 0;
+  std::vector<std::vector<float>> tapes_;
+  std::vector<float> codes_, scratch_, bias_;
+};
+
+std::unique_ptr<BrdfFlow::TrainingPass> CouplingFlow::NewTrainingPass() const {
+  return std::make_unique<Pass>(*this);
 }
 
-size_t CouplingFlow::PaddedGradientSize() const {
+size_t CouplingFlow::GradientSize() const {
   // Weights, then biases as activation rows, then the code's weights.
   return shape_.layers *
          (padded_per_layer_ + shape_.ActivationRows() +
           static_cast<size_t>(shape_.widths[0]) * shape_.code_size);
 }
 
-void CouplingFlow::TrainingPass::Backward(const float* adjoint, float* gradient,
-                                          float* code_gradient) {
-  const FlowShape& shape = flow_.shape_;
-  const FlowView v = flow_.View(first_bias_.data());
-  std::fill(bias_.begin(), bias_.end(), 0.0f);
-  flow_.kernels_->backward(v, tape_.data(), adjoint, scratch_.data(), gradient,
-                           bias_.data(), nullptr, nullptr);
-  float* biases = gradient + v.layers * v.padded_per_layer;
-  float* codes = biases + bias_.size();
-  for (size_t i = 0; i < bias_.size(); ++i) biases[i] += bias_[i];
-  const FlowDense& first = flow_.dense_[0];
-  for (int l = 0; l < shape.layers; ++l) {
-    const float* w = flow_.weights_.data() + l * shape.WeightsPerLayer() +
-                     shape.CodeWeightOffset();
-    for (int o = 0; o < first.out_count; ++o) {
-      const float g = bias_[static_cast<size_t>(l) * v.rows + first.out + o];
-      const size_t row = static_cast<size_t>(o) * shape.code_size;
-      float* gw = codes +
-                  l * static_cast<size_t>(first.out_count) * shape.code_size +
-                  row;
-      for (int k = 0; k < shape.code_size; ++k) {
-        gw[k] += g * code_[k];
-        code_gradient[k] += g * w[row + k];
-      }
-    }
-  }
-}
-
-void CouplingFlow::UnpadGradient(const float* padded, float* gradient) const {
+void CouplingFlow::AddGradient(const float* padded, float* gradient) const {
   const int rows = shape_.ActivationRows();
   const float* biases = padded + shape_.layers * padded_per_layer_;
   const float* codes = biases + static_cast<size_t>(shape_.layers) * rows;
@@ -260,7 +325,7 @@ void CouplingFlow::UnpadGradient(const float* padded, float* gradient) const {
   for (int l = 0; l < shape_.layers; ++l) {
     float* g = gradient + l * shape_.WeightsPerLayer();
     const float* pg = padded + l * padded_per_layer_;
-    for (const FlowDense& d : dense_) {
+    for (const DenseLayer& d : dense_) {
       for (int o = 0; o < d.out_count; ++o) {
         for (int k = 0; k < d.in_count; ++k) {
           g[d.weight_offset + static_cast<size_t>(o) * d.in_count + k] +=

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "ibrdf/flow/flow_shape.h"
+#include "ibrdf/flow/coupling_shape.h"
 
 namespace ibrdf {
 
@@ -14,7 +14,7 @@ class CouplingFlowReference {
  public:
   // weights: [shape.NumWeights()], converted to T.
   template <typename W>
-  CouplingFlowReference(const FlowShape& shape, const W* weights)
+  CouplingFlowReference(const CouplingShape& shape, const W* weights)
       : shape_(shape),
         dense_(shape.DenseLayers()),
         weights_(weights, weights + shape.NumWeights()) {}
@@ -241,7 +241,7 @@ class CouplingFlowReference {
     gx[dims.second] += 2 * grows[1];
   }
 
-  FlowShape shape_;
+  CouplingShape shape_;
   std::vector<DenseLayer> dense_;
   std::vector<T> weights_;
 };

@@ -1,61 +1,35 @@
-// Sizes of the invertible network and where its weights lie.
+// Which flow a model uses, and its sizes.
 #pragma once
-#include <cstddef>
 #include <string>
-#include <vector>
 
-#include "ibrdf/flow/flow_constants.h"
+#include "ibrdf/flow/coupling_shape.h"
+#include "ibrdf/flow/triangular_shape.h"
 
 namespace ibrdf {
 
-// One dense layer of a conditioner: rows [out, out + out_count) of the
-// activations = act(W rows [in, in + in_count) + b). Offsets count floats from
-// the start of the coupling layer's weights; W is [out_count][in_count].
-struct DenseLayer {
-  int in = 0, in_count = 0;
-  int out = 0, out_count = 0;
-  bool activation = true;
-  size_t weight_offset = 0;
-  size_t bias_offset = 0;
-};
+// kTriangular is what ships; kCoupling is the alternating stack of Chen et al.
+// 2020, Sec. 4.2, kept for comparison (experiments/reflectance_model).
+enum class FlowArchitecture { kTriangular, kCoupling };
 
-// A stack of coupling layers on the unit cube (Chen et al. 2020, Sec. 4.2).
-// Layer l transforms dimension l mod 3 by a monotone piecewise-quadratic map
-// (Mueller et al. 2019) whose 2 * bins + 1 parameters a UNet-shaped network
-// makes from the other two dimensions and the code: dense layers of
-// widths[0] > widths[1] > ... and back, the way up seeing the same level of the
-// way down beside its own activations.
 struct FlowShape {
-  int layers = 6;
-  int bins = 8;
-  int code_size = 16;
-  std::vector<int> widths = {64, 32, 16};
+  FlowArchitecture architecture = FlowArchitecture::kTriangular;
+  TriangularShape triangular;  // read where `architecture` says so
+  CouplingShape coupling;      // likewise
 
-  int SplineParameters() const { return 2 * bins + 1; }
-
-  // Rows of activations: 2 inputs, then per level down and up side by side,
-  // the innermost level, the spline parameters.
-  int ActivationRows() const;
-  int OutputRow() const { return ActivationRows() - SplineParameters(); }
-
-  // Dense layers in order of evaluation. The first one's in_count is 2; its
-  // code part is [widths[0]][code_size] at CodeWeightOffset().
-  std::vector<DenseLayer> DenseLayers() const;
-  size_t CodeWeightOffset() const;
-  size_t WeightsPerLayer() const;
-  size_t NumWeights() const { return layers * WeightsPerLayer(); }
-
+  int code_size() const {
+    return architecture == FlowArchitecture::kTriangular ? triangular.code_size
+                                                         : coupling.code_size;
+  }
+  size_t NumWeights() const {
+    return architecture == FlowArchitecture::kTriangular
+               ? triangular.NumWeights()
+               : coupling.NumWeights();
+  }
   // Empty if the sizes make sense, else what is wrong.
-  std::string Validate() const;
+  std::string Validate() const {
+    return architecture == FlowArchitecture::kTriangular ? triangular.Validate()
+                                                         : coupling.Validate();
+  }
 };
-
-// Dimension that layer l transforms, and the two that condition it.
-struct CouplingDims {
-  int transformed, first, second;
-};
-inline CouplingDims DimsOfLayer(int layer) {
-  const int t = layer % 3;
-  return {t, t == 0 ? 1 : 0, t == 2 ? 1 : 2};
-}
 
 }  // namespace ibrdf

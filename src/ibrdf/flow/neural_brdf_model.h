@@ -9,12 +9,12 @@ namespace ibrdf {
 
 // One lobe of the model is colour * q(x | z)^exponent, where q is the flow's
 // density on the unit cube x = (sqrt(theta_h / bound), theta_d, phi_d) (see
-// brdf_grid.h). exponent 1 is Chen et al. 2020, Eq. 5; a larger one lets a
-// density of moderate range stand for reflectance of many orders of magnitude,
-// while scale and hue stay exact factors outside.
+// brdf_grid.h). Exponent 1 is Chen et al. 2020, Eq. 5, and what ships; a larger
+// one lets the coupling stack, whose densities have a moderate range, stand for
+// reflectance of many orders of magnitude.
 struct NeuralBrdfModel {
   FlowShape shape;
-  double exponent = 4.0;
+  double exponent = 1.0;
   std::vector<float> weights;  // [shape.NumWeights()]
 
   // The embedding: one code per training distribution (material and channel).

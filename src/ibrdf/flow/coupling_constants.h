@@ -9,8 +9,4 @@ namespace ibrdf {
 // kMinWidth, so that no bin and no slope vanishes whatever the weights.
 inline constexpr double kSlopeRange = 6.0;
 inline constexpr double kMinWidth = 1e-3;
-// Activation (x + sqrt(x^2 + kSharpness)) / 2: a smooth ReLU, so that residuals
-// have continuous derivatives in code and colour.
-inline constexpr double kSharpness = 0.25;
-
 }  // namespace ibrdf

@@ -1,8 +1,8 @@
-#include "ibrdf/flow/flow_shape.h"
+#include "ibrdf/flow/coupling_shape.h"
 
 namespace ibrdf {
 
-int FlowShape::ActivationRows() const {
+int CouplingShape::ActivationRows() const {
   int rows = 2;
   for (size_t i = 0; i < widths.size(); ++i) {
     rows += widths[i] * (i + 1 < widths.size() ? 2 : 1);
@@ -10,7 +10,7 @@ int FlowShape::ActivationRows() const {
   return rows + SplineParameters();
 }
 
-std::vector<DenseLayer> FlowShape::DenseLayers() const {
+std::vector<DenseLayer> CouplingShape::DenseLayers() const {
   const int levels = static_cast<int>(widths.size());
   std::vector<int> start(levels);  // first row of a level's way down
   int row = 2;
@@ -19,10 +19,12 @@ std::vector<DenseLayer> FlowShape::DenseLayers() const {
     row += widths[i] * (i + 1 < levels ? 2 : 1);
   }
   std::vector<DenseLayer> dense;
-  size_t offset = 0;
+  size_t offset = 0, padded = 0;
   const auto add = [&](int in, int in_count, int out, int out_count,
                        bool activation) {
-    DenseLayer layer{in, in_count, out, out_count, activation, offset, 0};
+    DenseLayer layer{in,         in_count, out, out_count,
+                     activation, offset,   0,   padded};
+    padded += static_cast<size_t>(out_count) * PaddedCount(in_count);
     offset += static_cast<size_t>(in_count) * out_count;
     layer.bias_offset = offset;
     offset += out_count;
@@ -43,16 +45,16 @@ std::vector<DenseLayer> FlowShape::DenseLayers() const {
   return dense;
 }
 
-size_t FlowShape::CodeWeightOffset() const {
+size_t CouplingShape::CodeWeightOffset() const {
   return static_cast<size_t>(widths[0]) * 3;  // after W [w0][2] and b [w0]
 }
 
-size_t FlowShape::WeightsPerLayer() const {
+size_t CouplingShape::WeightsPerLayer() const {
   const DenseLayer last = DenseLayers().back();
   return last.bias_offset + last.out_count;
 }
 
-std::string FlowShape::Validate() const {
+std::string CouplingShape::Validate() const {
   if (layers < 3 || layers > 64) return "layers must be in [3, 64]";
   if (bins < 2 || bins > 32) return "bins must be in [2, 32]";
   if (code_size < 1 || code_size > 256) return "code size must be in [1, 256]";

@@ -1,102 +1,32 @@
-#include "ibrdf/flow/flow_kernels.h"
+#include "ibrdf/flow/coupling_kernels.h"
 
-#include "ibrdf/base/simd.h"
-#include "ibrdf/flow/flow_constants.h"
+#include "ibrdf/flow/coupling_constants.h"
+#include "ibrdf/flow/dense_kernels.h"
 
 namespace ibrdf {
 namespace IBRDF_SIMD_NAMESPACE {
 namespace {
 
-constexpr int kP = kFlowBlock;
+constexpr int kP = kCouplingBlock;
 constexpr int kMaxBins = 32;
 constexpr float kSlopeRangeF = static_cast<float>(kSlopeRange);
 constexpr float kMinWidthF = static_cast<float>(kMinWidth);
-constexpr float kSharpnessF = static_cast<float>(kSharpness);
-
-// C[i][j] (+)= sum_k A[i * a_row + k * a_col] B[k][j] for M rows of C and two
-// vectors of columns: the one inner loop of all matrix products here.
-template <int M, bool kAdd>
-inline void Tile(int depth, const float* a, size_t a_row, size_t a_col,
-                 const float* b, size_t b_row, float* c, size_t c_row,
-                 const float* bias) {
-  Vf acc0[M], acc1[M];
-  for (int i = 0; i < M; ++i) {
-    acc0[i] = acc1[i] = bias != nullptr ? Splat(bias[i]) : Vf{};
-  }
-  for (int k = 0; k < depth; ++k) {
-    const Vf b0 = Load(b + k * b_row);
-    const Vf b1 = Load(b + k * b_row + kLanes);
-#pragma GCC unroll 8
-    for (int i = 0; i < M; ++i) {
-      const Vf w = Splat(a[i * a_row + k * a_col]);
-      acc0[i] += w * b0;
-      acc1[i] += w * b1;
-    }
-  }
-  for (int i = 0; i < M; ++i) {
-    float* out = c + i * c_row;
-    Store(out, kAdd ? Load(out) + acc0[i] : acc0[i]);
-    Store(out + kLanes, kAdd ? Load(out + kLanes) + acc1[i] : acc1[i]);
-  }
-}
-
-// The product for any number of rows; columns: a multiple of 2 kLanes.
-template <bool kAdd>
-inline void Product(int rows, int columns, int depth, const float* a,
-                    size_t a_row, size_t a_col, const float* b, size_t b_row,
-                    float* c, size_t c_row, const float* bias) {
-  constexpr int kRows = kLanes == 16 ? 8 : (kLanes == 8 ? 6 : 4);
-  for (int j = 0; j < columns; j += 2 * kLanes) {
-    int i = 0;
-    for (; i + kRows <= rows; i += kRows) {
-      Tile<kRows, kAdd>(depth, a + i * a_row, a_row, a_col, b + j, b_row,
-                        c + i * c_row + j, c_row, bias ? bias + i : nullptr);
-    }
-    for (; i + 2 <= rows; i += 2) {
-      Tile<2, kAdd>(depth, a + i * a_row, a_row, a_col, b + j, b_row,
-                    c + i * c_row + j, c_row, bias ? bias + i : nullptr);
-    }
-    for (; i < rows; ++i) {
-      Tile<1, kAdd>(depth, a + i * a_row, a_row, a_col, b + j, b_row,
-                    c + i * c_row + j, c_row, bias ? bias + i : nullptr);
-    }
-  }
-}
-
-inline Vf Abs(Vf x) { return AsFloat(AsInt(x) & 0x7fffffff); }
-
-inline void ActivateRows(float* rows, int count) {
-  for (int i = 0; i < count * kP; i += kLanes) {
-    const Vf x = Load(rows + i);
-    const Vf t = Sqrt(x * x + kSharpnessF) + Abs(x);
-    Store(rows + i, Select(x > 0.0f, t * 0.5f, (0.5f * kSharpnessF) / t));
-  }
-}
-
-// g *= act'(x), written by the activation y alone.
-inline void ActivationAdjoint(const float* y, float* g, int count) {
-  for (int i = 0; i < count * kP; i += kLanes) {
-    const Vf v = Load(y + i);
-    const Vf y2 = 4.0f * v * v;
-    Store(g + i, Load(g + i) * (y2 / (y2 + kSharpnessF)));
-  }
-}
 
 // a, b: the conditioning coordinates [64]. Fills the activations.
-void Conditioner(const FlowView& v, int layer, const float* a, const float* b,
-                 float* rows) {
+void Conditioner(const CouplingView& v, int layer, const float* a,
+                 const float* b, float* rows) {
   for (int p = 0; p < kP; p += kLanes) {
     Store(rows + p, 2.0f * Load(a + p) - 1.0f);
     Store(rows + kP + p, 2.0f * Load(b + p) - 1.0f);
   }
   const float* w = v.weights + layer * v.weights_per_layer;
   for (int i = 0; i < v.num_dense; ++i) {
-    const FlowDense& d = v.dense[i];
+    const DenseLayer& d = v.dense[i];
     const float* bias =
         i == 0 ? v.first_bias + layer * d.out_count : w + d.bias_offset;
     Product<false>(d.out_count, kP, d.in_count, w + d.weight_offset, d.in_count,
                    1, rows + d.in * kP, kP, rows + d.out * kP, kP, bias);
-    if (d.activation) ActivateRows(rows + d.out * kP, d.out_count);
+    if (d.activation) Activate(rows + d.out * kP, d.out_count * kP);
   }
 }
 
@@ -164,7 +94,7 @@ inline Piece FindPiece(int n, const Spline& s, Vf target) {
 
 inline Vf Clamp01(Vf x) { return Min(Max(x, Vf{}), Splat(1.0f)); }
 
-void Forward(const FlowView& v, const float* x, float* tape, float* u,
+void Forward(const CouplingView& v, const float* x, float* tape, float* u,
              float* log_density) {
   const size_t layer_floats = static_cast<size_t>(v.rows + 2) * kP;
   for (int i = 0; i < 3 * kP; i += kLanes) Store(u + i, Load(x + i));
@@ -241,23 +171,7 @@ inline void SplineAdjoint(int n, const float* params, int p, Vf xi, Vf y,
   Store(gut + p, gn * slope + da);
 }
 
-// [count][64] -> [64][padded], zeros beyond count.
-void TransposeRows(const float* rows, int count, int padded, float* out) {
-  for (int k = 0; k < padded; k += kLanes) {
-    for (int p = 0; p < kP; p += kLanes) {
-      Vf tile[kLanes];
-      for (int i = 0; i < kLanes; ++i) {
-        tile[i] = k + i < count ? Load(rows + (k + i) * kP + p) : Vf{};
-      }
-      Transpose(tile);
-      for (int i = 0; i < kLanes; ++i) {
-        Store(out + (p + i) * padded + k, tile[i]);
-      }
-    }
-  }
-}
-
-void Backward(const FlowView& v, const float* tape, const float* adjoint,
+void Backward(const CouplingView& v, const float* tape, const float* adjoint,
               float* scratch, float* weight_gradient, float* bias_gradient,
               float* dcode, float* dx) {
   const size_t layer_floats = static_cast<size_t>(v.rows + 2) * kP;
@@ -281,22 +195,15 @@ void Backward(const FlowView& v, const float* tape, const float* adjoint,
     }
     const float* w = v.weights + l * v.weights_per_layer;
     for (int i = v.num_dense - 1; i >= 0; --i) {
-      const FlowDense& d = v.dense[i];
+      const DenseLayer& d = v.dense[i];
       float* g = grows + d.out * kP;
-      if (d.activation) ActivationAdjoint(rows + d.out * kP, g, d.out_count);
+      if (d.activation)
+        ActivationAdjoint(rows + d.out * kP, g, d.out_count * kP);
       if (weight_gradient != nullptr) {
-        float* gb = bias_gradient + static_cast<size_t>(l) * v.rows + d.out;
-        for (int o = 0; o < d.out_count; ++o) {
-          Vf sum = Vf{};
-          for (int p = 0; p < kP; p += kLanes) sum += Load(g + o * kP + p);
-          gb[o] += Sum(sum);
-        }
-        const int padded =
-            (d.in_count + 2 * kLanes - 1) / (2 * kLanes) * (2 * kLanes);
-        TransposeRows(rows + d.in * kP, d.in_count, padded, transposed);
-        float* gw = weight_gradient + l * v.padded_per_layer + d.padded_offset;
-        Product<true>(d.out_count, padded, kP, g, kP, 1, transposed, padded, gw,
-                      PaddedCount(d.in_count), nullptr);
+        AddLayerGradient<kP>(
+            d, rows + d.in * kP, g, transposed,
+            bias_gradient + static_cast<size_t>(l) * v.rows + d.out,
+            weight_gradient + l * v.padded_per_layer + d.padded_offset);
       }
       if (i > 0 || dx != nullptr || l > 0) {
         Product<true>(d.in_count, kP, d.out_count, w + d.weight_offset, 1,
@@ -319,7 +226,7 @@ void Backward(const FlowView& v, const float* tape, const float* adjoint,
   }
 }
 
-void Inverse(const FlowView& v, const float* u, float* scratch, float* x,
+void Inverse(const CouplingView& v, const float* u, float* scratch, float* x,
              float* log_density) {
   for (int i = 0; i < 3 * kP; i += kLanes) Store(x + i, Load(u + i));
   for (int p = 0; p < kP; p += kLanes) Store(log_density + p, Vf{});
@@ -345,8 +252,8 @@ void Inverse(const FlowView& v, const float* u, float* scratch, float* x,
 
 }  // namespace
 
-extern const FlowKernels kFlowKernels;
-const FlowKernels kFlowKernels = {Forward, Backward, Inverse};
+extern const CouplingKernels kCouplingKernels;
+const CouplingKernels kCouplingKernels = {Forward, Backward, Inverse};
 
 }  // namespace IBRDF_SIMD_NAMESPACE
 }  // namespace ibrdf

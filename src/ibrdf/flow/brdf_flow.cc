@@ -1,0 +1,41 @@
+#include "ibrdf/flow/brdf_flow.h"
+
+#include <cmath>
+
+#include "ibrdf/flow/coupling_flow.h"
+#include "ibrdf/flow/triangular_flow.h"
+
+namespace ibrdf {
+
+FlowColumns::FlowColumns(int num_columns, int num_points)
+    : columns(num_columns),
+      points(num_points),
+      x_d(num_columns),
+      x_p(num_columns),
+      cosine(num_columns, 1.0f),
+      sine(num_columns),
+      x_h(static_cast<size_t>(num_columns) * num_points) {}
+
+void FlowColumns::SetColumn(int column, double xd, double xp) {
+  x_d[column] = static_cast<float>(xd);
+  x_p[column] = static_cast<float>(xp);
+  cosine[column] = static_cast<float>(std::cos(2 * M_PI * xp));
+  sine[column] = static_cast<float>(std::sin(2 * M_PI * xp));
+}
+
+std::unique_ptr<BrdfFlow> BrdfFlow::Create(const FlowShape& shape,
+                                           const std::vector<float>& weights,
+                                           SimdLevel level) {
+  if (shape.architecture == FlowArchitecture::kTriangular) {
+    return std::make_unique<TriangularFlow>(shape.triangular, weights, level);
+  }
+  return std::make_unique<CouplingFlow>(shape.coupling, weights, level);
+}
+
+std::vector<float> InitialFlowWeights(const FlowShape& shape, uint64_t seed) {
+  return shape.architecture == FlowArchitecture::kTriangular
+             ? InitialTriangularWeights(shape.triangular, seed)
+             : InitialCouplingWeights(shape.coupling, seed);
+}
+
+}  // namespace ibrdf

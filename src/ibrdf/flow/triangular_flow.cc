@@ -1,0 +1,489 @@
+#include "ibrdf/flow/triangular_flow.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "ibrdf/base/parallel_for.h"
+#include "ibrdf/flow/log_linear_spline.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kB = kColumnBlock;
+// The start's last layers, relative to He scaling: near the identity, yet with
+// enough signal for the hidden layers' first gradients.
+constexpr float kLastLayerScale = 0.1f;
+
+int64_t NumBlocks(int64_t count) { return (count + kB - 1) / kB; }
+
+// [begin, begin + n) of an array into a block, the last one repeated.
+template <typename T>
+void Gather(const T* from, int64_t begin, int n, float* to) {
+  for (int i = 0; i < kB; ++i) {
+    to[i] = static_cast<float>(from[begin + std::min(i, n - 1)]);
+  }
+}
+
+// Size of one conditioner's part of a gradient buffer: weights, biases as
+// activation rows, the code's weights.
+size_t PartSize(const ConditionerShape& c, int code_size) {
+  return c.padded_weights + c.rows +
+         static_cast<size_t>(c.dense[0].out_count) * PaddedCount(code_size);
+}
+
+}  // namespace
+
+const TriangularKernels& GetTriangularKernels(SimdLevel level) {
+#if defined(IBRDF_HAVE_X86_KERNELS)
+  if (level == SimdLevel::kAvx512) return avx512::kTriangularKernels;
+  if (level == SimdLevel::kAvx2) return avx2::kTriangularKernels;
+#endif
+  (void)level;
+  return portable::kTriangularKernels;
+}
+
+std::vector<float> InitialTriangularWeights(const TriangularShape& shape,
+                                            uint64_t seed) {
+  std::mt19937_64 rng(seed);
+  std::normal_distribution<float> normal;
+  std::vector<float> weights(shape.NumWeights(), 0.0f);
+  float* w = weights.data();
+  for (const ConditionerShape& c : shape.Conditioners()) {
+    for (size_t i = 0; i < c.dense.size(); ++i) {
+      const DenseLayer& d = c.dense[i];
+      const int inputs = d.in_count + (i == 0 ? shape.code_size : 0);
+      float scale = std::sqrt(2.0f / static_cast<float>(inputs));
+      if (i + 1 == c.dense.size()) scale *= kLastLayerScale;
+      for (int k = 0; k < d.in_count * d.out_count; ++k) {
+        w[d.weight_offset + k] = scale * normal(rng);
+      }
+      if (i == 0) {
+        for (int k = 0; k < d.out_count * shape.code_size; ++k) {
+          w[c.code_offset + k] = scale * normal(rng);
+        }
+      }
+    }
+    w += c.num_weights;
+  }
+  return weights;
+}
+
+// The code enters the first layer of each conditioner alone: a bias per code.
+struct TriangularFlow::CodeViews {
+  std::array<std::vector<float>, 3> bias;
+  std::array<ConditionerView, 3> view;
+};
+
+struct TriangularFlow::Block {
+  std::array<std::vector<float>, 3> rows, grows;
+  std::vector<float> scratch, pieces, dcode;
+
+  explicit Block(const std::array<ConditionerShape, 3>& conditioners) {
+    for (int i = 0; i < 3; ++i) {
+      rows[i].resize(static_cast<size_t>(conditioners[i].rows) * kB);
+    }
+  }
+  // Features of a block of columns: [kB] each.
+  void SetFeatures(const float* x_d, const float* cosine, const float* sine) {
+    for (int i = 0; i < kB; ++i) rows[0][i] = 2.0f * x_d[i] - 1.0f;
+    std::copy(cosine, cosine + kB, rows[0].data() + kB);
+    std::copy(sine, sine + kB, rows[0].data() + 2 * kB);
+    std::copy(cosine, cosine + kB, rows[1].data());
+    std::copy(sine, sine + kB, rows[1].data() + kB);
+  }
+};
+
+TriangularFlow::TriangularFlow(const TriangularShape& shape,
+                               const std::vector<float>& weights,
+                               SimdLevel level)
+    : shape_(shape), kernels_(&GetTriangularKernels(level)) {
+  CHECK(shape.Validate().empty()) << shape.Validate();
+  conditioners_ = shape.Conditioners();
+  size_t weights_end = 0, gradient_end = 0;
+  for (int i = 0; i < 3; ++i) {
+    weights_begin_[i] = weights_end;
+    gradient_begin_[i] = gradient_end;
+    weights_end += conditioners_[i].num_weights;
+    gradient_end += PartSize(conditioners_[i], shape.code_size);
+  }
+  SetWeights(weights);
+}
+
+void TriangularFlow::SetWeights(const std::vector<float>& weights) {
+  CHECK_EQ(shape_.NumWeights(), weights.size());
+  weights_ = weights;
+}
+
+ConditionerView TriangularFlow::View(int dim) const {
+  const ConditionerShape& c = conditioners_[dim];
+  ConditionerView v;
+  v.bins = c.bins;
+  v.heights = c.NumHeights();
+  v.rows = c.rows;
+  v.output_row = c.output_row;
+  v.num_dense = static_cast<int>(c.dense.size());
+  v.code_size = shape_.code_size;
+  v.dense = c.dense.data();
+  v.weights = weights_.data() + weights_begin_[dim];
+  v.code_offset = c.code_offset;
+  v.first_bias = nullptr;
+  v.codes = nullptr;
+  return v;
+}
+
+TriangularFlow::CodeViews TriangularFlow::Views(const float* code) const {
+  CodeViews views;
+  for (int dim = 0; dim < 3; ++dim) {
+    const ConditionerShape& c = conditioners_[dim];
+    ConditionerView& v = views.view[dim];
+    v = View(dim);
+    std::vector<float>& bias = views.bias[dim];
+    bias.resize(c.dense[0].out_count);
+    for (size_t o = 0; o < bias.size(); ++o) {
+      float sum = v.weights[c.dense[0].bias_offset + o];
+      const float* wz = v.weights + c.code_offset + o * shape_.code_size;
+      for (int k = 0; k < shape_.code_size; ++k) sum += wz[k] * code[k];
+      bias[o] = sum;
+    }
+    v.first_bias = bias.data();
+  }
+  return views;
+}
+
+void TriangularFlow::LogDensity(const float* x, int64_t count,
+                                const float* code, int num_threads,
+                                float* log_density, float* dcode,
+                                float* dx) const {
+  const CodeViews views = Views(code);
+  if (num_threads <= 0) num_threads = HardwareThreads();
+  std::vector<Block> blocks(num_threads, Block(conditioners_));
+  const bool gradient = dcode != nullptr || dx != nullptr;
+  ParallelFor(NumBlocks(count), num_threads, [&](int64_t index, int worker) {
+    Block& b = blocks[worker];
+    const int64_t begin = index * kB;
+    const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
+    float points[3][kB], cosine[kB], sine[kB], value[kB], ones[kB], dspline[kB];
+    for (int i = 0; i < 3; ++i) Gather(x + i * count, begin, n, points[i]);
+    for (int i = 0; i < kB; ++i) {
+      const float turn = static_cast<float>(2 * M_PI) * points[2][i];
+      cosine[i] = std::cos(turn);
+      sine[i] = std::sin(turn);
+    }
+    b.SetFeatures(points[1], cosine, sine);
+    std::fill(value, value + kB, 0.0f);
+    for (int dim = 2; dim >= 0; --dim) {
+      float* rows = b.rows[dim].data();
+      kernels_->condition(views.view[dim], rows);
+      kernels_->evaluate(views.view[dim], rows, points[dim], 1, value, value);
+    }
+    std::copy(value, value + n, log_density + begin);
+    if (!gradient) return;
+    std::fill(ones, ones + kB, 1.0f);
+    b.dcode.assign(static_cast<size_t>(shape_.code_size) * kB, 0.0f);
+    float gx[3][kB] = {};
+    for (int dim = 0; dim < 3; ++dim) {
+      const ConditionerView& v = views.view[dim];
+      b.grows[dim].assign(b.rows[dim].size(), 0.0f);
+      float* grows = b.grows[dim].data();
+      kernels_->adjoint(v, b.rows[dim].data(), points[dim], 1, ones, grows,
+                        dspline);
+      kernels_->backward(v, b.rows[dim].data(), grows, nullptr, nullptr,
+                         nullptr, nullptr, b.dcode.data(), true);
+      const float* gcos = grows + (dim == 0 ? kB : 0);
+      for (int i = 0; i < kB; ++i) {
+        gx[dim][i] += dspline[i];
+        if (dim == 0) gx[1][i] += 2.0f * grows[i];
+        if (dim == 2) continue;
+        gx[2][i] += static_cast<float>(2 * M_PI) *
+                    (cosine[i] * gcos[kB + i] - sine[i] * gcos[i]);
+      }
+    }
+    for (int i = 0; i < 3 && dx != nullptr; ++i) {
+      std::copy(gx[i], gx[i] + n, dx + i * count + begin);
+    }
+    for (int k = 0; k < shape_.code_size && dcode != nullptr; ++k) {
+      std::copy(b.dcode.data() + k * kB, b.dcode.data() + k * kB + n,
+                dcode + k * count + begin);
+    }
+  });
+}
+
+void TriangularFlow::LogDensityOnColumns(const FlowColumns& x,
+                                         const float* code, int num_threads,
+                                         float* log_density,
+                                         float* dcode) const {
+  const CodeViews views = Views(code);
+  if (num_threads <= 0) num_threads = HardwareThreads();
+  std::vector<Block> blocks(num_threads, Block(conditioners_));
+  const int codes = shape_.code_size;
+  int widest = 0, most_bins = 0;
+  for (const ConditionerShape& c : conditioners_) {
+    most_bins = std::max(most_bins, c.bins);
+    for (const DenseLayer& d : c.dense) widest = std::max(widest, d.out_count);
+  }
+  // x_p's spline is the same for all columns.
+  kernels_->condition(views.view[2], blocks[0].rows[2].data());
+  const std::vector<float> last = blocks[0].rows[2];
+  std::vector<float> last_pieces;
+  if (dcode != nullptr) {
+    last_pieces.resize(static_cast<size_t>(most_bins) * codes * 2 * kB);
+    blocks[0].scratch.resize(static_cast<size_t>(2) * codes * kB * widest);
+    kernels_->code_pieces(views.view[2], last.data(), blocks[0].scratch.data(),
+                          last_pieces.data());
+  }
+  const int64_t count = x.num_points();
+  ParallelFor(
+      NumBlocks(x.columns), num_threads, [&](int64_t index, int worker) {
+        Block& b = blocks[worker];
+        const int64_t begin = index * kB;
+        const int n =
+            static_cast<int>(std::min<int64_t>(kB, x.columns - begin));
+        float x_d[kB], x_p[kB], cosine[kB], sine[kB], base[kB];
+        Gather(x.x_d.data(), begin, n, x_d);
+        Gather(x.x_p.data(), begin, n, x_p);
+        Gather(x.cosine.data(), begin, n, cosine);
+        Gather(x.sine.data(), begin, n, sine);
+        b.SetFeatures(x_d, cosine, sine);
+        kernels_->evaluate(views.view[2], last.data(), x_p, 1, nullptr, base);
+        kernels_->condition(views.view[1], b.rows[1].data());
+        kernels_->evaluate(views.view[1], b.rows[1].data(), x_d, 1, base, base);
+        kernels_->condition(views.view[0], b.rows[0].data());
+        std::vector<float> x_h(static_cast<size_t>(x.points) * kB), value;
+        for (int i = 0; i < x.points; ++i) {
+          Gather(x.x_h.data() + static_cast<size_t>(i) * x.columns, begin, n,
+                 x_h.data() + static_cast<size_t>(i) * kB);
+        }
+        value.resize(x_h.size());
+        kernels_->evaluate(views.view[0], b.rows[0].data(), x_h.data(),
+                           x.points, base, value.data());
+        for (int i = 0; i < x.points; ++i) {
+          std::copy(value.data() + static_cast<size_t>(i) * kB,
+                    value.data() + static_cast<size_t>(i) * kB + n,
+                    log_density + static_cast<size_t>(i) * x.columns + begin);
+        }
+        if (dcode == nullptr) return;
+        b.pieces.resize(static_cast<size_t>(most_bins) * codes * 2 * kB);
+        b.scratch.resize(static_cast<size_t>(2) * codes * kB * widest);
+        b.dcode.resize(static_cast<size_t>(codes) * kB);
+        kernels_->code_gradient(views.view[2], last.data(), last_pieces.data(),
+                                x_p, 1, nullptr, kB, kB, 0, b.dcode.data());
+        for (int dim = 1; dim >= 0; --dim) {
+          const ConditionerView& v = views.view[dim];
+          const float* rows = b.rows[dim].data();
+          kernels_->code_pieces(v, rows, b.scratch.data(), b.pieces.data());
+          if (dim == 1) {
+            kernels_->code_gradient(v, rows, b.pieces.data(), x_d, 1,
+                                    b.dcode.data(), kB, kB, 0, b.dcode.data());
+          } else {
+            kernels_->code_gradient(v, rows, b.pieces.data(), x_h.data(),
+                                    x.points, b.dcode.data(), n, count,
+                                    x.columns, dcode + begin);
+          }
+        }
+      });
+}
+
+template <bool kForward>
+void TriangularFlow::Transform(const double* from, int64_t count,
+                               const float* code, int num_threads,
+                               double* to) const {
+  const CodeViews views = Views(code);
+  if (num_threads <= 0) num_threads = HardwareThreads();
+  std::vector<Block> blocks(num_threads, Block(conditioners_));
+  ParallelFor(NumBlocks(count), num_threads, [&](int64_t index, int worker) {
+    Block& b = blocks[worker];
+    const int64_t begin = index * kB;
+    const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
+    // The coordinates of x, which the conditioners read: x_p first.
+    const double* x = kForward ? from : to;
+    float x_d[kB] = {}, cosine[kB] = {}, sine[kB] = {};
+    for (int dim = 2; dim >= 0; --dim) {
+      if (dim == 1) {
+        for (int i = 0; i < n; ++i) {
+          const double turn = 2 * M_PI * x[2 * count + begin + i];
+          cosine[i] = static_cast<float>(std::cos(turn));
+          sine[i] = static_cast<float>(std::sin(turn));
+        }
+      }
+      if (dim == 0) Gather(x + count, begin, n, x_d);
+      b.SetFeatures(x_d, cosine, sine);
+      const ConditionerView& v = views.view[dim];
+      float* rows = b.rows[dim].data();
+      kernels_->condition(v, rows);
+      std::vector<double> parameters(v.rows - v.output_row);
+      for (int i = 0; i < n; ++i) {
+        for (size_t k = 0; k < parameters.size(); ++k) {
+          parameters[k] = rows[(v.output_row + k) * kB + i];
+        }
+        const LogLinearSpline<double> spline(parameters.data(), v.bins,
+                                             v.heights == v.bins);
+        const int64_t at = dim * count + begin + i;
+        to[at] = kForward ? spline.Integral(from[at])
+                          : spline.InverseIntegral(from[at]);
+      }
+    }
+  });
+}
+
+void TriangularFlow::Latent(const double* x, int64_t count, const float* code,
+                            int num_threads, double* latent) const {
+  Transform<true>(x, count, code, num_threads, latent);
+}
+
+void TriangularFlow::Inverse(const double* latent, int64_t count,
+                             const float* code, int num_threads,
+                             double* x) const {
+  Transform<false>(latent, count, code, num_threads, x);
+}
+
+class TriangularFlow::Pass final : public BrdfFlow::TrainingPass {
+ public:
+  explicit Pass(const TriangularFlow& flow) : flow_(flow) {}
+
+  void Forward(const FlowColumns& x, int num_codes, const float* codes,
+               float* log_density) override {
+    CHECK_EQ(0, x.columns % (num_codes * flow_.TrainingColumns()));
+    x_ = &x;
+    columns_per_code_ = x.columns / num_codes;
+    blocks_.resize(NumBlocks(x.columns), PassBlock(flow_));
+    for (size_t index = 0; index < blocks_.size(); ++index) {
+      PassBlock& b = blocks_[index];
+      const int64_t begin = static_cast<int64_t>(index) * kB;
+      const int n = static_cast<int>(std::min<int64_t>(kB, x.columns - begin));
+      float x_d[kB], cosine[kB], sine[kB], base[kB];
+      Gather(x.x_d.data(), begin, n, x_d);
+      Gather(x.cosine.data(), begin, n, cosine);
+      Gather(x.sine.data(), begin, n, sine);
+      b.x[1].assign(x_d, x_d + kB);
+      b.x[2].resize(kB);
+      Gather(x.x_p.data(), begin, n, b.x[2].data());
+      b.x[0].resize(static_cast<size_t>(x.points) * kB);
+      for (int i = 0; i < x.points; ++i) {
+        Gather(x.x_h.data() + static_cast<size_t>(i) * x.columns, begin, n,
+               b.x[0].data() + static_cast<size_t>(i) * kB);
+      }
+      const int size = flow_.shape_.code_size;
+      for (int i = 0; i < kB; ++i) {
+        const float* code = codes + CodeOf(begin + std::min(i, n - 1)) * size;
+        for (int k = 0; k < size; ++k) b.codes[k * kB + i] = code[k];
+      }
+      b.block.SetFeatures(x_d, cosine, sine);
+      b.value.resize(b.x[0].size());
+      for (int dim = 2; dim >= 0; --dim) {
+        ConditionerView v = flow_.View(dim);
+        v.codes = b.codes.data();
+        float* rows = b.block.rows[dim].data();
+        flow_.kernels_->condition(v, rows);
+        flow_.kernels_->evaluate(
+            v, rows, b.x[dim].data(), dim == 0 ? x.points : 1,
+            dim == 2 ? nullptr : base, dim == 0 ? b.value.data() : base);
+      }
+      for (int i = 0; i < x.points; ++i) {
+        std::copy(b.value.data() + static_cast<size_t>(i) * kB,
+                  b.value.data() + static_cast<size_t>(i) * kB + n,
+                  log_density + static_cast<size_t>(i) * x.columns + begin);
+      }
+    }
+  }
+
+  void Backward(const float* adjoint, float* gradient,
+                float* code_gradient) override {
+    const int size = flow_.shape_.code_size, points = x_->points;
+    for (size_t index = 0; index < blocks_.size(); ++index) {
+      PassBlock& b = blocks_[index];
+      const int64_t begin = static_cast<int64_t>(index) * kB;
+      const int n =
+          static_cast<int>(std::min<int64_t>(kB, x_->columns - begin));
+      // Lanes beyond the last column have no adjoint.
+      float sum[kB] = {};
+      std::fill(b.value.begin(), b.value.end(), 0.0f);
+      for (int i = 0; i < points; ++i) {
+        const float* a = adjoint + static_cast<size_t>(i) * x_->columns + begin;
+        for (int l = 0; l < n; ++l) {
+          b.value[i * kB + l] = a[l];
+          sum[l] += a[l];
+        }
+      }
+      dcode_.assign(static_cast<size_t>(size) * kB, 0.0f);
+      for (int dim = 0; dim < 3; ++dim) {
+        const ConditionerShape& c = flow_.conditioners_[dim];
+        ConditionerView v = flow_.View(dim);
+        v.codes = b.codes.data();
+        const float* rows = b.block.rows[dim].data();
+        grows_.assign(static_cast<size_t>(c.rows) * kB, 0.0f);
+        scratch_.resize(
+            static_cast<size_t>(PaddedCount(std::max(c.rows, size))) * kB);
+        flow_.kernels_->adjoint(v, rows, b.x[dim].data(), dim == 0 ? points : 1,
+                                dim == 0 ? b.value.data() : sum, grows_.data(),
+                                nullptr);
+        float* part = gradient + flow_.gradient_begin_[dim];
+        flow_.kernels_->backward(v, rows, grows_.data(), scratch_.data(), part,
+                                 part + c.padded_weights,
+                                 part + c.padded_weights + c.rows,
+                                 dcode_.data(), false);
+      }
+      for (int l = 0; l < n; ++l) {
+        float* g = code_gradient + CodeOf(begin + l) * size;
+        for (int k = 0; k < size; ++k) g[k] += dcode_[k * kB + l];
+      }
+    }
+  }
+
+ private:
+  struct PassBlock {
+    Block block;
+    std::vector<float> codes, value;
+    std::array<std::vector<float>, 3> x;
+
+    explicit PassBlock(const TriangularFlow& flow)
+        : block(flow.conditioners_),
+          codes(static_cast<size_t>(flow.shape_.code_size) * kB) {}
+  };
+  int64_t CodeOf(int64_t column) const { return column / columns_per_code_; }
+
+  const TriangularFlow& flow_;
+  const FlowColumns* x_ = nullptr;
+  int columns_per_code_ = 1;
+  std::vector<PassBlock> blocks_;
+  std::vector<float> grows_, scratch_, dcode_;
+};
+
+std::unique_ptr<BrdfFlow::TrainingPass> TriangularFlow::NewTrainingPass()
+    const {
+  return std::make_unique<Pass>(*this);
+}
+
+size_t TriangularFlow::GradientSize() const {
+  return gradient_begin_[2] + PartSize(conditioners_[2], shape_.code_size);
+}
+
+void TriangularFlow::AddGradient(const float* buffer, float* weights) const {
+  for (int dim = 0; dim < 3; ++dim) {
+    const ConditionerShape& c = conditioners_[dim];
+    const float* from = buffer + gradient_begin_[dim];
+    const float* biases = from + c.padded_weights;
+    const float* codes = biases + c.rows;
+    float* to = weights + weights_begin_[dim];
+    for (const DenseLayer& d : c.dense) {
+      for (int o = 0; o < d.out_count; ++o) {
+        for (int k = 0; k < d.in_count; ++k) {
+          to[d.weight_offset + static_cast<size_t>(o) * d.in_count + k] +=
+              from[d.padded_offset +
+                   static_cast<size_t>(o) * PaddedCount(d.in_count) + k];
+        }
+        to[d.bias_offset + o] += biases[d.out + o];
+      }
+    }
+    for (int o = 0; o < c.dense[0].out_count; ++o) {
+      for (int k = 0; k < shape_.code_size; ++k) {
+        to[c.code_offset + static_cast<size_t>(o) * shape_.code_size + k] +=
+            codes[static_cast<size_t>(o) * PaddedCount(shape_.code_size) + k];
+      }
+    }
+  }
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,90 @@
+// The triangular flow written plainly, one point at a time, in any scalar type:
+// the slow reference of the kernels.
+#pragma once
+#include <cmath>
+#include <vector>
+
+#include "ibrdf/flow/log_linear_spline.h"
+#include "ibrdf/flow/triangular_shape.h"
+
+namespace ibrdf {
+
+// W: type of the weights; the scalar type of codes and points is a template
+// argument of the methods.
+template <typename W>
+class TriangularReference {
+ public:
+  // weights: [shape.NumWeights()], converted to W.
+  template <typename V>
+  TriangularReference(const TriangularShape& shape, const V* weights)
+      : shape_(shape),
+        conditioners_(shape.Conditioners()),
+        weights_(weights, weights + shape.NumWeights()) {}
+
+  // Log density in nats at x in [0,1]^3 for a code [code_size].
+  template <typename T>
+  T LogDensity(const W* x, const T* code) const {
+    T sum = T(0);
+    for (int dim = 0; dim < 3; ++dim) {
+      sum += Spline(dim, x[1], x[2], code).LogDensity(T(x[dim]));
+    }
+    return sum;
+  }
+
+  // The latent point u in [0,1]^3 of x, and back.
+  void Latent(const W* x, const W* code, W* u) const {
+    for (int dim = 0; dim < 3; ++dim) {
+      u[dim] = Spline(dim, x[1], x[2], code).Integral(x[dim]);
+    }
+  }
+  void Inverse(const W* u, const W* code, W* x) const {
+    x[1] = x[2] = W(0);
+    for (int dim = 2; dim >= 0; --dim) {
+      x[dim] = Spline(dim, x[1], x[2], code).InverseIntegral(u[dim]);
+    }
+  }
+
+ private:
+  template <typename T>
+  LogLinearSpline<T> Spline(int dim, W x_d, W x_p, const T* code) const {
+    const ConditionerShape& c = conditioners_[dim];
+    const W* w = weights_.data();
+    for (int i = 0; i < dim; ++i) w += conditioners_[i].num_weights;
+    std::vector<T> rows(c.rows);
+    const W turn = W(2 * M_PI) * x_p;
+    const W features[3] = {2 * x_d - 1, std::cos(turn), std::sin(turn)};
+    for (int i = 0; i < c.features; ++i) {
+      rows[i] = T(features[3 - c.features + i]);
+    }
+    for (size_t i = 0; i < c.dense.size(); ++i) {
+      const DenseLayer& d = c.dense[i];
+      for (int o = 0; o < d.out_count; ++o) {
+        T sum = T(w[d.bias_offset + o]);
+        for (int k = 0; k < d.in_count; ++k) {
+          sum += w[d.weight_offset + o * d.in_count + k] * rows[d.in + k];
+        }
+        if (i == 0) {
+          const W* wz = w + c.code_offset + o * shape_.code_size;
+          for (int k = 0; k < shape_.code_size; ++k) sum += wz[k] * code[k];
+        }
+        rows[d.out + o] = d.activation ? Activate(sum) : sum;
+      }
+    }
+    return LogLinearSpline<T>(rows.data() + c.output_row, c.bins, c.periodic);
+  }
+
+  template <typename T>
+  static T Activate(const T& x) {
+    using std::abs;
+    using std::sqrt;
+    const T t = sqrt(T(x * x + kSharpness)) + abs(x);
+    if (x > 0.0) return t / 2.0;
+    return T(kSharpness / 2) / t;
+  }
+
+  TriangularShape shape_;
+  std::array<ConditionerShape, 3> conditioners_;
+  std::vector<W> weights_;
+};
+
+}  // namespace ibrdf
