@@ -23,7 +23,7 @@ struct SplineBasis {
 //   [lobe][log kappa, log gamma][coefficient], then log unit.
 struct DsbrdfShape {
   int lobes = 3;         // >= 1
-  int coefficients = 8;  // of each curve over theta_d, >= 4
+  int coefficients = 6;  // of each curve over theta_d, >= 4
 
   int num_parameters() const { return lobes * 2 * coefficients + 1; }
   int LogKappa(int lobe) const { return 2 * lobe * coefficients; }
