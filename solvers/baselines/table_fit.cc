@@ -31,19 +31,21 @@ double LogAlbedo(const std::vector<TableSample>& samples, int channel) {
                     kLogColour.lower, kLogColour.upper);
 }
 
-// Fits from each start and keeps the best; the first where none has a cost.
+// A few iterations from each start, then all of them from the best.
 std::vector<double> BestOf(const std::vector<std::vector<double>>& starts,
                            const std::vector<ParameterBounds>& bounds,
                            const TableSolverOptions& options, TableCost* cost) {
-  std::vector<double> best = starts[0];
+  const TableSolverOptions trial = {std::min(15, options.max_iterations), 1e-3};
+  std::vector<double> best;
   double best_cost = std::numeric_limits<double>::infinity();
   for (std::vector<double> p : starts) {
-    const double reached = SolveTableFit(cost, bounds, options, &p);
-    if (reached < best_cost) {
+    const double reached = SolveTableFit(cost, bounds, trial, &p);
+    if (best.empty() || reached < best_cost) {
       best_cost = reached;
       best = p;
     }
   }
+  SolveTableFit(cost, bounds, options, &best);
   return best;
 }
 

@@ -13,7 +13,7 @@ namespace ibrdf {
 
 struct TableFitOptions {
   uint64_t seed = 1;          // of the subset of bins that a fit sees
-  TableSolverOptions solver;  // of each start
+  TableSolverOptions solver;  // of the best start
 };
 
 // Each returns the model with the least sum of squares of
