@@ -41,8 +41,8 @@ struct InverseProblem {
   TransportOptions transport;
 };
 
-// One line of the trace: the best state after a step. Costs of lines with another
-// scale or another number of pixels do not compare; misfits do.
+// One line of the trace: the best state after a step. Costs of lines with
+// another scale or another number of pixels do not compare; misfits do.
 struct TraceEntry {
   std::string stage;
   double seconds = 0.0;

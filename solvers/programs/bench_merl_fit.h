@@ -2,17 +2,59 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
 
+#include "io/model_file.h"
 #include "solvers/bench/baseline_fitters.h"
 #include "solvers/bench/merl_fit_sweep.h"
+#include "solvers/bench/neural_fitters.h"
 #include "solvers/programs/bench_session.h"
 
 namespace ibrdf {
 
+// Flags of the methods that are flows.
+struct NeuralFitFlags {
+  std::string model = "default";
+  std::vector<int> lobes = {1, 2, 3};
+  FreeFlowOptions free;
+  LobeTableFitOptions fit;
+
+  // All methods, in the order of the results. A model that cannot be read is an
+  // error only where a method needs it.
+  Status AddFitters(const std::vector<std::string>& methods,
+                    TableFitters* fitters) const {
+    *fitters = BaselineFitters();
+    fitters->push_back(FreeFlowFitter(free));
+    const bool wanted =
+        methods.empty() ||
+        std::find(methods.begin(), methods.end(), "flow") != methods.end();
+    if (!wanted) return OkStatus();
+    const StatusOr<std::string> path = FindModel(model);
+    if (!path.ok()) return path.status();
+    const StatusOr<NeuralBrdfModel> read = ReadModel(*path);
+    if (!read.ok()) return read.status();
+    if (read->num_codes() == 0) {
+      return InvalidInput(*path + ": names", "expected an embedding");
+    }
+    const auto fitter = std::make_shared<const LobeTableFitter>(*read);
+    for (const int count : lobes) {
+      LobeTableFitOptions options = fit;
+      options.lobes = count;
+      fitters->push_back(FlowFitter(
+          fitter, std::filesystem::path(model).stem().string(), options));
+    }
+    return OkStatus();
+  }
+};
+
 inline void AddMerlFitExperiment(CLI::App* app, BenchSession* session) {
   struct Flags {
     MerlFitSweepOptions options;
+    NeuralFitFlags neural;
     OnlyFlag only;
     bool dry_run = false;
   };
@@ -25,7 +67,8 @@ inline void AddMerlFitExperiment(CLI::App* app, BenchSession* session) {
     options.seed = session->common.seed;
     options.num_threads = session->common.threads;
     options.command = session->command;
-    options.fitters = BaselineFitters();
+    IBRDF_RETURN_IF_ERROR(
+        flags->neural.AddFitters(options.methods, &options.fitters));
     if (flags->dry_run) {
       const StatusOr<std::vector<MerlFitCase>> cases =
           ListMerlFitCases(options);
@@ -54,7 +97,7 @@ inline void AddMerlFitExperiment(CLI::App* app, BenchSession* session) {
   fit->add_option("--materials", options.materials,
                   "comma-separated tables, without extension; default: all")
       ->delimiter(',');
-  std::string methods;
+  std::string methods = "flow flow_free ";
   for (const auto& fitter : BaselineFitters()) {
     const std::string name = fitter->method();
     if (methods.find(name + " ") == std::string::npos) methods += name + " ";
@@ -62,6 +105,26 @@ inline void AddMerlFitExperiment(CLI::App* app, BenchSession* session) {
   fit->add_option("--methods", options.methods,
                   "comma-separated, of: " + methods + "; default: all")
       ->delimiter(',');
+  fit->add_option("--model", flags->neural.model,
+                  "of the method flow: default, or a model file")
+      ->capture_default_str();
+  fit->add_option("--lobes", flags->neural.lobes,
+                  "of the method flow: comma-separated numbers of lobes")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  fit->add_option("--starts", flags->neural.fit.starts,
+                  "of the method flow: starts from the embedding, per lobe")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  fit->add_option("--prior-sigma", flags->neural.fit.prior_sigma,
+                  "of the method flow: standard deviation of the codes' prior")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  fit->add_option("--free-steps", flags->neural.free.steps,
+                  "of the method flow_free: Adam steps per table")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
   fit->add_option("--score-data", options.score_data,
                   "another folder of tables of the same names: each fit is "
                   "scored on these too, without scaling");

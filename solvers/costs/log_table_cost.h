@@ -1,0 +1,43 @@
+// Cost of coloured lobes against a measured table, in log space.
+#pragma once
+#include <ceres/cost_function.h>
+
+#include <memory>
+#include <vector>
+
+#include "ibrdf/flow/brdf_flow.h"
+
+namespace ibrdf {
+
+// What a fit sees of a table: some columns of constant (theta_d, phi_d), some
+// theta_h in each.
+struct TableColumns {
+  FlowColumns points;
+  // log(max(raw, 0) + floor) [3][points.num_points()].
+  std::vector<float> log_raw;
+};
+
+// Parameters as LobeModel's, K lobes of code_size + 3. Residuals per channel
+// and point: log(sum_k exp(a_kc) q(x | z_k)^exponent + floor) - log raw, raw
+// units, times sqrt(weight). Where another lobe dominates, a lobe's derivative
+// vanishes smoothly; where all are below the floor, all do.
+class LogTableCost final : public ceres::CostFunction {
+ public:
+  // flow and table must outlive *this.
+  LogTableCost(const BrdfFlow& flow, int code_size, double exponent,
+               int num_lobes, const TableColumns& table, double floor,
+               double weight, int num_threads);
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  const BrdfFlow& flow_;
+  const int code_size_, num_lobes_;
+  const double exponent_;
+  const TableColumns& table_;
+  const double floor_, scale_;
+  const int num_threads_;
+};
+
+}  // namespace ibrdf

@@ -1,0 +1,57 @@
+// Codes and colours of several lobes fitted to a measured table: what the
+// embedding can represent.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/flow/brdf_flow.h"
+#include "ibrdf/flow/neural_brdf_model.h"
+
+namespace ibrdf {
+
+struct LobeTableFitOptions {
+  int lobes = 2;
+  int starts = 4;  // combinations of embedding codes that are refined
+  int max_iterations = 60;
+  // Of the codes, z ~ N(0, sigma^2), weighed against the table as if it were
+  // this many independent measurements.
+  double prior_sigma = 0.5;
+  double independent_bins = 2000.0;
+  int num_threads = 0;  // <= 0: all
+};
+
+struct LobeTableFit {
+  // As LobeModel's: per lobe the code, then log colours in raw units.
+  std::vector<double> parameters;
+  double log_rmse = 0.0;  // over the bins that the fit saw
+};
+
+// The flow of a model with its embedding tabulated once, for fits to many
+// tables. Fit() may be called from several threads.
+class LobeTableFitter {
+ public:
+  // `model` is copied; it needs at least one code.
+  explicit LobeTableFitter(const NeuralBrdfModel& model);
+
+  // Least squares of log(f + 1e-6) - log(raw + 1e-6) (the log-RMSE of
+  // CompareBrdfs) over columns of the table, by Levenberg-Marquardt from the
+  // best combinations of embedding codes; lobes are added one by one. Codes
+  // stay in the unit ball. Fails on a table without a positive red value and on
+  // non-finite values; the message starts with "table".
+  StatusOr<LobeTableFit> Fit(const MerlTable& table,
+                             const LobeTableFitOptions& options) const;
+
+  const NeuralBrdfModel& model() const { return model_; }
+
+ private:
+  class Search;
+  NeuralBrdfModel model_;
+  std::unique_ptr<BrdfFlow> flow_;
+  std::vector<int> search_columns_, fit_columns_;
+  FlowColumns search_points_;
+  std::vector<float> embedding_;  // log q [codes][search points]
+};
+
+}  // namespace ibrdf
