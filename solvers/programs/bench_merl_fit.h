@@ -100,10 +100,10 @@ inline void AddMerlFitExperiment(CLI::App* app, BenchSession* session) {
   std::string methods = "flow flow_free ";
   for (const auto& fitter : BaselineFitters()) {
     const std::string name = fitter->method();
-    if (methods.find(name + " ") == std::string::npos) methods += name + " ";
+    if (methods.find(name + ";") == std::string::npos) methods += name + "; ";
   }
   fit->add_option("--methods", options.methods,
-                  "comma-separated, of: " + methods + "; default: all")
+                  "comma-separated, of: " + methods + "default: all")
       ->delimiter(',');
   fit->add_option("--model", flags->neural.model,
                   "of the method flow: default, or a model file")
