@@ -31,7 +31,7 @@ FlowColumns ThinColumns(const std::vector<int>& columns, int points) {
   const int n = all.num_columns();
   FlowColumns thin(n, points);
   for (int c = 0; c < n; ++c) {
-    thin.SetColumn(c, all.columns.x_d[c], all.columns.x_p[c]);
+    thin.CopyColumn(c, all.columns, c);
     for (int i = 0; i < points; ++i) {
       const int at = Stratum(i, points, all.count[c]);
       thin.x_h[i * n + c] = all.columns.x_h[at * n + c];

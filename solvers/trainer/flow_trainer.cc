@@ -223,10 +223,7 @@ class Trainer {
     const int points = x->points;
     for (int c = first; c < first + options_.columns_per_code; ++c) {
       const int column = pick(rng);
-      x->x_d[c] = data_.columns.x_d[column];
-      x->x_p[c] = data_.columns.x_p[column];
-      x->cosine[c] = data_.columns.cosine[column];
-      x->sine[c] = data_.columns.sine[column];
+      x->CopyColumn(c, data_.columns, column);
       const float* log_raw = data_.LogRaw(distribution, column);
       const int count = data_.count[column];
       const float stratum =

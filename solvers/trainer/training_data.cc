@@ -32,7 +32,7 @@ TrainingData TrainingData::Slice(int begin, int end) const {
   part.columns = FlowColumns(end - begin, columns.points);
   part.count.assign(count.begin() + begin, count.begin() + end);
   for (int c = begin; c < end; ++c) {
-    part.columns.SetColumn(c - begin, columns.x_d[c], columns.x_p[c]);
+    part.columns.CopyColumn(c - begin, columns, c);
     for (int i = 0; i < columns.points; ++i) {
       part.columns.x_h[i * (end - begin) + c - begin] =
           columns.x_h[i * num_columns() + c];

@@ -1,7 +1,5 @@
 #include "ibrdf/flow/brdf_flow.h"
 
-#include <cmath>
-
 #include "ibrdf/flow/coupling_flow.h"
 #include "ibrdf/flow/triangular_flow.h"
 
@@ -12,15 +10,27 @@ FlowColumns::FlowColumns(int num_columns, int num_points)
       points(num_points),
       x_d(num_columns),
       x_p(num_columns),
-      cosine(num_columns, 1.0f),
-      sine(num_columns),
+      features(static_cast<size_t>(kColumnFeatures) * num_columns),
       x_h(static_cast<size_t>(num_columns) * num_points) {}
 
 void FlowColumns::SetColumn(int column, double xd, double xp) {
   x_d[column] = static_cast<float>(xd);
   x_p[column] = static_cast<float>(xp);
-  cosine[column] = static_cast<float>(std::cos(2 * M_PI * xp));
-  sine[column] = static_cast<float>(std::sin(2 * M_PI * xp));
+  double values[kColumnFeatures];
+  ColumnFeatures<double>(xd, xp, values, nullptr, nullptr);
+  for (int i = 0; i < kColumnFeatures; ++i) {
+    features[static_cast<size_t>(i) * columns + column] =
+        static_cast<float>(values[i]);
+  }
+}
+
+void FlowColumns::CopyColumn(int column, const FlowColumns& other, int from) {
+  x_d[column] = other.x_d[from];
+  x_p[column] = other.x_p[from];
+  for (int i = 0; i < kColumnFeatures; ++i) {
+    features[static_cast<size_t>(i) * columns + column] =
+        other.features[static_cast<size_t>(i) * other.columns + from];
+  }
 }
 
 std::unique_ptr<BrdfFlow> BrdfFlow::Create(const FlowShape& shape,

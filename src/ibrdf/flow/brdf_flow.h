@@ -15,17 +15,18 @@ namespace ibrdf {
 // number of x_h: how tables are laid out, and cheap to evaluate.
 struct FlowColumns {
   int columns = 0;
-  int points = 0;             // x_h of each column
-  std::vector<float> x_d;     // [columns]
-  std::vector<float> x_p;     // [columns]
-  std::vector<float> cosine;  // [columns], of 2 pi x_p
-  std::vector<float> sine;    // [columns]
-  std::vector<float> x_h;     // [points][columns]
+  int points = 0;               // x_h of each column
+  std::vector<float> x_d;       // [columns]
+  std::vector<float> x_p;       // [columns]
+  std::vector<float> features;  // [kColumnFeatures][columns]
+  std::vector<float> x_h;       // [points][columns]
 
   FlowColumns() = default;
   FlowColumns(int num_columns, int num_points);
   // Sets x_d, x_p and what follows from them.
   void SetColumn(int column, double xd, double xp);
+  // The same from a column of `other`, without trigonometry.
+  void CopyColumn(int column, const FlowColumns& other, int from);
   int64_t num_points() const { return static_cast<int64_t>(columns) * points; }
 };
 

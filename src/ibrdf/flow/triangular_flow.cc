@@ -86,13 +86,20 @@ struct TriangularFlow::Block {
       rows[i].resize(static_cast<size_t>(conditioners[i].rows) * kB);
     }
   }
-  // Features of a block of columns: [kB] each.
-  void SetFeatures(const float* x_d, const float* cosine, const float* sine) {
-    for (int i = 0; i < kB; ++i) rows[0][i] = 2.0f * x_d[i] - 1.0f;
-    std::copy(cosine, cosine + kB, rows[0].data() + kB);
-    std::copy(sine, sine + kB, rows[0].data() + 2 * kB);
-    std::copy(cosine, cosine + kB, rows[1].data());
-    std::copy(sine, sine + kB, rows[1].data() + kB);
+  // features: [kColumnFeatures][kB].
+  void SetFeatures(const float* features) {
+    for (int dim = 0; dim < 2; ++dim) {
+      const float* from = features + kFirstFeature[dim] * kB;
+      std::copy(from, from + kNumFeatures[dim] * kB, rows[dim].data());
+    }
+  }
+  void SetFeatures(const FlowColumns& x, int64_t begin, int n) {
+    float features[kColumnFeatures * kB];
+    for (int i = 0; i < kColumnFeatures; ++i) {
+      Gather(x.features.data() + static_cast<size_t>(i) * x.columns, begin, n,
+             features + i * kB);
+    }
+    SetFeatures(features);
   }
 };
 
@@ -165,14 +172,18 @@ void TriangularFlow::LogDensity(const float* x, int64_t count,
     Block& b = blocks[worker];
     const int64_t begin = index * kB;
     const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
-    float points[3][kB], cosine[kB], sine[kB], value[kB], ones[kB], dspline[kB];
+    float points[3][kB], value[kB], ones[kB], dspline[kB];
+    float features[kColumnFeatures * kB];
+    double by_d[kB][kColumnFeatures], by_p[kB][kColumnFeatures];
     for (int i = 0; i < 3; ++i) Gather(x + i * count, begin, n, points[i]);
     for (int i = 0; i < kB; ++i) {
-      const float turn = static_cast<float>(2 * M_PI) * points[2][i];
-      cosine[i] = std::cos(turn);
-      sine[i] = std::sin(turn);
+      double f[kColumnFeatures];
+      ColumnFeatures<double>(points[1][i], points[2][i], f, by_d[i], by_p[i]);
+      for (int k = 0; k < kColumnFeatures; ++k) {
+        features[k * kB + i] = static_cast<float>(f[k]);
+      }
     }
-    b.SetFeatures(points[1], cosine, sine);
+    b.SetFeatures(features);
     std::fill(value, value + kB, 0.0f);
     for (int dim = 2; dim >= 0; --dim) {
       float* rows = b.rows[dim].data();
@@ -192,13 +203,15 @@ void TriangularFlow::LogDensity(const float* x, int64_t count,
                         dspline);
       kernels_->backward(v, b.rows[dim].data(), grows, nullptr, nullptr,
                          nullptr, nullptr, b.dcode.data(), true);
-      const float* gcos = grows + (dim == 0 ? kB : 0);
       for (int i = 0; i < kB; ++i) {
+        double sum_d = 0.0, sum_p = 0.0;
+        for (int k = 0; k < kNumFeatures[dim]; ++k) {
+          sum_d += grows[k * kB + i] * by_d[i][kFirstFeature[dim] + k];
+          sum_p += grows[k * kB + i] * by_p[i][kFirstFeature[dim] + k];
+        }
         gx[dim][i] += dspline[i];
-        if (dim == 0) gx[1][i] += 2.0f * grows[i];
-        if (dim == 2) continue;
-        gx[2][i] += static_cast<float>(2 * M_PI) *
-                    (cosine[i] * gcos[kB + i] - sine[i] * gcos[i]);
+        gx[1][i] += static_cast<float>(sum_d);
+        gx[2][i] += static_cast<float>(sum_p);
       }
     }
     for (int i = 0; i < 3 && dx != nullptr; ++i) {
@@ -241,12 +254,10 @@ void TriangularFlow::LogDensityOnColumns(const FlowColumns& x,
         const int64_t begin = index * kB;
         const int n =
             static_cast<int>(std::min<int64_t>(kB, x.columns - begin));
-        float x_d[kB], x_p[kB], cosine[kB], sine[kB], base[kB];
+        float x_d[kB], x_p[kB], base[kB];
         Gather(x.x_d.data(), begin, n, x_d);
         Gather(x.x_p.data(), begin, n, x_p);
-        Gather(x.cosine.data(), begin, n, cosine);
-        Gather(x.sine.data(), begin, n, sine);
-        b.SetFeatures(x_d, cosine, sine);
+        b.SetFeatures(x, begin, n);
         kernels_->evaluate(views.view[2], last.data(), x_p, 1, nullptr, base);
         kernels_->condition(views.view[1], b.rows[1].data());
         kernels_->evaluate(views.view[1], b.rows[1].data(), x_d, 1, base, base);
@@ -299,17 +310,19 @@ void TriangularFlow::Transform(const double* from, int64_t count,
     const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
     // The coordinates of x, which the conditioners read: x_p first.
     const double* x = kForward ? from : to;
-    float x_d[kB] = {}, cosine[kB] = {}, sine[kB] = {};
+    float features[kColumnFeatures * kB] = {};
     for (int dim = 2; dim >= 0; --dim) {
-      if (dim == 1) {
-        for (int i = 0; i < n; ++i) {
-          const double turn = 2 * M_PI * x[2 * count + begin + i];
-          cosine[i] = static_cast<float>(std::cos(turn));
-          sine[i] = static_cast<float>(std::sin(turn));
+      for (int i = 0; i < n && dim < 2; ++i) {
+        // x_d's conditioner sees no feature that depends on x_d.
+        const double x_d = dim == 0 ? x[count + begin + i] : 0.0;
+        double f[kColumnFeatures];
+        ColumnFeatures<double>(x_d, x[2 * count + begin + i], f, nullptr,
+                               nullptr);
+        for (int k = 0; k < kColumnFeatures; ++k) {
+          features[k * kB + i] = static_cast<float>(f[k]);
         }
       }
-      if (dim == 0) Gather(x + count, begin, n, x_d);
-      b.SetFeatures(x_d, cosine, sine);
+      b.SetFeatures(features);
       const ConditionerView& v = views.view[dim];
       float* rows = b.rows[dim].data();
       kernels_->condition(v, rows);
@@ -353,11 +366,9 @@ class TriangularFlow::Pass final : public BrdfFlow::TrainingPass {
       PassBlock& b = blocks_[index];
       const int64_t begin = static_cast<int64_t>(index) * kB;
       const int n = static_cast<int>(std::min<int64_t>(kB, x.columns - begin));
-      float x_d[kB], cosine[kB], sine[kB], base[kB];
-      Gather(x.x_d.data(), begin, n, x_d);
-      Gather(x.cosine.data(), begin, n, cosine);
-      Gather(x.sine.data(), begin, n, sine);
-      b.x[1].assign(x_d, x_d + kB);
+      float base[kB];
+      b.x[1].resize(kB);
+      Gather(x.x_d.data(), begin, n, b.x[1].data());
       b.x[2].resize(kB);
       Gather(x.x_p.data(), begin, n, b.x[2].data());
       b.x[0].resize(static_cast<size_t>(x.points) * kB);
@@ -370,7 +381,7 @@ class TriangularFlow::Pass final : public BrdfFlow::TrainingPass {
         const float* code = codes + CodeOf(begin + std::min(i, n - 1)) * size;
         for (int k = 0; k < size; ++k) b.codes[k * kB + i] = code[k];
       }
-      b.block.SetFeatures(x_d, cosine, sine);
+      b.block.SetFeatures(x, begin, n);
       b.value.resize(b.x[0].size());
       for (int dim = 2; dim >= 0; --dim) {
         ConditionerView v = flow_.View(dim);

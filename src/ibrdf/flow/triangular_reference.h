@@ -51,10 +51,10 @@ class TriangularReference {
     const W* w = weights_.data();
     for (int i = 0; i < dim; ++i) w += conditioners_[i].num_weights;
     std::vector<T> rows(c.rows);
-    const W turn = W(2 * M_PI) * x_p;
-    const W features[3] = {2 * x_d - 1, std::cos(turn), std::sin(turn)};
+    W features[kColumnFeatures];
+    ColumnFeatures<W>(x_d, x_p, features, nullptr, nullptr);
     for (int i = 0; i < c.features; ++i) {
-      rows[i] = T(features[3 - c.features + i]);
+      rows[i] = T(features[kFirstFeature[dim] + i]);
     }
     for (size_t i = 0; i < c.dense.size(); ++i) {
       const DenseLayer& d = c.dense[i];

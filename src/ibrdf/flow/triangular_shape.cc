@@ -52,9 +52,11 @@ std::string CheckWidths(const std::vector<int>& widths) {
 }  // namespace
 
 std::array<ConditionerShape, 3> TriangularShape::Conditioners() const {
-  return {MakeConditioner(3, bins[0], false, code_size, widths),
-          MakeConditioner(2, bins[1], false, code_size, marginal_widths),
-          MakeConditioner(0, bins[2], true, code_size, marginal_widths)};
+  return {MakeConditioner(kNumFeatures[0], bins[0], false, code_size, widths),
+          MakeConditioner(kNumFeatures[1], bins[1], false, code_size,
+                          marginal_widths),
+          MakeConditioner(kNumFeatures[2], bins[2], true, code_size,
+                          marginal_widths)};
 }
 
 size_t TriangularShape::NumWeights() const {
