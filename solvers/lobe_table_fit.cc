@@ -16,8 +16,12 @@ namespace ibrdf {
 namespace {
 
 constexpr int kSearchColumns = 64, kSearchPoints = 12;
-constexpr int kFitColumns = 160, kFitPoints = 30;
+constexpr int kFitColumns = 128, kFitPoints = 24;
 constexpr uint64_t kColumnSeed = 17;
+constexpr int kRoughIterations = 12;
+constexpr double kTolerance = 1e-4;  // relative decrease of the cost to stop at
+constexpr double kWall = 300.0;      // of the unit ball
+constexpr double kFreeColours = 1e3;  // standard deviation of log colours: none
 // A lobe far below the others, relative to them.
 constexpr double kFaintLogColour = -3.0;
 
@@ -205,62 +209,73 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
       ThinTable(table, fit_columns_, kFitPoints);
   if (!target.ok()) return target.status();
   columns.log_raw = std::move(*target);
+  TableColumns rough{search_points_, *seen};
   const Search search(*this, std::move(*seen));
-  const int size = model_.shape.code_size();
-  LobePrior prior;
-  prior.sigma = options.prior_sigma;
-  prior.wall = 300.0;
-  prior.colour_sigma = 1e3;
 
-  LobeTableFit best;
+  // All starts roughly, the best one to the end.
+  std::vector<double> best;
   for (int lobes = 1; lobes <= options.lobes; ++lobes) {
-    LobeTableFit winner;
+    std::vector<double> winner;
     double least = std::numeric_limits<double>::infinity();
-    for (std::vector<double>& start :
-         search.Extend(best.parameters, options.starts)) {
-      ceres::Problem problem;
-      problem.AddResidualBlock(
-          new LogTableCost(*flow_, size, model_.exponent, lobes, columns,
-                           kLogFloor,
-                           options.independent_bins /
-                               static_cast<double>(columns.log_raw.size()),
-                           options.num_threads),
-          nullptr, start.data());
-      problem.AddResidualBlock(new LobePriorCost(lobes, size, prior), nullptr,
-                               start.data());
-      ceres::Solver::Options solver;
-      solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-      solver.max_num_iterations = options.max_iterations;
-      solver.function_tolerance = 1e-4;
-      solver.num_threads = 1;
-      solver.logging_type = ceres::SILENT;
-      ceres::Solver::Summary summary;
-      ceres::Solve(solver, &problem, &summary);
-      if (summary.IsSolutionUsable() && summary.final_cost < least) {
-        least = summary.final_cost;
-        winner.parameters = start;
+    for (std::vector<double>& start : search.Extend(best, options.starts)) {
+      const double cost =
+          Refine(rough, lobes, kRoughIterations, options, &start);
+      if (cost < least) {
+        least = cost;
+        winner = start;
       }
     }
-    if (winner.parameters.empty()) {
+    if (winner.empty()) {
       return InvalidInput("table", "no start of the fit has a finite cost");
     }
     best = winner;
   }
+  Refine(columns, options.lobes, options.max_iterations, options, &best);
+
+  const int size = model_.shape.code_size();
   for (int k = 0; k < options.lobes; ++k) {
-    double* z = best.parameters.data() + k * (size + 3);
+    double* z = best.data() + k * (size + 3);
     const double norm = std::sqrt(std::inner_product(z, z + size, z, 0.0));
     for (int d = 0; d < size && norm > 1.0; ++d) z[d] /= norm;
   }
   const LogTableCost cost(*flow_, size, model_.exponent, options.lobes, columns,
                           kLogFloor, 1.0, options.num_threads);
   std::vector<double> residuals(columns.log_raw.size());
-  const double* block = best.parameters.data();
+  const double* block = best.data();
   cost.Evaluate(&block, residuals.data(), nullptr);
-  best.log_rmse =
-      std::sqrt(std::inner_product(residuals.begin(), residuals.end(),
-                                   residuals.begin(), 0.0) /
-                static_cast<double>(residuals.size()));
-  return best;
+  const double square = std::inner_product(residuals.begin(), residuals.end(),
+                                           residuals.begin(), 0.0);
+  return LobeTableFit{
+      best, std::sqrt(square / static_cast<double>(residuals.size()))};
+}
+
+double LobeTableFitter::Refine(const TableColumns& columns, int lobes,
+                               int iterations,
+                               const LobeTableFitOptions& options,
+                               std::vector<double>* parameters) const {
+  const int size = model_.shape.code_size();
+  LobePrior prior;
+  prior.sigma = options.prior_sigma;
+  prior.wall = kWall;
+  prior.colour_sigma = kFreeColours;
+  ceres::Problem problem;
+  problem.AddResidualBlock(
+      new LogTableCost(*flow_, size, model_.exponent, lobes, columns, kLogFloor,
+                       options.independent_bins /
+                           static_cast<double>(columns.log_raw.size()),
+                       options.num_threads),
+      nullptr, parameters->data());
+  problem.AddResidualBlock(new LobePriorCost(lobes, size, prior), nullptr,
+                           parameters->data());
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = iterations;
+  solver.function_tolerance = kTolerance;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  return summary.IsSolutionUsable() ? summary.final_cost
+                                    : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace ibrdf

@@ -2,6 +2,7 @@
 // embedding can represent.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "ibrdf/base/status.h"
@@ -10,6 +11,8 @@
 #include "ibrdf/flow/neural_brdf_model.h"
 
 namespace ibrdf {
+
+struct TableColumns;
 
 struct LobeTableFitOptions {
   int lobes = 2;
@@ -47,6 +50,11 @@ class LobeTableFitter {
 
  private:
   class Search;
+  // Levenberg-Marquardt in place; returns the cost, infinite where it failed.
+  double Refine(const TableColumns& columns, int lobes, int iterations,
+                const LobeTableFitOptions& options,
+                std::vector<double>* parameters) const;
+
   NeuralBrdfModel model_;
   std::unique_ptr<BrdfFlow> flow_;
   std::vector<int> search_columns_, fit_columns_;

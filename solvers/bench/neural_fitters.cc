@@ -71,7 +71,7 @@ class FreeFlowTableFitter final : public TableFitter {
     training.shape = options_.shape;
     training.steps = options_.steps;
     training.codes_per_step = 3;
-    training.columns_per_code = 64;
+    training.columns_per_code = 32;
     training.points_per_column = 32;
     training.seed = context.seed;
     training.num_threads = context.num_threads;

@@ -18,7 +18,7 @@ std::shared_ptr<const TableFitter> FlowFitter(
 // `flow_free`: a flow of its own for every table, whose three channels are told
 // apart by codes (Chen et al. 2020, Fig. 2: unconditional).
 struct FreeFlowOptions {
-  int64_t steps = 8000;
+  int64_t steps = 5000;
   FlowShape shape;
 };
 std::shared_ptr<const TableFitter> FreeFlowFitter(

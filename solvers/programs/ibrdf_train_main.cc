@@ -12,6 +12,7 @@
 
 #include "io/model_file.h"
 #include "solvers/programs/common_flags.h"
+#include "solvers/trainer/analytic_materials.h"
 #include "solvers/trainer/flow_trainer.h"
 
 namespace ibrdf {
@@ -23,10 +24,11 @@ void RequestStop(int) { stop_requested = true; }
 struct TrainFlags {
   std::string data, out, leave_out, note;
   int columns = 2048;
+  int analytic = 48;
   bool fresh = false;
   std::string flow = "triangular";
-  std::vector<int> bins = {24, 12, 12};
-  std::vector<int> widths = {64, 64, 64};
+  std::vector<int> bins = {32, 16, 16};
+  std::vector<int> widths = {96, 96, 96};
 };
 
 void SetShape(const TrainFlags& flags, FlowShape* shape) {
@@ -63,9 +65,11 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
     return InvalidInput("command line: --points-per-column",
                         "expected a multiple of 4");
   }
-  const StatusOr<TrainingData> all = ReadTrainingData(
+  StatusOr<TrainingData> all = ReadTrainingData(
       flags.data, SplitByComma(flags.leave_out), flags.columns, common.seed);
   if (!all.ok()) return all.status();
+  const size_t measured = all->names.size();
+  AddAnalyticMaterials(flags.analytic, common.seed, &*all);
   // An eighth of the columns is never trained on.
   const int train_columns = all->num_columns() - all->num_columns() / 8;
   const TrainingData train = all->Slice(0, train_columns);
@@ -89,6 +93,10 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
   StatusOr<NeuralBrdfModel> model =
       TrainFlow(train, held_out, options, report, &stop_requested);
   if (!model.ok()) return model.status();
+  // The analytic materials come last; the model keeps the measured ones.
+  model->names.resize(measured);
+  model->codes.resize(measured * model->shape.code_size());
+  model->log_colours.resize(measured);
 
   const std::vector<double> scores =
       ScoreModel(*model, held_out, common.threads);
@@ -114,11 +122,12 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
                 by_material.size(), mean);
   std::printf("%s\n", score);
   model->note = flags.note + (flags.note.empty() ? "" : " ") + score + "; " +
-                std::to_string(options.steps) + " steps of " +
-                std::to_string(options.codes_per_step) + " codes x " +
-                std::to_string(options.columns_per_code) + " columns x " +
-                std::to_string(options.points_per_column) + " points, seed " +
-                std::to_string(options.seed) + ".";
+                std::to_string(flags.analytic) +
+                " analytic materials beside; " + std::to_string(options.steps) +
+                " steps of " + std::to_string(options.codes_per_step) +
+                " codes x " + std::to_string(options.columns_per_code) +
+                " columns x " + std::to_string(options.points_per_column) +
+                " points, seed " + std::to_string(options.seed) + ".";
   IBRDF_RETURN_IF_ERROR(WriteModel(*model, flags.out));
   std::remove(options.checkpoint.c_str());
   return OkStatus();
@@ -143,6 +152,10 @@ int Main(int argc, char** argv) {
                  "random columns (theta_d, phi_d) of each table to use; 1/8 of "
                  "them are held out")
       ->check(CLI::Range(64, 16200))
+      ->capture_default_str();
+  app.add_option("--analytic", flags.analytic,
+                 "random analytic materials to train on beside the tables")
+      ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   app.add_flag("--fresh", flags.fresh, "ignore an existing checkpoint");
   app.add_option("--steps", options.steps, "Adam steps")

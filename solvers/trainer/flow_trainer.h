@@ -16,11 +16,11 @@ namespace ibrdf {
 struct TrainerOptions {
   FlowShape shape;
   double exponent = 1.0;
-  int64_t steps = 12000;
+  int64_t steps = 14000;
   int codes_per_step = 32;
   int columns_per_code = 16;   // a multiple of BrdfFlow::TrainingColumns()
   int points_per_column = 32;  // coupling stack: a multiple of 4
-  double learning_rate = 3e-3;
+  double learning_rate = 5e-3;
   double code_learning_rate = 2e-2;
   // Residuals (log) beyond this count linearly: tables that sit on their floor
   // in part would otherwise rule the gradient.

@@ -98,8 +98,8 @@ struct ConditionerShape {
 // one evaluation.
 struct TriangularShape {
   int code_size = 16;
-  std::array<int, 3> bins = {24, 12, 12};       // of x_h, x_d, x_p
-  std::vector<int> widths = {64, 64, 64};       // hidden layers, for x_h
+  std::array<int, 3> bins = {32, 16, 16};       // of x_h, x_d, x_p
+  std::vector<int> widths = {96, 96, 96};       // hidden layers, for x_h
   std::vector<int> marginal_widths = {32, 32};  // for x_d and x_p
 
   // Of x_h (column features 0 to 4), x_d (3 to 5) and x_p (none). Weights lie
