@@ -254,8 +254,8 @@ class FlowTrainerTest : public TrainerTest,
 INSTANTIATE_TEST_SUITE_P(
     All, FlowTrainerTest,
     testing::Values(FlowArchitecture::kTriangular, FlowArchitecture::kCoupling),
-    [](const testing::TestParamInfo<FlowArchitecture>& info) {
-      return info.param == FlowArchitecture::kTriangular ? "Triangular"
+    [](const testing::TestParamInfo<FlowArchitecture>& flow) {
+      return flow.param == FlowArchitecture::kTriangular ? "Triangular"
                                                          : "Coupling";
     });
 
