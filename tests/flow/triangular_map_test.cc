@@ -26,11 +26,11 @@ TEST(TriangularMap, DensityIntegratesToOne) {
   // a tenth here or less; steep cases are left to the map's own derivative.
   constexpr double kTolerance = 5e-3;
   for (const TriangularCase& c : TriangularCases()) {
-    if (c.name == "steep" || c.name == "limits" || c.name == "64 bins")
+    if (c.name == "steep" || c.name == "limits" || c.name == "far code")
       continue;
     SCOPED_TRACE(c.name);
     const TriangularFlow flow(c.shape, c.weights);
-    constexpr int kSide = 96, kPoints = 160;
+    constexpr int kSide = 128, kPoints = 400;
     FlowColumns x(kSide * kSide, kPoints);
     for (int k = 0; k < x.columns; ++k) {
       x.SetColumn(k, (k / kSide + 0.5) / kSide, (k % kSide + 0.5) / kSide);
