@@ -181,6 +181,7 @@ void Columns(benchmark::State& state, const Net& net, SimdLevel level,
 template <typename F>
 void Add(const std::string& name, F f) {
   benchmark::RegisterBenchmark(name.c_str(), f)
+      ->MeasureProcessCPUTime()
       ->UseRealTime()
       ->Unit(benchmark::kMillisecond);
 }
