@@ -2,11 +2,13 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "io/atomic_file.h"
 #include "io/checksum.h"
@@ -47,7 +49,13 @@ Status ParseHeader(const std::string& path, const std::string& text,
     const std::string flow = header.at("flow").get<std::string>();
     if (flow == "triangular") {
       TriangularShape& shape = model->shape.triangular;
-      shape.bins = header.at("bins").get<std::array<int, 3>>();
+      // As a vector first: an array would take the first three of more.
+      const std::vector<int> bins = header.at("bins").get<std::vector<int>>();
+      if (bins.size() != shape.bins.size()) {
+        return InvalidInput(path + ": bins", "expected 3 numbers, found " +
+                                                 std::to_string(bins.size()));
+      }
+      std::copy(bins.begin(), bins.end(), shape.bins.begin());
       shape.code_size = header.at("code_size").get<int>();
       shape.widths = header.at("widths").get<std::vector<int>>();
       shape.marginal_widths =

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that the build needs and that are missing.
-#   install_dependencies.sh [--tests]    --tests: those of the tests too
+#   install_dependencies.sh [--tests] [--benchmarks]
+#   --tests, --benchmarks: those of the tests, of the benchmarks too
 # Calls apt, as root or through sudo, only when something is missing.
 set -euo pipefail
 
@@ -11,11 +12,13 @@ packages=(
   libopencv-core-dev libopencv-imgproc-dev
   libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
 )
-case "${1:-}" in
-  '') ;;
-  --tests) packages+=(libgtest-dev) ;;
-  *) echo "usage: $0 [--tests]" >&2; exit 2 ;;
-esac
+for option in "$@"; do
+  case "${option}" in
+    --tests) packages+=(libgtest-dev) ;;
+    --benchmarks) packages+=(libbenchmark-dev) ;;
+    *) echo "usage: $0 [--tests] [--benchmarks]" >&2; exit 2 ;;
+  esac
+done
 
 is_installed() {
   dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null | grep -qx installed

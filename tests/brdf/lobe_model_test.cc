@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "tests/support/tiny_model.h"
@@ -25,11 +26,12 @@ class LobeModelTest : public ::testing::Test {
 
   // log q of the flow at one point.
   double LogDensity(const Eigen::Vector3d& cube, const double* code) const {
-    const CouplingFlow flow(model_.shape, model_.weights);
+    const std::unique_ptr<BrdfFlow> flow =
+        BrdfFlow::Create(model_.shape, model_.weights);
     const Eigen::Vector3f x = cube.cast<float>();
     const std::vector<float> z(code, code + 4);
     float value = 0.0f;
-    flow.LogDensity(x.data(), 1, z.data(), 1, &value, nullptr);
+    flow->LogDensity(x.data(), 1, z.data(), 1, &value, nullptr, nullptr);
     return value;
   }
   // Raw MERL value of both lobes.

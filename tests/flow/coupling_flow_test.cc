@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -50,6 +51,18 @@ std::vector<float> Points(int count, uint64_t seed = 7) {
     const int k = kind(rng);
     v = k == 0 ? 0.0f : (k == 1 ? 1.0f : uniform(rng));
   }
+  return x;
+}
+
+// Columns whose first is at the cube's faces.
+FlowColumns RandomColumns(int count, int points, uint64_t seed = 13) {
+  std::mt19937_64 rng(seed);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  FlowColumns x(count, points);
+  for (int c = 0; c < count; ++c) {
+    x.SetColumn(c, c == 0 ? 0.0f : uniform(rng), c == 0 ? 1.0f : uniform(rng));
+  }
+  for (float& v : x.x_h) v = uniform(rng);
   return x;
 }
 
@@ -172,7 +185,8 @@ TEST(CouplingFlowReference, DensityIntegratesToOne) {
       x[n + i] = (static_cast<float>(i / kCells % kCells) + 0.5f) / kCells;
       x[2 * n + i] = (static_cast<float>(i % kCells) + 0.5f) / kCells;
     }
-    flow.LogDensity(x.data(), n, z.data(), 2, log_density.data(), nullptr);
+    flow.LogDensity(x.data(), n, z.data(), 2, log_density.data(), nullptr,
+                    nullptr);
     double sum = 0.0, spread = 0.0;
     for (const float v : log_density) {
       sum += std::exp(static_cast<double>(v));
@@ -206,10 +220,10 @@ TEST_P(CouplingFlowLevels, AgreesWithTheReference) {
     const int n = 150;  // not a multiple of the block
     const std::vector<float> x = Points(n);
     std::vector<float> value(n), dcode(n * c.shape.code_size), dx(3 * n);
-    flow.LogDensityWithGradient(x.data(), n, zf.data(), 2, value.data(),
-                                dcode.data(), dx.data());
+    flow.LogDensity(x.data(), n, zf.data(), 2, value.data(), dcode.data(),
+                    dx.data());
     std::vector<float> plain(n);
-    flow.LogDensity(x.data(), n, zf.data(), 1, plain.data(), nullptr);
+    flow.LogDensity(x.data(), n, zf.data(), 1, plain.data(), nullptr, nullptr);
     EXPECT_EQ(plain, value);
     int values_off = 0, gradients_off = 0;
     for (int p = 0; p < n; ++p) {
@@ -242,10 +256,17 @@ TEST_P(CouplingFlowLevels, InverseUndoesForwardToFloatPrecision) {
     const CouplingFlow flow(c.shape, Weights(c.shape, c.scale), GetParam());
     const std::vector<float> z = Code(c.shape.code_size, c.code_norm);
     const int n = 1000;
-    const std::vector<float> x = Points(n);
-    std::vector<float> value(n), latent(3 * n), back(3 * n), inverse(n);
-    flow.LogDensity(x.data(), n, z.data(), 1, value.data(), latent.data());
-    flow.Inverse(latent.data(), n, z.data(), 2, back.data(), inverse.data());
+    const std::vector<float> points = Points(n);
+    const std::vector<double> x(points.begin(), points.end());
+    std::vector<double> latent(3 * n), back(3 * n);
+    flow.Latent(x.data(), n, z.data(), 1, latent.data());
+    flow.Inverse(latent.data(), n, z.data(), 2, back.data());
+    const std::vector<float> found(back.begin(), back.end());
+    std::vector<float> value(n), inverse(n);
+    flow.LogDensity(points.data(), n, z.data(), 1, value.data(), nullptr,
+                    nullptr);
+    flow.LogDensity(found.data(), n, z.data(), 1, inverse.data(), nullptr,
+                    nullptr);
     for (int p = 0; p < n; ++p) {
       EXPECT_NEAR(value[p], inverse[p], 1e-3);
       for (int i = 0; i < 3; ++i) {
@@ -255,32 +276,87 @@ TEST_P(CouplingFlowLevels, InverseUndoesForwardToFloatPrecision) {
   }
 }
 
+TEST_P(CouplingFlowLevels, LatentIsTheReferences) {
+  // The same bound as of log densities: layers feed each other.
+  constexpr double kTolerance = 5e-4;
+  for (const Case& c : Cases()) {
+    const std::vector<float> w = Weights(c.shape, c.scale);
+    const CouplingFlow flow(c.shape, w, GetParam());
+    const Reference reference(c.shape, w.data());
+    const std::vector<float> zf = Code(c.shape.code_size, c.code_norm);
+    const std::vector<double> z(zf.begin(), zf.end());
+    const int n = 150;
+    const std::vector<float> points = Points(n);
+    const std::vector<double> x(points.begin(), points.end());
+    std::vector<double> latent(3 * n);
+    flow.Latent(x.data(), n, zf.data(), 1, latent.data());
+    for (int p = 0; p < n; ++p) {
+      const double xp[3] = {x[p], x[n + p], x[2 * n + p]};
+      double u[3];
+      reference.LogDensity(xp, z.data(), u);
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(u[i], latent[i * n + p], kTolerance);
+      }
+    }
+  }
+}
+
+TEST_P(CouplingFlowLevels, ColumnsArePoints) {
+  const CouplingShape shape;
+  const CouplingFlow flow(shape, Weights(shape, 3.0f), GetParam());
+  const std::vector<float> z = Code(shape.code_size, 0.8);
+  const int n = 21, points = 9, count = n * points;
+  const FlowColumns columns = RandomColumns(n, points);
+  std::vector<float> x(3 * count);
+  for (int i = 0; i < count; ++i) {
+    x[i] = columns.x_h[i];
+    x[count + i] = columns.x_d[i % n];
+    x[2 * count + i] = columns.x_p[i % n];
+  }
+  std::vector<float> a(count), b(count);
+  std::vector<float> da(count * shape.code_size), db(da);
+  flow.LogDensity(x.data(), count, z.data(), 1, a.data(), da.data(), nullptr);
+  flow.LogDensityOnColumns(columns, z.data(), 2, b.data(), db.data());
+  EXPECT_EQ(a, b);
+  EXPECT_EQ(da, db);
+}
+
 TEST_P(CouplingFlowLevels, TrainingGradientMatchesTheReference) {
   const CouplingShape shape;
   const std::vector<float> w = Weights(shape, 3.0f);
   const CouplingFlow flow(shape, w, GetParam());
   const Reference reference(shape, w.data());
-  const std::vector<float> zf = Code(shape.code_size, 0.8);
-  const std::vector<double> z(zf.begin(), zf.end());
-  std::vector<float> x = Points(kCouplingBlock);
-  std::vector<float> value(kCouplingBlock), adjoint(kCouplingBlock);
+  // Two codes of 16 columns of 8 points: two blocks of points each.
+  constexpr int kCodes = 2, kPoints = 8;
+  const int per_code = flow.TrainingColumns(), n = kCodes * per_code;
+  const FlowColumns x = RandomColumns(n, kPoints);
+  std::vector<float> codes = Code(shape.code_size, 0.8);
+  const std::vector<float> other = Code(shape.code_size, 0.5, 9);
+  codes.insert(codes.end(), other.begin(), other.end());
+  std::vector<float> value(n * kPoints), adjoint(n * kPoints);
   std::mt19937_64 rng(1);
   std::normal_distribution<float> normal;
   for (float& a : adjoint) a = normal(rng);
-  CouplingFlow::TrainingPass pass(flow);
-  pass.Forward(x.data(), zf.data(), value.data());
-  std::vector<float> padded(flow.PaddedGradientSize(), 0.0f);
-  std::vector<float> dz(shape.code_size, 0.0f), dw(w.size(), 0.0f);
-  pass.Backward(adjoint.data(), padded.data(), dz.data());
-  flow.UnpadGradient(padded.data(), dw.data());
-  std::vector<double> rw(w.size(), 0.0), rz(shape.code_size, 0.0);
-  for (int p = 0; p < kCouplingBlock; ++p) {
-    const double xp[3] = {x[p], x[kCouplingBlock + p],
-                          x[2 * kCouplingBlock + p]};
+  const std::unique_ptr<BrdfFlow::TrainingPass> pass = flow.NewTrainingPass();
+  pass->Forward(x, kCodes, codes.data(), value.data());
+  std::vector<float> buffer(flow.GradientSize(), 0.0f);
+  std::vector<float> dz(codes.size(), 0.0f), dw(w.size(), 0.0f);
+  pass->Backward(adjoint.data(), buffer.data(), dz.data());
+  flow.AddGradient(buffer.data(), dw.data());
+  std::vector<double> rw(w.size(), 0.0), rz(codes.size(), 0.0);
+  for (int i = 0; i < n * kPoints; ++i) {
+    const int column = i % n, code = column / per_code;
+    const double xp[3] = {x.x_h[i], x.x_d[column], x.x_p[column]};
+    const std::vector<double> z(codes.begin() + code * shape.code_size,
+                                codes.begin() + (code + 1) * shape.code_size);
     std::vector<double> gz(shape.code_size), gw;
-    reference.LogDensityWithGradient(xp, z.data(), nullptr, gz.data(), &gw);
-    for (size_t i = 0; i < gw.size(); ++i) rw[i] += adjoint[p] * gw[i];
-    for (size_t i = 0; i < gz.size(); ++i) rz[i] += adjoint[p] * gz[i];
+    const double v =
+        reference.LogDensityWithGradient(xp, z.data(), nullptr, gz.data(), &gw);
+    EXPECT_NEAR(v, value[i], 1e-3 * (1 + std::abs(v)));
+    for (size_t k = 0; k < gw.size(); ++k) rw[k] += adjoint[i] * gw[k];
+    for (int k = 0; k < shape.code_size; ++k) {
+      rz[code * shape.code_size + k] += adjoint[i] * gz[k];
+    }
   }
   double error = 0.0, norm = 0.0;
   for (size_t i = 0; i < rw.size(); ++i) {
@@ -288,7 +364,7 @@ TEST_P(CouplingFlowLevels, TrainingGradientMatchesTheReference) {
     norm += rw[i] * rw[i];
   }
   EXPECT_LT(std::sqrt(error / norm), 1e-3);
-  for (int k = 0; k < shape.code_size; ++k) EXPECT_NEAR(rz[k], dz[k], 1e-2);
+  for (size_t k = 0; k < rz.size(); ++k) EXPECT_NEAR(rz[k], dz[k], 1e-2);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CouplingFlowLevels,
@@ -305,12 +381,12 @@ TEST(CouplingFlow, SameBitsForAnyNumberOfThreads) {
   const int n = 1000;
   const std::vector<float> x = Points(n);
   std::vector<float> first(n), first_dz(n * shape.code_size);
-  flow.LogDensityWithGradient(x.data(), n, z.data(), 1, first.data(),
-                              first_dz.data(), nullptr);
+  flow.LogDensity(x.data(), n, z.data(), 1, first.data(), first_dz.data(),
+                  nullptr);
   for (const int threads : {2, 8}) {
     std::vector<float> value(n), dz(n * shape.code_size);
-    flow.LogDensityWithGradient(x.data(), n, z.data(), threads, value.data(),
-                                dz.data(), nullptr);
+    flow.LogDensity(x.data(), n, z.data(), threads, value.data(), dz.data(),
+                    nullptr);
     EXPECT_EQ(first, value);
     EXPECT_EQ(first_dz, dz);
   }
@@ -324,14 +400,15 @@ TEST(CouplingFlow, StaysFiniteForExtremeWeightsAndCodes) {
       const std::vector<float> z = Code(shape.code_size, norm);
       const int n = 500;
       const std::vector<float> x = Points(n);
-      std::vector<float> v(n), dz(n * shape.code_size), dx(3 * n), u(3 * n);
-      flow.LogDensityWithGradient(x.data(), n, z.data(), 1, v.data(), dz.data(),
-                                  dx.data());
-      flow.Inverse(x.data(), n, z.data(), 1, u.data(), nullptr);
+      const std::vector<double> latent(x.begin(), x.end());
+      std::vector<float> v(n), dz(n * shape.code_size), dx(3 * n);
+      std::vector<double> u(3 * n);
+      flow.LogDensity(x.data(), n, z.data(), 1, v.data(), dz.data(), dx.data());
+      flow.Inverse(latent.data(), n, z.data(), 1, u.data());
       for (const float a : v) ASSERT_TRUE(std::isfinite(a));
       for (const float a : dz) ASSERT_TRUE(std::isfinite(a));
       for (const float a : dx) ASSERT_TRUE(std::isfinite(a));
-      for (const float a : u) ASSERT_TRUE(a >= 0.0f && a <= 1.0f);
+      for (const double a : u) ASSERT_TRUE(a >= 0.0 && a <= 1.0);
     }
   }
 }

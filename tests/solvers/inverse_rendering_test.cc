@@ -90,7 +90,7 @@ class InverseRenderingTest : public ::testing::TestWithParam<ProblemKind> {
 
 TEST_P(InverseRenderingTest, ImprovesOnItsStartAndRendersItsEstimate) {
   SetKind(GetParam());
-  problem_.solver.max_iterations = 6;
+  problem_.solver.max_iterations = 12;
   const Estimate e = Solve();
   ExpectWhole(e);
   EXPECT_EQ(StatusCode::kOk, e.status.code()) << e.status.message();

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
 
+#include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "io/merl.h"
 #include "solvers/trainer/adam.h"
@@ -63,28 +65,40 @@ class TrainerTest : public ::testing::Test {
                             dir_->File(std::string(names[i]) + ".binary"))
                       .ok());
     }
-    data_ =
-        new TrainingData(ReadTrainingData(dir_->path(), {}, 3000, 7).value());
+    data_ = new TrainingData(
+        ReadTrainingData(dir_->path(), {}, kColumns, 7).value());
   }
   static void TearDownTestSuite() {
     delete data_;
     delete dir_;
   }
 
-  static TrainerOptions Options(int64_t steps) {
+  static constexpr int kColumns = 240, kTrainColumns = 200;
+
+  static TrainerOptions Options(
+      int64_t steps,
+      FlowArchitecture architecture = FlowArchitecture::kTriangular) {
     TrainerOptions options;
-    options.shape.layers = 3;
-    options.shape.bins = 4;
-    options.shape.code_size = 4;
-    options.shape.widths = {16, 8};
+    options.shape.architecture = architecture;
+    options.shape.triangular.bins = {6, 4, 4};
+    options.shape.triangular.code_size = 4;
+    options.shape.triangular.widths = {16, 8};
+    options.shape.triangular.marginal_widths = {8};
+    options.shape.coupling.layers = 3;
+    options.shape.coupling.bins = 4;
+    options.shape.coupling.code_size = 4;
+    options.shape.coupling.widths = {16, 8};
     options.steps = steps;
     options.codes_per_step = 6;
-    options.points_per_code = 128;
+    options.columns_per_code = 16;
+    options.points_per_column = 8;
     options.num_threads = 1;
     return options;
   }
-  static TrainingData Train() { return data_->Slice(0, 2500); }
-  static TrainingData HeldOut() { return data_->Slice(2500, 3000); }
+  static TrainingData Train() { return data_->Slice(0, kTrainColumns); }
+  static TrainingData HeldOut() {
+    return data_->Slice(kTrainColumns, kColumns);
+  }
   static NeuralBrdfModel Run(const TrainerOptions& options) {
     const StatusOr<NeuralBrdfModel> model =
         TrainFlow(Train(), HeldOut(), options, nullptr, nullptr);
@@ -125,25 +139,86 @@ TEST_F(TrainerTest, DataAreTheTablesInOrderOfName) {
                 "b_matte.red", "b_matte.green", "b_matte.blue", "c_red.red",
                 "c_red.green", "c_red.blue"}),
             data_->names);
-  EXPECT_EQ(3000, data_->num_points);
-  EXPECT_EQ(size_t{9000}, data_->x.size());
-  for (const float x : data_->x) EXPECT_TRUE(x >= 0.0f && x <= 1.0f);
+  ASSERT_EQ(kColumns, data_->num_columns());
+  EXPECT_EQ(kMerlThetaH, data_->columns.points);
+  const std::vector<int> columns = DrawColumns(kColumns, 7);
   const MerlTable table = ReadMerl(dir_->File("c_red.binary")).value();
-  const std::vector<int> bins = ShuffledBins(7);
-  for (int p = 0; p < 3000; p += 100) {
-    EXPECT_FLOAT_EQ(
-        static_cast<float>(std::log(table.Raw(1, bins[p]) + kLogFloor)),
-        data_->LogRaw(7)[p]);
+  for (int c = 0; c < kColumns; c += 7) {
+    const int j = columns[c] / kMerlPhiD, k = columns[c] % kMerlPhiD;
+    ASSERT_GE(data_->count[c], 1);
+    for (int i = 0; i < kMerlThetaH; ++i) {
+      ASSERT_EQ(i < data_->count[c], MerlBinAboveHorizon(i, j, k));
+      const Eigen::Vector3d x =
+          ToUnitCube(MerlThetaH(i), MerlThetaD(j), MerlPhiD(k));
+      EXPECT_FLOAT_EQ(
+          static_cast<float>(std::min(x[0], 1.0)),
+          data_->columns.x_h[static_cast<size_t>(i) * kColumns + c]);
+      EXPECT_FLOAT_EQ(static_cast<float>(x[1]), data_->columns.x_d[c]);
+      EXPECT_FLOAT_EQ(static_cast<float>(x[2]), data_->columns.x_p[c]);
+      if (i >= data_->count[c]) continue;
+      EXPECT_FLOAT_EQ(static_cast<float>(std::log(
+                          table.Raw(1, MerlTable::Bin(i, j, k)) + kLogFloor)),
+                      data_->LogRaw(7, c)[i]);
+    }
   }
 }
 
-TEST_F(TrainerTest, SlicesPartitionThePoints) {
+TEST_F(TrainerTest, ColumnsAreDifferentAndDrawnByTheirBins) {
+  const int all = kMerlThetaD * kMerlPhiD;
+  std::vector<int> columns = DrawColumns(all + 5, 3);
+  // The draw of all is a permutation, the one of fewer its start.
+  const std::vector<int> few = DrawColumns(100, 3);
+  EXPECT_TRUE(std::equal(few.begin(), few.end(), columns.begin()));
+  EXPECT_NE(few, DrawColumns(100, 4));
+  std::sort(columns.begin(), columns.end());
+  ASSERT_EQ(static_cast<size_t>(all), columns.size());
+  for (int c = 0; c < all; ++c) ASSERT_EQ(c, columns[c]);
+  // The mean of 1 / bins over columns drawn by their bins is columns / bins of
+  // the table; 400 of 16200 columns leave an error of a few per cent.
+  const TrainingData some = ColumnsOfTable(DrawColumns(400, 5));
+  const TrainingData whole = ColumnsOfTable(columns);
+  double inverse = 0.0, bins = 0.0, with_bins = 0.0;
+  for (const int n : some.count) inverse += 1.0 / std::max(n, 1);
+  for (const int n : whole.count) {
+    bins += n;
+    with_bins += n > 0;
+  }
+  EXPECT_NEAR(with_bins / bins, inverse / 400, 0.1 * with_bins / bins);
+}
+
+TEST_F(TrainerTest, SlicesPartitionTheColumns) {
   const TrainingData a = Train(), b = HeldOut();
-  EXPECT_EQ(2500, a.num_points);
-  EXPECT_EQ(500, b.num_points);
-  EXPECT_EQ(data_->LogRaw(4)[2499], a.LogRaw(4)[2499]);
-  EXPECT_EQ(data_->LogRaw(4)[2500], b.LogRaw(4)[0]);
-  EXPECT_EQ(data_->x[2 * 3000 + 2600], b.x[2 * 500 + 100]);
+  EXPECT_EQ(kTrainColumns, a.num_columns());
+  EXPECT_EQ(kColumns - kTrainColumns, b.num_columns());
+  const auto same = [](const TrainingData& part, int at, int whole_at) {
+    const FlowColumns& x = part.columns;
+    EXPECT_EQ(data_->count[whole_at], part.count[at]);
+    EXPECT_EQ(data_->columns.x_d[whole_at], x.x_d[at]);
+    EXPECT_EQ(data_->columns.x_p[whole_at], x.x_p[at]);
+    // Of the x_p that was rounded to float, times 2 pi.
+    EXPECT_NEAR(data_->columns.cosine[whole_at], x.cosine[at], 4e-7);
+    EXPECT_NEAR(data_->columns.sine[whole_at], x.sine[at], 4e-7);
+    for (int i = 0; i < kMerlThetaH; ++i) {
+      ASSERT_EQ(data_->columns.x_h[i * kColumns + whole_at],
+                x.x_h[i * x.columns + at]);
+      ASSERT_EQ(data_->LogRaw(4, whole_at)[i], part.LogRaw(4, at)[i]);
+    }
+  };
+  same(a, 0, 0);
+  same(a, kTrainColumns - 1, kTrainColumns - 1);
+  same(b, 0, kTrainColumns);
+  same(b, 17, kTrainColumns + 17);
+}
+
+TEST_F(TrainerTest, SelectedDistributionsKeepTheirTables) {
+  const TrainingData part = data_->Select({7, 2});
+  EXPECT_EQ((std::vector<std::string>{"c_red.green", "a_glossy.blue"}),
+            part.names);
+  EXPECT_EQ(kColumns, part.num_columns());
+  for (const int c : {0, 5, kColumns - 1}) {
+    EXPECT_EQ(data_->LogRaw(7, c)[0], part.LogRaw(0, c)[0]);
+    EXPECT_EQ(data_->LogRaw(2, c)[0], part.LogRaw(1, c)[0]);
+  }
 }
 
 TEST_F(TrainerTest, LeftOutMaterialsAreNotRead) {
@@ -170,9 +245,25 @@ TEST_F(TrainerTest, BadFoldersAreNamed) {
   expect(empty.path(), {}, "broken.binary");
 }
 
-TEST_F(TrainerTest, TrainingLowersTheHeldOutScore) {
-  const NeuralBrdfModel first = Run(Options(1));
-  TrainerOptions options = Options(500);
+// What holds for every architecture.
+class FlowTrainerTest : public TrainerTest,
+                        public testing::WithParamInterface<FlowArchitecture> {
+ protected:
+  static TrainerOptions ParamOptions(int64_t steps) {
+    return Options(steps, GetParam());
+  }
+};
+INSTANTIATE_TEST_SUITE_P(
+    All, FlowTrainerTest,
+    testing::Values(FlowArchitecture::kTriangular, FlowArchitecture::kCoupling),
+    [](const testing::TestParamInfo<FlowArchitecture>& flow) {
+      return flow.param == FlowArchitecture::kTriangular ? "Triangular"
+                                                         : "Coupling";
+    });
+
+TEST_P(FlowTrainerTest, TrainingLowersTheHeldOutScore) {
+  const NeuralBrdfModel first = Run(ParamOptions(1));
+  TrainerOptions options = ParamOptions(500);
   options.learning_rate = 1e-2;
   options.report_seconds = 0.0;
   std::vector<TrainerProgress> reports;
@@ -193,8 +284,8 @@ TEST_F(TrainerTest, TrainingLowersTheHeldOutScore) {
   }
 }
 
-TEST_F(TrainerTest, CodesStayInTheUnitBallUnderHugeRates) {
-  TrainerOptions options = Options(20);
+TEST_P(FlowTrainerTest, CodesStayInTheUnitBallUnderHugeRates) {
+  TrainerOptions options = ParamOptions(20);
   options.code_learning_rate = 100.0;
   const NeuralBrdfModel model = Run(options);
   int on_sphere = 0;
@@ -207,8 +298,8 @@ TEST_F(TrainerTest, CodesStayInTheUnitBallUnderHugeRates) {
   EXPECT_GT(on_sphere, 0);
 }
 
-TEST_F(TrainerTest, ThreadsDoNotChangeBits) {
-  TrainerOptions options = Options(20);
+TEST_P(FlowTrainerTest, ThreadsDoNotChangeBits) {
+  TrainerOptions options = ParamOptions(20);
   const NeuralBrdfModel one = Run(options);
   options.num_threads = 2;
   ExpectSameBits(one, Run(options));
@@ -216,9 +307,9 @@ TEST_F(TrainerTest, ThreadsDoNotChangeBits) {
   EXPECT_NE(one.weights, Run(options).weights);
 }
 
-TEST_F(TrainerTest, StopAndResumeGivesTheBitsOfOneRun) {
+TEST_P(FlowTrainerTest, StopAndResumeGivesTheBitsOfOneRun) {
   const TempDir dir;
-  TrainerOptions options = Options(30);
+  TrainerOptions options = ParamOptions(30);
   // Fewer than there are, so that codes have seen different numbers of steps.
   options.codes_per_step = 4;
   const NeuralBrdfModel whole = Run(options);
@@ -231,9 +322,9 @@ TEST_F(TrainerTest, StopAndResumeGivesTheBitsOfOneRun) {
   ExpectSameBits(whole, Run(options));
 }
 
-TEST_F(TrainerTest, CheckpointsThatDoNotFitAreRefused) {
+TEST_P(FlowTrainerTest, CheckpointsThatDoNotFitAreRefused) {
   const TempDir dir;
-  TrainerOptions options = Options(30);
+  TrainerOptions options = ParamOptions(30);
   options.checkpoint = dir.File("checkpoint");
   options.report_seconds = 0.0;
   Interrupt(options, 5);
@@ -252,8 +343,16 @@ TEST_F(TrainerTest, CheckpointsThatDoNotFitAreRefused) {
   other.seed = 99;
   expect_refused(other, "seed");
   other = options;
-  other.shape.widths = {16, 9};
+  other.shape.triangular.widths = other.shape.coupling.widths = {16, 9};
   expect_refused(other, "widths");
+  other = options;
+  other.points_per_column *= 2;
+  expect_refused(other, "points");
+  other = options;
+  other.shape.architecture = GetParam() == FlowArchitecture::kTriangular
+                                 ? FlowArchitecture::kCoupling
+                                 : FlowArchitecture::kTriangular;
+  expect_refused(other, "architecture");
   for (const size_t length :
        {size_t{0}, size_t{10}, bytes.size() / 2, bytes.size() - 1}) {
     WriteBytes(options.checkpoint, bytes.substr(0, length));

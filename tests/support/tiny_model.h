@@ -5,30 +5,50 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <vector>
 
-#include "ibrdf/flow/coupling_flow.h"
+#include "ibrdf/flow/brdf_flow.h"
 #include "ibrdf/flow/neural_brdf_model.h"
 
 namespace ibrdf {
 
+// Calls edit(conditioner, its weights) for x_h, x_d and x_p.
+template <typename Edit>
+void EditConditioners(const TriangularShape& shape, std::vector<float>* weights,
+                      const Edit& edit) {
+  float* w = weights->data();
+  for (const ConditionerShape& c : shape.Conditioners()) {
+    edit(c, w);
+    w += c.num_weights;
+  }
+}
+
+// The trainer's start with the last layer of every conditioner scaled up by
+// `curvature`: 1 is nearly the identity.
+inline std::vector<float> CurvedWeights(const TriangularShape& shape,
+                                        float curvature, uint64_t seed) {
+  FlowShape flow;
+  flow.triangular = shape;
+  std::vector<float> weights = InitialFlowWeights(flow, seed);
+  EditConditioners(shape, &weights, [&](const ConditionerShape& c, float* w) {
+    const DenseLayer& last = c.dense.back();
+    for (int k = 0; k < last.in_count * last.out_count; ++k) {
+      w[last.weight_offset + k] *= curvature;
+    }
+  });
+  return weights;
+}
+
 // `materials` random codes a channel, of norm 0.2 to 0.8. The weights are far
-// enough from the identity that codes matter: the last dense layer is scaled up
-// by `curvature` from the trainer's start.
+// enough from the identity that codes matter.
 inline NeuralBrdfModel TinyModel(int materials, uint64_t seed = 1,
                                  float curvature = 4.0f) {
   NeuralBrdfModel model;
-  model.shape.layers = 3;
-  model.shape.bins = 4;
-  model.shape.code_size = 4;
-  model.shape.widths = {8, 4};
-  model.weights = InitialFlowWeights(model.shape, seed);
-  const DenseLayer last = model.shape.DenseLayers().back();
-  for (int l = 0; l < model.shape.layers; ++l) {
-    float* layer = model.weights.data() + l * model.shape.WeightsPerLayer();
-    for (int k = 0; k < last.in_count * last.out_count; ++k) {
-      layer[last.weight_offset + k] *= curvature;
-    }
-  }
+  model.shape.triangular.bins = {6, 4, 4};
+  model.shape.triangular.code_size = 4;
+  model.shape.triangular.widths = {8, 8};
+  model.shape.triangular.marginal_widths = {6};
+  model.weights = CurvedWeights(model.shape.triangular, curvature, seed);
   std::mt19937_64 rng(seed + 1);
   std::normal_distribution<float> normal;
   std::uniform_real_distribution<float> norm(0.2f, 0.8f);
@@ -53,15 +73,15 @@ inline NeuralBrdfModel TinyModel(int materials, uint64_t seed = 1,
 // moves knots, the derivative jumps as one passes a node of the grid.)
 inline NeuralBrdfModel SmoothTinyModel(int materials, uint64_t seed = 1) {
   NeuralBrdfModel model = TinyModel(materials, seed);
-  const DenseLayer last = model.shape.DenseLayers().back();
-  // Rows of the last layer: bins + 1 slopes, then the bins' widths.
-  const int slopes = (model.shape.bins + 1) * last.in_count;
-  for (int l = 0; l < model.shape.layers; ++l) {
-    float* layer = model.weights.data() + l * model.shape.WeightsPerLayer();
-    std::fill(layer + last.weight_offset + slopes,
-              layer + last.weight_offset + last.out_count * last.in_count,
-              0.0f);
-  }
+  EditConditioners(
+      model.shape.triangular, &model.weights,
+      [](const ConditionerShape& c, float* w) {
+        // Rows of the last layer: heights, then the bins' widths.
+        const DenseLayer& last = c.dense.back();
+        std::fill(w + last.weight_offset + c.NumHeights() * last.in_count,
+                  w + last.weight_offset + c.NumParameters() * last.in_count,
+                  0.0f);
+      });
   return model;
 }
 

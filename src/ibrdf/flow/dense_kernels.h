@@ -16,6 +16,7 @@ inline void Tile(int depth, const float* a, size_t a_row, size_t a_col,
                  const float* b, size_t b_row, float* c, size_t c_row,
                  const float* bias) {
   Vf acc0[M], acc1[M];
+#pragma GCC unroll 8
   for (int i = 0; i < M; ++i) {
     acc0[i] = acc1[i] = bias != nullptr ? Splat(bias[i]) : Vf{};
   }
@@ -29,6 +30,7 @@ inline void Tile(int depth, const float* a, size_t a_row, size_t a_col,
       acc1[i] += w * b1;
     }
   }
+#pragma GCC unroll 8
   for (int i = 0; i < M; ++i) {
     float* out = c + i * c_row;
     Store(out, kAdd ? Load(out) + acc0[i] : acc0[i]);

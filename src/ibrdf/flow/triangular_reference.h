@@ -78,7 +78,8 @@ class TriangularReference {
     using std::abs;
     using std::sqrt;
     const T t = sqrt(T(x * x + kSharpness)) + abs(x);
-    if (x > 0.0) return t / 2.0;
+    // At 0 the slope of |x| is that of the branch x >= 0.
+    if (x >= 0.0) return t / 2.0;
     return T(kSharpness / 2) / t;
   }
 
