@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +16,7 @@
 #include "io/png.h"
 #include "solvers/baselines/cook_torrance_fit.h"
 #include "solvers/bench/child_process.h"
-#include "solvers/bench/results_table.h"
+#include "solvers/bench/sweep_files.h"
 #include "solvers/render_scene.h"
 
 namespace ibrdf {
@@ -30,33 +29,6 @@ constexpr int kMapWidth = 128;
 constexpr int kMapHeight = 64;
 constexpr size_t kMaxJsonBytes = size_t{1} << 28;
 
-// File in `folder` called `name` with one of the extensions; empty: none.
-std::string FindFile(const std::string& folder, const std::string& name,
-                     const std::vector<std::string>& extensions) {
-  for (const std::string& extension : extensions) {
-    const fs::path path = fs::path(folder) / (name + extension);
-    if (fs::is_regular_file(path)) return fs::absolute(path).string();
-  }
-  return "";
-}
-
-StatusOr<std::vector<std::string>> ListNames(
-    const std::string& folder, const std::vector<std::string>& extensions) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string extension = entry.path().extension().string();
-    if (std::find(extensions.begin(), extensions.end(), extension) !=
-        extensions.end()) {
-      names.push_back(entry.path().stem().string());
-    }
-  }
-  if (error) return InvalidInput(folder, error.message());
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
-}
-
 bool IsMesh(const JointSweepOptions& options) {
   return options.geometry != "sphere";
 }
@@ -64,13 +36,6 @@ bool IsMesh(const JointSweepOptions& options) {
 std::string GeometryName(const JointSweepOptions& options) {
   return IsMesh(options) ? fs::path(options.geometry).stem().string()
                          : options.geometry;
-}
-
-std::string Number(double value) {
-  if (!std::isfinite(value)) return "";
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
 }
 
 // A JSON string is a YAML string too.
@@ -154,7 +119,7 @@ Status WriteProblem(const JointSweepOptions& options, const JointCase& c,
       std::to_string(kMapWidth) + ", height: " + std::to_string(kMapHeight) +
       "}\n"
       "solver: {method: " +
-      options.method + ", seconds: " + Number(options.solver_seconds) +
+      options.method + ", seconds: " + NumberCell(options.solver_seconds) +
       "}\n"
       "truth: {brdf: " +
       Quoted(c.brdf_path) + ", illumination: " + Quoted(c.map_path) + "}\n";
@@ -179,23 +144,8 @@ std::string DescribeEnd(const ChildResult& child) {
   }
 }
 
-class Row {
- public:
-  Row() : cells_(JointColumns().size()) {}
-  void Set(const std::string& column, const std::string& value) {
-    const auto& columns = JointColumns();
-    const auto at = std::find(columns.begin(), columns.end(), column);
-    CHECK(at != columns.end()) << column;
-    cells_[at - columns.begin()] = value;
-  }
-  const ResultsRow& cells() const { return cells_; }
-
- private:
-  ResultsRow cells_;
-};
-
 // False where result.json has no metrics.
-bool ReadMetrics(const std::string& path, Row* row) {
+bool ReadMetrics(const std::string& path, NamedRow* row) {
   const StatusOr<std::string> text = ReadFile(path, kMaxJsonBytes);
   if (!text.ok()) return false;
   const nlohmann::json json = nlohmann::json::parse(*text, nullptr, false);
@@ -209,7 +159,7 @@ bool ReadMetrics(const std::string& path, Row* row) {
         "illumination_relative_log_rmse_aligned"}) {
     const auto value = json["metrics"].find(name);
     if (value != json["metrics"].end() && value->is_number()) {
-      row->Set(name, Number(value->get<double>()));
+      row->Set(name, NumberCell(value->get<double>()));
     }
   }
   return true;
@@ -217,7 +167,7 @@ bool ReadMetrics(const std::string& path, Row* row) {
 
 // The input as the solver gets it, the true map at the solver's size.
 Status RunBaselines(const JointSweepOptions& options, const JointCase& c,
-                    const fs::path& folder, Row* row) {
+                    const fs::path& folder, NamedRow* row) {
   const Problem problem = RenderProblem(options, c);
   const StatusOr<Image> image = ReadImage((folder / "input.exr").string());
   if (!image.ok()) return image.status();
@@ -229,9 +179,9 @@ Status RunBaselines(const JointSweepOptions& options, const JointCase& c,
   const StatusOr<IlluminationMetrics> constant = ScoreConstantMap(map);
   if (!constant.ok()) return constant.status();
   row->Set("constant_map_relative_log_rmse",
-           Number(constant->relative_log_rmse));
+           NumberCell(constant->relative_log_rmse));
   row->Set("constant_map_relative_log_rmse_aligned",
-           Number(constant->relative_log_rmse_aligned));
+           NumberCell(constant->relative_log_rmse_aligned));
 
   const StatusOr<Scene> scene = LoadScene(problem.geometry);
   if (!scene.ok()) return scene.status();
@@ -255,27 +205,21 @@ Status RunBaselines(const JointSweepOptions& options, const JointCase& c,
   const StatusOr<BrdfMetrics> brdf =
       CompareBrdfs(SampleMerl(fit->brdf.Function()), *truth);
   if (!brdf.ok()) return brdf.status();
-  row->Set("cook_torrance_misfit", Number(fit->misfit));
-  row->Set("cook_torrance_brdf_log_rmse", Number(brdf->log_rmse));
+  row->Set("cook_torrance_misfit", NumberCell(fit->misfit));
+  row->Set("cook_torrance_brdf_log_rmse", NumberCell(brdf->log_rmse));
   row->Set("cook_torrance_brdf_log_rmse_aligned",
-           Number(brdf->log_rmse_aligned));
+           NumberCell(brdf->log_rmse_aligned));
   return OkStatus();
 }
 
-Row KeyOf(const JointSweepOptions& options, const JointCase& c) {
-  Row row;
+NamedRow KeyOf(const JointSweepOptions& options, const JointCase& c) {
+  NamedRow row(JointColumns());
   row.Set("material", c.material);
   row.Set("map", c.map);
   row.Set("geometry", GeometryName(options));
   row.Set("lobes", std::to_string(options.lobes));
   row.Set("method", options.method);
   return row;
-}
-
-bool IsDone(const std::vector<ResultsRow>& rows, const ResultsRow& key) {
-  return std::any_of(rows.begin(), rows.end(), [&](const ResultsRow& row) {
-    return std::equal(key.begin(), key.begin() + kJointKeyColumns, row.begin());
-  });
 }
 
 Status RunCase(const JointSweepOptions& options, const JointCase& c,
@@ -303,9 +247,9 @@ Status RunCase(const JointSweepOptions& options, const JointCase& c,
   if (child->exit_code == 130 || (options.stop != nullptr && *options.stop)) {
     return Status(StatusCode::kInterrupted, c.name + ": interrupted");
   }
-  Row row = KeyOf(options, c);
-  row.Set("seconds", Number(child->seconds));
-  row.Set("peak_mb", Number(child->peak_mb));
+  NamedRow row = KeyOf(options, c);
+  row.Set("seconds", NumberCell(child->seconds));
+  row.Set("peak_mb", NumberCell(child->peak_mb));
   std::string status = DescribeEnd(*child);
   const bool finished =
       child->signal == 0 && (child->exit_code == 0 || child->exit_code == 3);
@@ -321,6 +265,30 @@ Status RunCase(const JointSweepOptions& options, const JointCase& c,
 }
 
 }  // namespace
+
+const std::vector<std::string>& JointColumns() {
+  static const std::vector<std::string> columns = {
+      "material",
+      "map",
+      "geometry",
+      "lobes",
+      "method",
+      "seconds",
+      "peak_mb",
+      "misfit",
+      "brdf_log_rmse",
+      "brdf_log_rmse_aligned",
+      "brdf_log_rmse_below80",
+      "illumination_relative_log_rmse",
+      "illumination_relative_log_rmse_aligned",
+      "status",
+      "cook_torrance_misfit",
+      "cook_torrance_brdf_log_rmse",
+      "cook_torrance_brdf_log_rmse_aligned",
+      "constant_map_relative_log_rmse",
+      "constant_map_relative_log_rmse_aligned"};
+  return columns;
+}
 
 StatusOr<std::vector<JointCase>> ListJointCases(
     const JointSweepOptions& options) {
@@ -348,11 +316,7 @@ StatusOr<std::vector<JointCase>> ListJointCases(
       c.map = map;
       c.name = material + "_" + map;
       if (IsMesh(options)) c.name += "_" + GeometryName(options);
-      if (c.name.find_first_of(",\"\r\n|/") != std::string::npos) {
-        return InvalidInput("command line", c.name +
-                                                ": expected names without "
-                                                "comma, quote, bar or slash");
-      }
+      IBRDF_RETURN_IF_ERROR(CheckCaseName(c.name));
       c.brdf_path = FindFile(options.data, material, {".binary"});
       c.map_path = FindFile(options.maps, map, map_extensions);
       if (c.brdf_path.empty()) {
@@ -391,7 +355,8 @@ Status RunJointSweep(const JointSweepOptions& options) {
   if (!present.ok()) return present.status();
   for (size_t i = 0; i < cases->size(); ++i) {
     const JointCase& c = (*cases)[i];
-    const bool done = IsDone(*present, KeyOf(options, c).cells());
+    const bool done =
+        HoldsCase(*present, KeyOf(options, c).cells(), kJointKeyColumns);
     if (options.report) {
       options.report("case " + std::to_string(i + 1) + " / " +
                      std::to_string(cases->size()) + "  " + c.name +

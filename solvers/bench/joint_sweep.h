@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
+#include "solvers/bench/results_table.h"
 
 namespace ibrdf {
 
@@ -39,6 +40,10 @@ struct JointCase {
   std::string material, map;
   std::string brdf_path, map_path;  // absolute
 };
+
+// Columns of its results.csv, in order; the first five name the case.
+const std::vector<std::string>& JointColumns();
+inline constexpr int kJointKeyColumns = 5;
 
 // The cases that options select, by material, then map. Fails on a material or
 // map that is not there.

@@ -5,7 +5,10 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
@@ -51,28 +54,27 @@ Status WriteAll(int file, const std::string& path, const std::string& text) {
 
 }  // namespace
 
-const std::vector<std::string>& JointColumns() {
-  static const std::vector<std::string> columns = {
-      "material",
-      "map",
-      "geometry",
-      "lobes",
-      "method",
-      "seconds",
-      "peak_mb",
-      "misfit",
-      "brdf_log_rmse",
-      "brdf_log_rmse_aligned",
-      "brdf_log_rmse_below80",
-      "illumination_relative_log_rmse",
-      "illumination_relative_log_rmse_aligned",
-      "status",
-      "cook_torrance_misfit",
-      "cook_torrance_brdf_log_rmse",
-      "cook_torrance_brdf_log_rmse_aligned",
-      "constant_map_relative_log_rmse",
-      "constant_map_relative_log_rmse_aligned"};
-  return columns;
+std::string NumberCell(double value) {
+  if (!std::isfinite(value)) return "";
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6g", value);
+  return text;
+}
+
+NamedRow::NamedRow(const std::vector<std::string>& columns)
+    : columns_(&columns), cells_(columns.size()) {}
+
+void NamedRow::Set(const std::string& column, const std::string& value) {
+  const auto at = std::find(columns_->begin(), columns_->end(), column);
+  CHECK(at != columns_->end()) << column;
+  cells_[at - columns_->begin()] = value;
+}
+
+bool HoldsCase(const std::vector<ResultsRow>& rows, const ResultsRow& key,
+               int num_key_columns) {
+  return std::any_of(rows.begin(), rows.end(), [&](const ResultsRow& row) {
+    return std::equal(key.begin(), key.begin() + num_key_columns, row.begin());
+  });
 }
 
 StatusOr<std::vector<ResultsRow>> ReadResults(

@@ -9,9 +9,28 @@ namespace ibrdf {
 
 using ResultsRow = std::vector<std::string>;  // a cell per column
 
-// Columns of the joint sweep, in order; the first five name the case.
-const std::vector<std::string>& JointColumns();
-inline constexpr int kJointKeyColumns = 5;
+// Six digits; empty where the value is not finite.
+std::string NumberCell(double value);
+
+// A row that is filled by column name; empty cells at first.
+class NamedRow {
+ public:
+  // columns: not copied, must outlive *this.
+  explicit NamedRow(const std::vector<std::string>& columns);
+
+  // `column` is one of the columns.
+  void Set(const std::string& column, const std::string& value);
+  const ResultsRow& cells() const { return cells_; }
+
+ private:
+  const std::vector<std::string>* columns_;
+  ResultsRow cells_;
+};
+
+// Whether a row starts with the first num_key_columns cells of `key`: the
+// columns that name a case come first.
+bool HoldsCase(const std::vector<ResultsRow>& rows, const ResultsRow& key,
+               int num_key_columns);
 
 // Rows of a table; none where the file does not exist. A last line without its
 // end, cut by a kill, does not count. Fails on other columns; names the file.

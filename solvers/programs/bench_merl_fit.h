@@ -1,0 +1,74 @@
+// The experiment `merl-fit` of ibrdf_bench.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "solvers/bench/baseline_fitters.h"
+#include "solvers/bench/merl_fit_sweep.h"
+#include "solvers/programs/bench_session.h"
+
+namespace ibrdf {
+
+inline void AddMerlFitExperiment(CLI::App* app, BenchSession* session) {
+  struct Flags {
+    MerlFitSweepOptions options;
+    OnlyFlag only;
+    bool dry_run = false;
+  };
+  const auto flags = std::make_shared<Flags>();
+  const auto run = [flags, session]() -> Status {
+    MerlFitSweepOptions& options = flags->options;
+    IBRDF_RETURN_IF_ERROR(flags->only.Parse());
+    options.only_index = flags->only.index;
+    options.only_count = flags->only.count;
+    options.seed = session->common.seed;
+    options.num_threads = session->common.threads;
+    options.command = session->command;
+    options.fitters = BaselineFitters();
+    if (flags->dry_run) {
+      const StatusOr<std::vector<MerlFitCase>> cases =
+          ListMerlFitCases(options);
+      if (!cases.ok()) return cases.status();
+      for (const MerlFitCase& c : *cases) {
+        std::printf("%s\t%s\t%s\n", c.name.c_str(), c.table_path.c_str(),
+                    c.score_path.c_str());
+      }
+      return OkStatus();
+    }
+    options.report = session->Report();
+    options.stop = session->stop;
+    return RunMerlFitSweep(options);
+  };
+  CLI::App* fit = AddExperiment(
+      app, "merl-fit",
+      "How well models fit measured tables: fits each method to each table, "
+      "and a row of DIR/results.csv as each fit finishes. The same command "
+      "goes on where it was stopped.",
+      session, run);
+  MerlFitSweepOptions& options = flags->options;
+  fit->add_option("--data", options.data,
+                  "folder of MERL .binary tables, fitted and scored")
+      ->required();
+  fit->add_option("--out", options.out, "folder of results")->required();
+  fit->add_option("--materials", options.materials,
+                  "comma-separated tables, without extension; default: all")
+      ->delimiter(',');
+  std::string methods;
+  for (const auto& fitter : BaselineFitters()) {
+    const std::string name = fitter->method();
+    if (methods.find(name + " ") == std::string::npos) methods += name + " ";
+  }
+  fit->add_option("--methods", options.methods,
+                  "comma-separated, of: " + methods + "; default: all")
+      ->delimiter(',');
+  fit->add_option("--score-data", options.score_data,
+                  "another folder of tables of the same names: each fit is "
+                  "scored on these too, without scaling");
+  fit->add_option("--only", flags->only.text,
+                  "i/n: every n-th material from the i-th")
+      ->capture_default_str();
+  fit->add_flag("--dry-run", flags->dry_run, "print the cases and stop");
+}
+
+}  // namespace ibrdf
