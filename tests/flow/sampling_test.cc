@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
-#include "ibrdf/flow/triangular_flow.h"
 #include "tests/support/flow_cells.h"
+#include "tests/support/small_flow.h"
 #include "tests/support/statistics.h"
 
 namespace ibrdf {
@@ -27,29 +27,9 @@ constexpr double kPointTolerance = 1e-6;
 // Of the splines' heights: densities of several orders of magnitude.
 constexpr float kCurvature = 25.0f;
 
-// The heights of the trainer's start scaled up, so that the density is far from
-// uniform; not the widths, lest bins be too narrow for the midpoint rule.
-FlowShape SmallShape() {
-  FlowShape shape;
-  shape.triangular.code_size = 3;
-  shape.triangular.bins = {6, 4, 4};
-  shape.triangular.widths = {8, 8};
-  shape.triangular.marginal_widths = {6};
-  return shape;
-}
-
-std::unique_ptr<BrdfFlow> SmallFlow(float curvature, uint64_t seed = 5) {
-  const FlowShape shape = SmallShape();
-  std::vector<float> weights = InitialTriangularWeights(shape.triangular, seed);
-  float* w = weights.data();
-  for (const ConditionerShape& c : shape.triangular.Conditioners()) {
-    const DenseLayer& last = c.dense.back();
-    for (int k = 0; k < last.in_count * c.NumHeights(); ++k) {
-      w[last.weight_offset + k] *= curvature;
-    }
-    w += c.num_weights;
-  }
-  return BrdfFlow::Create(shape, weights);
+std::unique_ptr<BrdfFlow> SmallFlow(float curvature) {
+  const NeuralBrdfModel model = SmallFlowModel(curvature);
+  return BrdfFlow::Create(model.shape, model.weights);
 }
 
 const float kCode[3] = {0.5f, -0.3f, 0.6f};
