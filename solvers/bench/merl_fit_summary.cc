@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -51,18 +52,25 @@ std::vector<Group> GroupRows(const std::vector<ResultsRow>& rows) {
   return groups;
 }
 
-// Finite values of a column.
+// Values of a column in the rows that have a `score`.
 std::vector<double> Values(const Group& group, const std::string& column,
-                           bool with_hard) {
+                           const std::string& score, bool with_hard) {
   std::vector<double> values;
   for (const ResultsRow* row : group.rows) {
     if (!with_hard && HardMaterials().count(Cell(*row, "material")) > 0) {
       continue;
     }
     const std::string cell = Cell(*row, column);
-    if (!cell.empty()) values.push_back(std::strtod(cell.c_str(), nullptr));
+    if (!cell.empty() && !Cell(*row, score).empty())
+      values.push_back(std::strtod(cell.c_str(), nullptr));
   }
   return values;
+}
+
+std::string Rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.4g", value);
+  return text;
 }
 
 double Mean(const std::vector<double>& values) {
@@ -85,19 +93,20 @@ std::string ScoreTable(const std::vector<Group>& groups,
     ResultsRow line = {group.label};
     for (const char* suffix : {"_rmse", "_rmse_aligned", "_rmse_below80"}) {
       const std::vector<double> values =
-          Values(group, prefix + suffix, with_hard);
+          Values(group, prefix + suffix, prefix + "_rmse", with_hard);
       if (line.size() == 1) line.push_back(std::to_string(values.size()));
       if (values.empty()) {
         line.insert(line.end(), 3, "");
         continue;
       }
-      line.push_back(NumberCell(Mean(values)));
-      line.push_back(NumberCell(Median(values)));
+      line.push_back(Rounded(Mean(values)));
+      line.push_back(Rounded(Median(values)));
       line.push_back(
           NumberCell(*std::max_element(values.begin(), values.end())));
     }
-    const std::vector<double> seconds = Values(group, "seconds", with_hard);
-    line.push_back(seconds.empty() ? "" : NumberCell(Mean(seconds)));
+    const std::vector<double> seconds =
+        Values(group, "seconds", prefix + "_rmse", with_hard);
+    line.push_back(seconds.empty() ? "" : Rounded(Mean(seconds)));
     if (line[1] != "0") lines.push_back(line);
   }
   if (lines.empty()) return "";

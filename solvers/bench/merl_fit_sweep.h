@@ -49,8 +49,9 @@ StatusOr<std::vector<MerlFitCase>> ListMerlFitCases(
 
 // Runs the cases that out/results.csv does not hold yet, each appended as it
 // finishes, and writes out/results.md. The scores are those of CompareBrdfs
-// against the fitted table and against that of score_data, where a row has none
-// when it was made without. A fit that fails gets a row whose `status` says
+// against the fitted table and, where there is score_data, against the table of
+// the same name there; rows that are present keep theirs, so another score_data
+// needs another `out`. A fit that fails gets a row whose `status` says
 // how; one that was interrupted gets none and ends the sweep (kInterrupted).
 Status RunMerlFitSweep(const MerlFitSweepOptions& options);
 

@@ -57,10 +57,10 @@ inline void AddMerlFitExperiment(CLI::App* app, BenchSession* session) {
   std::string methods;
   for (const auto& fitter : BaselineFitters()) {
     const std::string name = fitter->method();
-    if (methods.find(name + " ") == std::string::npos) methods += name + " ";
+    if (methods.find(name + ";") == std::string::npos) methods += name + "; ";
   }
   fit->add_option("--methods", options.methods,
-                  "comma-separated, of: " + methods + "; default: all")
+                  "comma-separated, of: " + methods + "default: all")
       ->delimiter(',');
   fit->add_option("--score-data", options.score_data,
                   "another folder of tables of the same names: each fit is "
