@@ -62,6 +62,7 @@ AlbedoRule::AlbedoRule(double theta_o, const AlbedoOptions& options) {
       const Eigen::Vector3d wi = 2.0 * cos_d * h - wo;
       if (wi.z() <= 0.0 || cos_d <= 0.0) continue;  // by rounding
       angles_.push_back(ToHalfDiff(wi, wo));
+      directions_.push_back(wi);
       cos_i_.push_back(wi.z());
       weights_.push_back(wi.z() * 4.0 * cos_d * sin_h * dtheta * dphi);
       sum += weights_.back();

@@ -26,6 +26,8 @@ class AlbedoRule {
   explicit AlbedoRule(double theta_o, const AlbedoOptions& options = {});
 
   const std::vector<HalfDiff>& angles() const { return angles_; }
+  // Unit, in the local frame whose first axis lies below the view.
+  const std::vector<Eigen::Vector3d>& directions() const { return directions_; }
   const std::vector<double>& weights() const { return weights_; }  // sr
   const std::vector<double>& cos_i() const { return cos_i_; }
   // What the weights were multiplied by: 1 for a perfect rule.
@@ -35,6 +37,7 @@ class AlbedoRule {
 
  private:
   std::vector<HalfDiff> angles_;
+  std::vector<Eigen::Vector3d> directions_;
   std::vector<double> weights_, cos_i_;
   double correction_ = 1.0;
 };
