@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "solvers/programs/bench_albedo.h"
+#include "solvers/programs/bench_embedding.h"
 #include "solvers/programs/bench_joint.h"
 #include "solvers/programs/bench_merl_fit.h"
 #include "solvers/programs/bench_session.h"
@@ -34,6 +36,8 @@ int Main(int argc, char** argv) {
   app.require_subcommand(0, 1);
   AddJointExperiment(&app, &session);
   AddMerlFitExperiment(&app, &session);
+  AddAlbedoExperiment(&app, &session);
+  AddEmbeddingExperiment(&app, &session);
   app.allow_extras();  // after the experiments, which would inherit it
   for (int i = 0; i < argc; ++i) {
     session.command += i == 0 ? "ibrdf_bench" : std::string(" ") + argv[i];

@@ -1,0 +1,244 @@
+#include "solvers/bench/albedo_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "ibrdf/brdf/brdf_sampler.h"
+#include "ibrdf/metrics/albedo.h"
+#include "io/atomic_file.h"
+#include "io/merl.h"
+#include "io/model_file.h"
+#include "solvers/bench/model_materials.h"
+#include "solvers/bench/results_table.h"
+#include "solvers/bench/sweep_files.h"
+
+namespace ibrdf {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kSampledView = kPi / 4;
+
+std::string ViewColumn(double degrees) {
+  return "albedo_" + std::to_string(static_cast<int>(degrees));
+}
+
+NamedRow KeyOf(const AlbedoSweepOptions& options, const std::string& material,
+               const std::string& source) {
+  NamedRow row(AlbedoColumns());
+  row.Set("material", material);
+  row.Set("source", source);
+  row.Set("model", fs::path(options.model).filename().string());
+  return row;
+}
+
+void SetFigures(const FurnaceFigures& figures, NamedRow* row) {
+  for (int i = 0; i < FurnaceRules::kNumViews; ++i) {
+    row->Set(ViewColumn(FurnaceRules::kViewDegrees[i]),
+             NumberCell(figures.albedo[i].mean()));
+  }
+  row->Set("largest", NumberCell(figures.largest.maxCoeff()));
+  row->Set("views_above_one", std::to_string(figures.above_one));
+  const char* channels[] = {"red", "green", "blue"};
+  for (int c = 0; c < 3; ++c) {
+    row->Set(std::string("hemispherical_") + channels[c],
+             NumberCell(figures.hemispherical[c]));
+  }
+}
+
+// Relative standard deviations of f cos / pdf, f the mean of the channels, by
+// the rule of the view, which integrates their squares.
+void SetDeviations(const BrdfBatch& brdf, NamedRow* row) {
+  const AlbedoRule rule(kSampledView);
+  const BrdfSampler sampler(brdf);
+  const Eigen::Vector3d wo(std::sin(kSampledView), 0, std::cos(kSampledView));
+  const std::vector<Eigen::Array3d> f = brdf(rule.angles());
+  double mean = 0.0, by_sampler = 0.0, by_cosine = 0.0;
+  for (size_t i = 0; i < f.size(); ++i) {
+    // weight = cos dwi.
+    const double w = rule.weights()[i], value = f[i].mean();
+    mean += w * value;
+    by_cosine += w * value * value * kPi;
+    by_sampler += w * value * value * rule.cos_i()[i] /
+                  sampler.Pdf(wo, rule.directions()[i]);
+  }
+  const auto relative = [&](double square) {
+    return NumberCell(std::sqrt(std::max(square / (mean * mean) - 1.0, 0.0)));
+  };
+  row->Set("deviation_sampler", relative(by_sampler));
+  row->Set("deviation_cosine", relative(by_cosine));
+}
+
+double Number(const ResultsRow& row, const std::string& column) {
+  const std::vector<std::string>& columns = AlbedoColumns();
+  const size_t at =
+      std::find(columns.begin(), columns.end(), column) - columns.begin();
+  return row[at].empty() ? std::nan("") : std::strtod(row[at].c_str(), nullptr);
+}
+
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+std::string Format(const char* format, double a, double b = 0.0) {
+  char text[160];
+  std::snprintf(text, sizeof(text), format, a, b);
+  return text;
+}
+
+// Rows of one source: how much energy is made.
+std::string EnergyLine(const std::string& source,
+                       const std::vector<ResultsRow>& rows) {
+  int materials = 0, with = 0;
+  double views = 0.0, largest = 0.0;
+  std::string worst;
+  for (const ResultsRow& row : rows) {
+    if (row[1] != source) continue;
+    ++materials;
+    const double above = Number(row, "views_above_one");
+    with += above > 0.0;
+    views += above;
+    if (Number(row, "largest") > largest) {
+      largest = Number(row, "largest");
+      worst = row[0];
+    }
+  }
+  if (materials == 0) return "";
+  return "- " + source + ": " + std::to_string(with) + " of " +
+         std::to_string(materials) + " materials, " +
+         Format("%.0f of %.0f", views, 54.0 * materials) +
+         " views and channels above 1; the largest is " +
+         Format("%.3f", largest) + " (" + worst + ").\n";
+}
+
+std::string Summary(const std::vector<ResultsRow>& rows) {
+  std::string text =
+      "Views every 5 degrees from 0 to 85, three channels each.\n\n" +
+      EnergyLine("model", rows) + EnergyLine("table", rows);
+  std::map<std::string, const ResultsRow*> tables;
+  for (const ResultsRow& row : rows) {
+    if (row[1] == "table") tables[row[0]] = &row;
+  }
+  std::string differences;
+  for (const double degrees : FurnaceRules::kViewDegrees) {
+    std::vector<double> ratios;
+    for (const ResultsRow& row : rows) {
+      const auto table = tables.find(row[0]);
+      if (row[1] != "model" || table == tables.end()) continue;
+      const std::string column = ViewColumn(degrees);
+      ratios.push_back(
+          std::abs(Number(row, column) / Number(*table->second, column) - 1.0));
+    }
+    if (ratios.empty()) continue;
+    differences +=
+        Format(differences.empty() ? " %.0f deg %.1f %%" : ", %.0f deg %.1f %%",
+               degrees, 100.0 * Median(ratios));
+  }
+  if (!differences.empty()) {
+    text += "- Median difference of the model's albedo from the table's:" +
+            differences + ".\n";
+  }
+  std::vector<double> sampler, cosine, gain;
+  for (const ResultsRow& row : rows) {
+    if (row[1] != "model") continue;
+    sampler.push_back(Number(row, "deviation_sampler"));
+    cosine.push_back(Number(row, "deviation_cosine"));
+    gain.push_back(std::pow(cosine.back() / sampler.back(), 2));
+  }
+  if (!gain.empty()) {
+    text += "- Relative deviation of one sample at 45 degrees, median: " +
+            Format("%.3f by importance, %.3f cosine-weighted; ",
+                   Median(sampler), Median(cosine)) +
+            Format("variance ratio %.3g (median), %.3g (least).\n",
+                   Median(gain), *std::min_element(gain.begin(), gain.end()));
+  }
+  return text;
+}
+
+}  // namespace
+
+const std::vector<std::string>& AlbedoColumns() {
+  static const std::vector<std::string> columns = [] {
+    std::vector<std::string> c = {"material", "source", "model"};
+    for (const double degrees : FurnaceRules::kViewDegrees) {
+      c.push_back(ViewColumn(degrees));
+    }
+    for (const char* name : {"largest", "views_above_one", "hemispherical_red",
+                             "hemispherical_green", "hemispherical_blue",
+                             "deviation_sampler", "deviation_cosine"}) {
+      c.push_back(name);
+    }
+    return c;
+  }();
+  return columns;
+}
+
+Status RunAlbedoSweep(const AlbedoSweepOptions& options) {
+  const StatusOr<std::string> path = FindModel(options.model);
+  if (!path.ok()) return path.status();
+  const StatusOr<NeuralBrdfModel> model = ReadModel(*path);
+  if (!model.ok()) return model.status();
+  const auto materials = ListModelMaterials(*model, *path, options.materials);
+  if (!materials.ok()) return materials.status();
+  std::error_code error;
+  fs::create_directories(options.out, error);
+  if (error) return InvalidInput(options.out, error.message());
+  const std::string results = options.out + "/results.csv";
+  const auto present = ReadResults(results, AlbedoColumns());
+  if (!present.ok()) return present.status();
+
+  const FurnaceRules rules;
+  for (size_t i = 0; i < materials->size(); ++i) {
+    const ModelMaterial& m = (*materials)[i];
+    IBRDF_RETURN_IF_ERROR(CheckCaseName(m.name));
+    if (options.stop != nullptr && *options.stop) {
+      return Status(StatusCode::kInterrupted, m.name + ": interrupted");
+    }
+    if (options.report) {
+      options.report("material " + std::to_string(i + 1) + " / " +
+                     std::to_string(materials->size()) + "  " + m.name);
+    }
+    NamedRow row = KeyOf(options, m.name, "model");
+    if (!HoldsCase(*present, row.cells(), kAlbedoKeyColumns)) {
+      const BrdfBatch brdf =
+          FlowBrdf(*model, MaterialLobes(*model, m.first_code).data(), 3,
+                   options.num_threads)
+              .Batch();
+      SetFigures(rules.Measure(brdf), &row);
+      SetDeviations(brdf, &row);
+      IBRDF_RETURN_IF_ERROR(
+          AppendResult(results, AlbedoColumns(), row.cells()));
+    }
+    if (options.data.empty()) continue;
+    const std::string file = FindFile(options.data, m.name, {".binary"});
+    NamedRow measured = KeyOf(options, m.name, "table");
+    if (file.empty() ||
+        HoldsCase(*present, measured.cells(), kAlbedoKeyColumns)) {
+      continue;
+    }
+    const StatusOr<MerlTable> table = ReadMerl(file);
+    if (!table.ok()) return table.status();
+    SetFigures(rules.Measure(BatchOf([&](double h, double d, double p) {
+      return InterpolateMerl(*table, h, d, p);
+    })),
+               &measured);
+    IBRDF_RETURN_IF_ERROR(
+        AppendResult(results, AlbedoColumns(), measured.cells()));
+  }
+  const auto rows = ReadResults(results, AlbedoColumns());
+  if (!rows.ok()) return rows.status();
+  return WriteFileAtomically(
+      options.out + "/results.md",
+      ResultsMarkdown("# Directional albedo\n\n    " + options.command +
+                          "\n\n" + Summary(*rows) + "\n## All materials\n",
+                      AlbedoColumns(), *rows));
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,44 @@
+#include "solvers/bench/sphere_studio.h"
+
+#include <glog/logging.h>
+
+#include "ibrdf/brdf/lambertian.h"
+#include "ibrdf/render/brdf_sphere.h"
+#include "ibrdf/render/reference_renderer.h"
+#include "io/tone_map.h"
+
+namespace ibrdf {
+namespace {
+constexpr int kSkyHeight = 128;
+constexpr double kWhitePercentile = 95.0;
+constexpr double kWhiteAlbedo = 0.8;
+}  // namespace
+
+SphereStudio::SphereStudio(int size, const BrdfGridShape& grid, int num_threads)
+    : size_(size), sky_(ProceduralSky(kSkyHeight, 2 * kSkyHeight)) {
+  StatusOr<std::vector<ShadingPoint>> points =
+      FindShadingPoints(Scene::UnitSphere(), Camera(), size, size, Mask(), 1);
+  CHECK(points.ok()) << points.status().message();
+  points_ = *std::move(points);
+  // Coarse: for the eye.
+  TransportOptions options;
+  options.quadrature.near_rings = 14;
+  options.quadrature.near_ring_samples = 36;
+  options.quadrature.far_width = 32;
+  options.grid = grid;
+  options.num_threads = num_threads;
+  transport_ =
+      std::make_unique<Transport>(points_, sky_.height, sky_.width, options);
+  Lambertian white;
+  white.albedo.setConstant(kWhiteAlbedo);
+  exposure_ = ExposureOf(Render(BrdfGrid::FromFunction(white.Function(), grid)),
+                         Mask(), kWhitePercentile);
+}
+
+Image SphereStudio::Render(const BrdfGrid& brdf) const {
+  std::vector<double> E(3 * points_.size());
+  transport_->Render(brdf, sky_.rgb.data(), E.data());
+  return PixelMeans(points_, E.data(), size_, size_);
+}
+
+}  // namespace ibrdf
