@@ -258,8 +258,8 @@ TEST(MerlColumns, AreTheTablesBins) {
   EXPECT_EQ(x.x_d[0], x.x_d[179]);
   EXPECT_LT(x.x_d[179], x.x_d[180]);
   EXPECT_LT(x.x_p[0], x.x_p[1]);
-  EXPECT_FLOAT_EQ(std::cos(2 * static_cast<float>(M_PI) * x.x_p[30]),
-                  x.cosine[30]);
+  EXPECT_NEAR(std::cos(2 * M_PI * x.x_p[30]),
+              x.features[3 * x.columns + 30], 1e-6);
 }
 
 }  // namespace
