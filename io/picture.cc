@@ -50,10 +50,12 @@ void Picture::Text(const std::string& text, double x, double y, double height,
   const double width = TextWidth(text, height);
   if (align == Align::kCentre) x -= width / 2;
   if (align == Align::kRight) x -= width;
-  cv::putText(
-      canvas_->pixels, text,
-      {static_cast<int>(std::lround(x)), static_cast<int>(std::lround(y))},
-      kFont, height / kCapitals, Colour(ink), 1, cv::LINE_AA);
+  const cv::Point at(static_cast<int>(std::lround(x)),
+                     static_cast<int>(std::lround(y)));
+  const double scale = height / kCapitals;
+  cv::putText(canvas_->pixels, text, at, kFont, scale, kGround, 4, cv::LINE_AA);
+  cv::putText(canvas_->pixels, text, at, kFont, scale, Colour(ink), 1,
+              cv::LINE_AA);
 }
 
 void Picture::Line(double x0, double y0, double x1, double y1, const Ink& ink) {
@@ -70,7 +72,6 @@ void Picture::Dot(double x, double y, double radius, const Ink& ink) {
 void Picture::Sphere(const Image& image, double x, double y, int diameter,
                      double exposure) {
   CHECK_EQ(image.width, image.height);
-  CHECK_LE(diameter, image.width);
   // Colour times coverage, and coverage; a pixel's centre decides. What is too
   // bright to show is cut before the mean.
   const int n = image.width;
@@ -89,7 +90,8 @@ void Picture::Sphere(const Image& image, double x, double y, int diameter,
     }
   }
   cv::Mat disc;
-  cv::resize(fine, disc, {diameter, diameter}, 0, 0, cv::INTER_AREA);
+  cv::resize(fine, disc, {diameter, diameter}, 0, 0,
+             diameter < n ? cv::INTER_AREA : cv::INTER_LINEAR);
   const int left = static_cast<int>(std::lround(x - diameter / 2.0));
   const int top = static_cast<int>(std::lround(y - diameter / 2.0));
   for (int v = 0; v < diameter; ++v) {

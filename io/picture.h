@@ -27,7 +27,7 @@ class Picture {
   ~Picture();
 
   // text: printable ASCII, one line; y of its baseline; height of capitals in
-  // pixels.
+  // pixels. With a rim of the ground's colour, to stand out from lines.
   void Text(const std::string& text, double x, double y, double height,
             Align align = Align::kLeft, const Ink& ink = kBlackInk);
   static double TextWidth(const std::string& text, double height);
@@ -36,7 +36,8 @@ class Picture {
   void Dot(double x, double y, double radius, const Ink& ink);
 
   // A square radiance image that shows a sphere from edge to edge, times
-  // exposure, reduced by area in linear light to a disc of that diameter.
+  // exposure, resized in linear light (by area where that is smaller) to a disc
+  // of that diameter.
   void Sphere(const Image& image, double x, double y, int diameter,
               double exposure);
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <random>
 
 #include "ibrdf/brdf/brdf_sampler.h"
 #include "ibrdf/metrics/albedo.h"
@@ -51,27 +52,47 @@ void SetFigures(const FurnaceFigures& figures, NamedRow* row) {
   }
 }
 
-// Relative standard deviations of f cos / pdf, f the mean of the channels, by
-// the rule of the view, which integrates their squares.
+// Relative standard deviations of f cos / pdf, f the mean of the channels: of
+// the sampler by drawing, for its pdf has steps; cosine-weighted by the rule.
 void SetDeviations(const BrdfBatch& brdf, NamedRow* row) {
-  const AlbedoRule rule(kSampledView);
+  constexpr int kDraws = 20000;
   const BrdfSampler sampler(brdf);
   const Eigen::Vector3d wo(std::sin(kSampledView), 0, std::cos(kSampledView));
-  const std::vector<Eigen::Array3d> f = brdf(rule.angles());
-  double mean = 0.0, by_sampler = 0.0, by_cosine = 0.0;
-  for (size_t i = 0; i < f.size(); ++i) {
-    // weight = cos dwi.
-    const double w = rule.weights()[i], value = f[i].mean();
-    mean += w * value;
-    by_cosine += w * value * value * kPi;
-    by_sampler += w * value * value * rule.cos_i()[i] /
-                  sampler.Pdf(wo, rule.directions()[i]);
-  }
-  const auto relative = [&](double square) {
-    return NumberCell(std::sqrt(std::max(square / (mean * mean) - 1.0, 0.0)));
+  std::mt19937_64 rng(1);
+  const auto uniform = [&rng] {
+    return static_cast<double>(rng() >> 11) * 0x1p-53;
   };
-  row->Set("deviation_sampler", relative(by_sampler));
-  row->Set("deviation_cosine", relative(by_cosine));
+  std::vector<HalfDiff> angles;
+  std::vector<double> weights;
+  for (int i = 0; i < kDraws; ++i) {
+    const double u1 = uniform(), u2 = uniform(), u3 = uniform();
+    const BrdfSampler::Sample sample = sampler.Draw(wo, u1, u2, u3);
+    if (sample.pdf <= 0.0) continue;  // worth nothing
+    angles.push_back(ToHalfDiff(sample.wi, wo));
+    weights.push_back(sample.wi.z() / sample.pdf);
+  }
+  const auto set = [row](const char* column, double mean, double square) {
+    row->Set(
+        column,
+        NumberCell(std::sqrt(std::max(square / (mean * mean) - 1.0, 0.0))));
+  };
+  double mean = 0.0, square = 0.0;
+  std::vector<Eigen::Array3d> f = brdf(angles);
+  for (size_t i = 0; i < f.size(); ++i) {
+    const double value = weights[i] * f[i].mean() / kDraws;
+    mean += value;
+    square += value * value * kDraws;
+  }
+  set("deviation_sampler", mean, square);
+  const AlbedoRule rule(kSampledView);
+  f = brdf(rule.angles());
+  mean = square = 0.0;
+  for (size_t i = 0; i < f.size(); ++i) {
+    const double value = rule.weights()[i] * f[i].mean();
+    mean += value;
+    square += value * f[i].mean() * kPi;
+  }
+  set("deviation_cosine", mean, square);
 }
 
 double Number(const ResultsRow& row, const std::string& column) {

@@ -24,7 +24,6 @@ namespace ibrdf {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kSphereSize = 180;  // pixels; pages show them reduced
 constexpr int kNeighbours = 5;
 constexpr int kRows = 8;  // of neighbours.png
 constexpr int kWalkSteps = 9;
@@ -87,7 +86,7 @@ class Figures {
         model_(std::move(model)),
         materials_(std::move(materials)),
         lobes_(model_, 3, grid_, options.num_threads),
-        studio_(kSphereSize, grid_, options.num_threads) {}
+        studio_(options.sphere_size, grid_, options.num_threads) {}
 
   Status Draw(int from, int to) {
     const size_t n = materials_.size();

@@ -14,6 +14,7 @@ struct EmbeddingOptions {
   std::string out;    // folder of results
   std::string from,
       to;  // ends of the walk; empty: the most matte, the glossiest
+  int sphere_size = 150;  // pixels rendered; pages show them smaller
   int num_threads = 0;
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string&)> report;  // a line per event

@@ -48,7 +48,7 @@ struct Box {
 
 Rgb8Image MapPage(const EmbeddingMap& map,
                   const std::vector<NamedSphere>& spheres, double exposure) {
-  constexpr int kWidth = 1600, kHeight = 1200, kDiameter = 74;
+  constexpr int kWidth = 1600, kHeight = 1200, kDiameter = 68;
   constexpr double kTop = 96.0, kBottom = 60.0, kLabelGap = 3.0;
   const int n = static_cast<int>(spheres.size());
   Picture page(kWidth, kHeight);
@@ -79,7 +79,7 @@ Rgb8Image MapPage(const EmbeddingMap& map,
   }
   // Room for a line of text below each sphere, as far as there is.
   const double cell = std::sqrt((high - low).prod() / n);
-  const double distance = std::min(kDiameter + 30.0, 0.93 * cell);
+  const double distance = std::min(kDiameter + 40.0, 0.93 * cell);
   const Eigen::MatrixXd at = SpreadApart(places, distance, low, high);
 
   page.Line(kMargin, kHeight - kBottom + 8, kWidth - kMargin,
@@ -97,33 +97,41 @@ Rgb8Image MapPage(const EmbeddingMap& map,
   }
   const int diameter =
       static_cast<int>(std::min<double>(kDiameter, distance - 6.0));
-  std::vector<Box> taken;
+  // The head of the page, and a strip at its foot.
+  std::vector<Box> taken = {{0, 0, kWidth, 82},
+                            {0, kHeight - kBottom, kWidth, kHeight}};
   for (int i = 0; i < n; ++i) {
     page.Sphere(spheres[i].image, at(i, 0), at(i, 1), diameter, exposure);
     const double r = 0.46 * diameter;
     taken.push_back({at(i, 0) - r, at(i, 1) - r, at(i, 0) + r, at(i, 1) + r});
   }
-  // Names: below, else above; where neither is free the csv has to do.
+  // Names: below, above, and either with a shift to a side; where nothing is
+  // free the csv has to do.
+  const double line = kNameHeight + 4.0;
+  const double shift = 0.35 * diameter;
   for (int i = 0; i < n; ++i) {
     const std::vector<std::string> lines =
-        WrapName(spheres[i].name, 1.35 * distance, kNameHeight);
-    const double line = kNameHeight + 4.0;
+        WrapName(spheres[i].name, 1.2 * distance, kNameHeight);
     double width = 0.0;
     for (const std::string& text : lines) {
       width = std::max(width, Picture::TextWidth(text, kNameHeight));
     }
     const double height = line * static_cast<double>(lines.size());
-    for (const bool below : {true, false}) {
-      const double top = below ? at(i, 1) + 0.5 * diameter + kLabelGap
-                               : at(i, 1) - 0.5 * diameter - kLabelGap - height;
-      const Box box{at(i, 0) - width / 2, top, at(i, 0) + width / 2,
-                    top + height};
+    for (int place = 0; place < 6; ++place) {
+      const double aside = place / 2 == 0   ? 0.0
+                           : place / 2 == 1 ? shift
+                                            : -shift;
+      const double x = at(i, 0) + aside;
+      const double top = place % 2 == 0
+                             ? at(i, 1) + 0.5 * diameter + kLabelGap
+                             : at(i, 1) - 0.5 * diameter - kLabelGap - height;
+      const Box box{x - width / 2, top, x + width / 2, top + height};
       const bool free =
           std::none_of(taken.begin(), taken.end(),
                        [&](const Box& o) { return box.Meets(o); });
-      if (!free || box.left < 0 || box.right > kWidth) continue;
+      if (!free || box.left < 12 || box.right > kWidth - 12) continue;
       for (size_t k = 0; k < lines.size(); ++k) {
-        page.Text(lines[k], at(i, 0), top + kNameHeight + k * line, kNameHeight,
+        page.Text(lines[k], x, top + kNameHeight + k * line, kNameHeight,
                   Picture::Align::kCentre);
       }
       taken.push_back(box);
@@ -136,7 +144,7 @@ Rgb8Image MapPage(const EmbeddingMap& map,
 Rgb8Image WalkPage(const std::vector<NamedSphere>& steps,
                    const std::string& from, const std::string& to,
                    double distance, double exposure) {
-  constexpr int kDiameter = 156, kStep = 170;
+  constexpr int kDiameter = 136, kStep = 152;
   const int n = static_cast<int>(steps.size());
   const double top = 96.0;
   Picture page(static_cast<int>(2 * kMargin) + n * kStep,

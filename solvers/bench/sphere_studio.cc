@@ -11,7 +11,7 @@ namespace ibrdf {
 namespace {
 constexpr int kSkyHeight = 128;
 constexpr double kWhitePercentile = 95.0;
-constexpr double kWhiteAlbedo = 0.8;
+constexpr double kWhiteAlbedo = 0.5;
 }  // namespace
 
 SphereStudio::SphereStudio(int size, const BrdfGridShape& grid, int num_threads)
@@ -20,11 +20,12 @@ SphereStudio::SphereStudio(int size, const BrdfGridShape& grid, int num_threads)
       FindShadingPoints(Scene::UnitSphere(), Camera(), size, size, Mask(), 1);
   CHECK(points.ok()) << points.status().message();
   points_ = *std::move(points);
-  // Coarse: for the eye.
+  // Coarse near the normal: for the eye. Far cells as fine as they may be, or
+  // the sun in a wide one leaves a ring where the two rules meet.
   TransportOptions options;
   options.quadrature.near_rings = 14;
   options.quadrature.near_ring_samples = 36;
-  options.quadrature.far_width = 32;
+  options.quadrature.far_width = 64;
   options.grid = grid;
   options.num_threads = num_threads;
   transport_ =

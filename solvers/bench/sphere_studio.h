@@ -16,7 +16,7 @@ class SphereStudio {
   SphereStudio(int size, const BrdfGridShape& grid, int num_threads);
 
   Image Render(const BrdfGrid& brdf) const;
-  // Factor that shows a Lambertian sphere of albedo 0.8 just below white.
+  // Factor that shows a Lambertian sphere of albedo 0.5 just below white.
   double exposure() const { return exposure_; }
   int size() const { return size_; }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kStepDegrees = 5;
-constexpr int kHemisphereNodes = 12;
+constexpr int kHemisphereNodes = 8;
 
 }  // namespace
 

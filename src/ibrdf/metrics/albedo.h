@@ -8,10 +8,10 @@
 namespace ibrdf {
 
 struct AlbedoOptions {
-  int theta_nodes = 128;  // Gauss-Legendre, along theta_h
+  int theta_nodes = 96;  // Gauss-Legendre, along theta_h
   // Midpoints, along phi_h in [0, 2 pi): isotropy alone does not make the two
   // sides of the plane of view mirror images.
-  int phi_nodes = 192;
+  int phi_nodes = 128;
 };
 
 // Nodes and weights for the albedo of one view angle, a(wo) = int f_r
