@@ -18,9 +18,10 @@ namespace {
 constexpr int kSearchColumns = 64, kSearchPoints = 12;
 constexpr int kFitColumns = 128, kFitPoints = 24;
 constexpr uint64_t kColumnSeed = 17;
-constexpr int kRoughIterations = 12;
-constexpr double kTolerance = 1e-4;  // relative decrease of the cost to stop at
-constexpr double kWall = 300.0;      // of the unit ball
+constexpr int kRoughIterations = 20;
+constexpr double kTolerance = 1e-6;  // relative decrease of the cost to stop at
+constexpr double kWall =
+    60.0;  // of the unit ball: stiffer ones trap steps along it
 constexpr double kFreeColours = 1e3;  // standard deviation of log colours: none
 // A lobe far below the others, relative to them.
 constexpr double kFaintLogColour = -3.0;
@@ -200,6 +201,10 @@ class LobeTableFitter::Search {
 
 StatusOr<LobeTableFit> LobeTableFitter::Fit(
     const MerlTable& table, const LobeTableFitOptions& options) const {
+  const double* red = table.raw.data();
+  if (std::none_of(red, red + kMerlBins, [](double v) { return v > 0.0; })) {
+    return InvalidInput("table", "expected a positive red value");
+  }
   StatusOr<std::vector<float>> seen =
       ThinTable(table, search_columns_, kSearchPoints);
   if (!seen.ok()) return seen.status();

@@ -20,7 +20,7 @@ struct LobeTableFitOptions {
   int max_iterations = 60;
   // Of the codes, z ~ N(0, sigma^2), weighed against the table as if it were
   // this many independent measurements.
-  double prior_sigma = 0.5;
+  double prior_sigma = 2.0;
   double independent_bins = 2000.0;
   int num_threads = 0;  // <= 0: all
 };

@@ -93,7 +93,7 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
   StatusOr<NeuralBrdfModel> model =
       TrainFlow(train, held_out, options, report, &stop_requested);
   if (!model.ok()) return model.status();
-  // The analytic materials come last; the model keeps the measured ones.
+  // What was added comes last; the model keeps the measured codes.
   model->names.resize(measured);
   model->codes.resize(measured * model->shape.code_size());
   model->log_colours.resize(measured);

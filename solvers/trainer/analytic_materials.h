@@ -1,4 +1,5 @@
-// Analytic materials that train beside measured ones.
+// Distributions that train beside measured ones: a hundred materials leave gaps
+// in the embedding.
 #pragma once
 #include <cstdint>
 
@@ -14,8 +15,7 @@ namespace ibrdf {
 Disney RandomDisney(uint64_t seed);
 
 // Appends `count` of them, named analytic-000.red and so on, at the columns of
-// `data`. Measured databases hold a hundred materials; these fill the gaps
-// between, so that the embedding covers materials which none of them resembles.
+// `data`: materials which no measured one resembles.
 void AddAnalyticMaterials(int count, uint64_t seed, TrainingData* data);
 
 }  // namespace ibrdf

@@ -17,7 +17,7 @@ namespace {
 constexpr double kLevel = 1e-3;
 constexpr int64_t kSamples = 200000;
 // Midpoint rule on densities with kinks, in all cells together.
-constexpr double kMassTolerance = 2e-4;
+constexpr double kMassTolerance = 6e-4;
 // Latent numbers are double precision sums of a few terms.
 constexpr double kLatentTolerance = 1e-13;
 // A coordinate that differs in its last bits may reach the conditioner of the
@@ -25,7 +25,7 @@ constexpr double kLatentTolerance = 1e-13;
 constexpr double kPointTolerance = 1e-6;
 
 // Of the splines' heights: densities of several orders of magnitude.
-constexpr float kCurvature = 25.0f;
+constexpr float kCurvature = 12.0f;
 
 std::unique_ptr<BrdfFlow> SmallFlow(float curvature) {
   const NeuralBrdfModel model = SmallFlowModel(curvature);

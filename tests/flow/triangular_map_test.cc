@@ -114,7 +114,7 @@ TEST(TriangularMap, RoundTripOnTheClosedCube) {
     for (int i = 0; i < 3 * n; ++i) {
       ASSERT_TRUE(u[i] >= 0.0 && u[i] <= 1.0);
       EXPECT_NEAR(u[i], again[i], extreme ? 1e-3 : kRounded);
-      if (!extreme && c.name != "steep") {
+      if (!extreme && c.name != "steep" && c.name != "far code") {
         EXPECT_NEAR(start[i], x[i], kRounded);
       }
     }
@@ -179,7 +179,10 @@ TEST(TriangularMap, JacobianIsTheDensity) {
       EXPECT_NEAR(density, jacobian.determinant(),
                   kTolerance * density * (1 + std::abs(value[p])));
     }
-    EXPECT_GE(checked, c.name == "limits" ? 0 : n / 4);
+    // Far from the codes of training little of the cube has any density.
+    EXPECT_GE(checked, c.name == "limits"     ? 0
+                       : c.name == "far code" ? 3
+                                              : n / 4);
   }
 }
 
@@ -258,8 +261,8 @@ TEST(MerlColumns, AreTheTablesBins) {
   EXPECT_EQ(x.x_d[0], x.x_d[179]);
   EXPECT_LT(x.x_d[179], x.x_d[180]);
   EXPECT_LT(x.x_p[0], x.x_p[1]);
-  EXPECT_NEAR(std::cos(2 * M_PI * x.x_p[30]),
-              x.features[3 * x.columns + 30], 1e-6);
+  EXPECT_NEAR(std::cos(2 * M_PI * x.x_p[30]), x.features[3 * x.columns + 30],
+              1e-6);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace ibrdf {
 namespace {
 
 constexpr double kLevel = 1e-3;  // seeds are fixed
-constexpr int64_t kSamples = 100000;
+constexpr int64_t kSamples = 30000;
 constexpr double kMassTolerance = 1e-9;  // differences telescope
 // Double precision of integrals in [0, 1].
 constexpr double kLatentTolerance = 1e-12;
@@ -51,7 +51,7 @@ TEST_F(TrainedSampling, SamplesPassChiSquareAndThoseOfAnotherCodeDoNot) {
   for (int i = 0; i < model_.num_codes(); i += step, ++tested) {
     SCOPED_TRACE(model_.names[i]);
     const std::vector<double> probability =
-        CellProbabilitiesByLatent(*flow_, Code(i), cells, 12);
+        CellProbabilitiesByLatent(*flow_, Code(i), cells, 20);
     EXPECT_NEAR(std::accumulate(probability.begin(), probability.end(), 0.0),
                 1.0, kMassTolerance);
     std::vector<double> x(3 * kSamples);

@@ -195,9 +195,10 @@ TEST_F(TrainerTest, SlicesPartitionTheColumns) {
     EXPECT_EQ(data_->count[whole_at], part.count[at]);
     EXPECT_EQ(data_->columns.x_d[whole_at], x.x_d[at]);
     EXPECT_EQ(data_->columns.x_p[whole_at], x.x_p[at]);
-    // Of the x_p that was rounded to float, times 2 pi.
-    EXPECT_NEAR(data_->columns.cosine[whole_at], x.cosine[at], 4e-7);
-    EXPECT_NEAR(data_->columns.sine[whole_at], x.sine[at], 4e-7);
+    for (int f = 0; f < kColumnFeatures; ++f) {
+      EXPECT_EQ(data_->columns.features[f * kColumns + whole_at],
+                x.features[f * x.columns + at]);
+    }
     for (int i = 0; i < kMerlThetaH; ++i) {
       ASSERT_EQ(data_->columns.x_h[i * kColumns + whole_at],
                 x.x_h[i * x.columns + at]);

@@ -313,11 +313,14 @@ void TriangularFlow::Transform(const double* from, int64_t count,
     float features[kColumnFeatures * kB] = {};
     for (int dim = 2; dim >= 0; --dim) {
       for (int i = 0; i < n && dim < 2; ++i) {
-        // x_d's conditioner sees no feature that depends on x_d.
-        const double x_d = dim == 0 ? x[count + begin + i] : 0.0;
+        // x_d's conditioner sees no feature that depends on x_d. Rounded to
+        // float first: a coordinate that comes back a double's rounding away
+        // then makes the same features, and the way back is exact.
+        const double x_d =
+            dim == 0 ? static_cast<float>(x[count + begin + i]) : 0.0;
+        const double x_p = static_cast<float>(x[2 * count + begin + i]);
         double f[kColumnFeatures];
-        ColumnFeatures<double>(x_d, x[2 * count + begin + i], f, nullptr,
-                               nullptr);
+        ColumnFeatures<double>(x_d, x_p, f, nullptr, nullptr);
         for (int k = 0; k < kColumnFeatures; ++k) {
           features[k * kB + i] = static_cast<float>(f[k]);
         }

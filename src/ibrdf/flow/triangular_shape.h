@@ -22,7 +22,7 @@ inline constexpr double kMinBinWidth = 1e-3;
 
 // What conditioners see of a column.
 //   0: 2 x_d - 1
-//   1: 2 sqrt(b) - 1, 2: 2 b - 1
+//   1: 2 sqrt(b + kBoundRounding) - 1, 2: 2 b - 1
 //   3: cos 2 phi_d, 4: sin 2 phi_d
 //   5: 2 sqrt(c) - 1
 // with b = theta_h's bound over pi/2 and c = |cos phi_d|, rounded off by
@@ -36,6 +36,7 @@ inline constexpr int kColumnFeatures = 6;
 inline constexpr int kFirstFeature[3] = {0, 3, kColumnFeatures};
 inline constexpr int kNumFeatures[3] = {5, 3, 0};
 inline constexpr double kCosineRounding = 1e-5;
+inline constexpr double kBoundRounding = 1e-6;
 
 // T: scalar type. features: [kColumnFeatures]; their derivatives by x_d and
 // x_p likewise where not null.
@@ -47,7 +48,7 @@ void ColumnFeatures(T x_d, T x_p, T* features, T* by_d, T* by_p) {
   const T c = std::sqrt(cosine_p * cosine_p + T(kCosineRounding));
   // Zero only at x_d = 1, and not in floating point.
   const T b = std::atan2(std::abs(cosine_d), c * sine_d) / quarter;
-  const T root_b = std::sqrt(b), root_c = std::sqrt(c);
+  const T root_b = std::sqrt(b + T(kBoundRounding)), root_c = std::sqrt(c);
   features[0] = 2 * x_d - 1;
   features[1] = 2 * root_b - 1;
   features[2] = 2 * b - 1;
@@ -59,11 +60,10 @@ void ColumnFeatures(T x_d, T x_p, T* features, T* by_d, T* by_p) {
   const T b_by_d = -c / norm;
   const T c_by_p = -T(M_PI) * cosine_p * sine_p / c;
   const T b_by_p = -sine_d * cosine_d / norm / quarter * c_by_p;
-  const T root = std::max(root_b, T(1e-4));
-  const T d[kColumnFeatures] = {T(2), b_by_d / root, 2 * b_by_d,
-                                T(0), T(0),          T(0)};
+  const T d[kColumnFeatures] = {T(2), b_by_d / root_b, 2 * b_by_d, T(0), T(0),
+                                T(0)};
   const T p[kColumnFeatures] = {T(0),
-                                b_by_p / root,
+                                b_by_p / root_b,
                                 2 * b_by_p,
                                 -T(2 * M_PI) * features[4],
                                 T(2 * M_PI) * features[3],
