@@ -37,9 +37,9 @@ for fold in 0 1 2 3 4 5 6 7 8 9; do
     fi
   done
   keep=$(((${#others[@]} * share + 50) / 100))
-  dropped=$(printf '%s\n' "${others[@]}" | shuffled "share ${seed} ${fold}" |
+  mapfile -t dropped < <(printf '%s\n' "${others[@]}" | shuffled "share ${seed} ${fold}" |
     tail -n +$((keep + 1)))
-  leave_out=$(printf '%s\n' ${hard//|/ } "${held[@]}" ${dropped} |
+  leave_out=$(printf '%s\n' ${hard//|/ } "${held[@]}" "${dropped[@]}" |
     paste -sd, -)
   model="${out}/fold${fold}/trained-on-${share}.ibrdf"
   mkdir -p "${out}/fold${fold}"
