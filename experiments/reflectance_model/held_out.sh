@@ -25,8 +25,11 @@ shuffled() {
 }
 
 mkdir -p "${out}"
-mapfile -t names < <(find -L "${tables}" -name '*.binary' -printf '%f\n' |
-  sed 's/\.binary$//' | grep -vxE "${hard}" | sort | shuffled "fold ${seed}")
+mapfile -t all < <(find -L "${tables}" -name '*.binary' -printf '%f\n' |
+  sed 's/\.binary$//' | sort)
+mapfile -t hard_here < <(printf '%s\n' "${all[@]}" | grep -xE "${hard}")
+mapfile -t names < <(printf '%s\n' "${all[@]}" | grep -vxE "${hard}" |
+  shuffled "fold ${seed}")
 for fold in 0 1 2 3 4 5 6 7 8 9; do
   held=() others=()
   for i in "${!names[@]}"; do
@@ -37,10 +40,10 @@ for fold in 0 1 2 3 4 5 6 7 8 9; do
     fi
   done
   keep=$(((${#others[@]} * share + 50) / 100))
-  mapfile -t dropped < <(printf '%s\n' "${others[@]}" | shuffled "share ${seed} ${fold}" |
-    tail -n +$((keep + 1)))
-  leave_out=$(printf '%s\n' ${hard//|/ } "${held[@]}" "${dropped[@]}" |
-    paste -sd, -)
+  mapfile -t dropped < <(printf '%s\n' "${others[@]}" |
+    shuffled "share ${seed} ${fold}" | tail -n +$((keep + 1)))
+  leave_out=$(printf '%s\n' "${hard_here[@]}" "${held[@]}" "${dropped[@]}" |
+    sed '/^$/d' | paste -sd, -)
   model="${out}/fold${fold}/trained-on-${share}.ibrdf"
   mkdir -p "${out}/fold${fold}"
   if [ ! -e "${model}" ]; then
