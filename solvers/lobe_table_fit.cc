@@ -4,6 +4,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -23,8 +24,9 @@ constexpr double kTolerance = 1e-6;  // relative decrease of the cost to stop at
 constexpr double kWall =
     60.0;  // of the unit ball: stiffer ones trap steps along it
 constexpr double kFreeColours = 1e3;  // standard deviation of log colours: none
-// A lobe far below the others, relative to them.
-constexpr double kFaintLogColour = -3.0;
+// Log colours tried for a further lobe, relative to the one that would make it
+// fit alone, go down to this.
+constexpr double kFaintest = -5.0;
 
 // Which theta_h of a column of `count` stands for stratum i of n.
 int Stratum(int i, int n, int count) {
@@ -100,13 +102,12 @@ class LobeTableFitter::Search {
                                           int count) const {
     const std::vector<float> log_base = LogSum(base);
     std::vector<std::pair<double, int>> order;
-    std::vector<std::array<double, 4>> colours(codes_);
+    std::vector<std::array<double, 3>> colours(codes_);
     for (int m = 0; m < codes_; ++m) {
       double score = 0.0;
       for (int c = 0; c < 3; ++c) {
-        const auto [colour, shift, error] = BestColour(log_base, m, c);
+        const auto [colour, error] = BestColour(log_base, m, c);
         colours[m][c] = colour;
-        if (c == 1) colours[m][3] = shift;
         score += error;
       }
       order.emplace_back(score, m);
@@ -125,7 +126,7 @@ class LobeTableFitter::Search {
       std::vector<double> start = base;
       const float* code = fitter_.model_.codes.data() + m * size;
       start.insert(start.end(), code, code + size);
-      start.insert(start.end(), colours[m].begin(), colours[m].begin() + 3);
+      start.insert(start.end(), colours[m].begin(), colours[m].end());
       starts.push_back(start);
       if (static_cast<int>(starts.size()) == count) break;
     }
@@ -158,7 +159,7 @@ class LobeTableFitter::Search {
   }
 
   struct Colour {
-    double log_colour, shift, error;
+    double log_colour, error;
   };
 
   // Log colour of code m beside the base, and the squared error it leaves in
@@ -176,10 +177,10 @@ class LobeTableFitter::Search {
         const double r = mean + q[i] - target[i];
         error += r * r;
       }
-      return {mean, 0.0, error};
+      return {mean, error};
     }
-    Colour best{mean, 0.0, std::numeric_limits<double>::infinity()};
-    for (double shift = 1.0; shift >= kFaintLogColour - 2.0; shift -= 1.0) {
+    Colour best{mean, std::numeric_limits<double>::infinity()};
+    for (double shift = 1.0; shift >= kFaintest; shift -= 1.0) {
       double error = 0.0;
       for (size_t i = 0; i < n_; i += 2) {
         const double v = mean + shift + q[i];
@@ -188,7 +189,7 @@ class LobeTableFitter::Search {
             top + std::log1p(std::exp(-std::abs(b[i] - v))) - target[i];
         error += r * r;
       }
-      if (error < best.error) best = {mean + shift, shift, error};
+      if (error < best.error) best = {mean + shift, error};
     }
     return best;
   }
