@@ -1,8 +1,8 @@
 #include "solvers/bench/neural_fitters.h"
 
 #include <chrono>
-#include <cmath>
 
+#include "ibrdf/brdf/flow_brdf.h"
 #include "ibrdf/brdf/lobe_model.h"
 #include "solvers/trainer/flow_trainer.h"
 
@@ -82,16 +82,7 @@ class FreeFlowTableFitter final : public TableFitter {
     result.seconds = Seconds() - start;
     // Each channel is a lobe of its own colour.
     const LobeModel lobes(*model, 3, kNoGrid, context.num_threads);
-    const int size = model->shape.code_size();
-    std::vector<double> parameters;
-    for (int c = 0; c < 3; ++c) {
-      const float* code = model->codes.data() + c * size;
-      parameters.insert(parameters.end(), code, code + size);
-      for (int b = 0; b < 3; ++b) {
-        parameters.push_back(b == c ? model->log_colours[c] : -1e3);
-      }
-    }
-    result.table = lobes.ToMerl(parameters.data());
+    result.table = lobes.ToMerl(MaterialLobes(*model, 0).data());
     return result;
   }
 
