@@ -7,7 +7,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake make
-  libceres-dev libeigen3-dev libgoogle-glog-dev libembree-dev
+  libceres-dev libopenblas-dev libeigen3-dev libgoogle-glog-dev libembree-dev
   libopenexr-dev libpng-dev libassimp-dev
   libopencv-core-dev libopencv-imgproc-dev
   libyaml-cpp-dev libcli11-dev nlohmann-json3-dev

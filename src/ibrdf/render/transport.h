@@ -56,6 +56,13 @@ class Transport {
   void GridGradient(const float* map, const double* adjoint,
                     float* gradient) const;
 
+  // The linear map from a small map's texels to radiance for a scalar field
+  // [nodes]: matrix [points][H * W], E_i = sum_t matrix_it L_t. The map must
+  // not be wider than QuadratureOptions::far_width.
+  void LightMatrix(const float* field, float* matrix) const;
+  // Its transpose in the field: gradient [nodes] of sum adjoint.matrix.
+  void LightMatrixGradient(const float* adjoint, float* gradient) const;
+
  private:
   friend class LightOperator;
 

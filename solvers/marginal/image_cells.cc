@@ -1,0 +1,68 @@
+#include "solvers/marginal/image_cells.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ibrdf/render/quadrature.h"
+
+namespace ibrdf {
+
+ImageCells GroupByNormal(const std::vector<ShadingPoint>& points,
+                         const std::vector<double>& radiance,
+                         const ImageCellOptions& options) {
+  CHECK_EQ(radiance.size(), 3 * points.size());
+  CHECK(options.cells_across > 0 && options.points_per_cell > 0);
+  // Normals as seen along each point's own view, up kept upright: for an
+  // orthographic view of a sphere, its image.
+  std::map<int, std::vector<int>> members;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double* rgb = &radiance[3 * i];
+    if (!std::all_of(rgb, rgb + 3, [](double v) {
+          return std::isfinite(v) && v > 0.0;
+        })) {
+      continue;
+    }
+    const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
+    const Eigen::Vector3d wo = points[i].wo.cast<double>().normalized();
+    if (n.dot(wo) < options.min_cosine) continue;
+    Eigen::Vector3d right, up;
+    ViewFrame(wo, Eigen::Vector3d::UnitY(), &up, &right);
+    const auto bin = [&](double x) {
+      return std::clamp(
+          static_cast<int>((0.5 * x + 0.5) * options.cells_across), 0,
+          options.cells_across - 1);
+    };
+    members[bin(n.dot(up)) * options.cells_across + bin(n.dot(right))]
+        .push_back(static_cast<int>(i));
+  }
+  ImageCells cells;
+  cells.first.push_back(0);
+  std::vector<Eigen::Array3d> means;
+  for (const auto& [cell, all] : members) {
+    const int count =
+        std::min(options.points_per_cell, static_cast<int>(all.size()));
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    for (int k = 0; k < count; ++k) {
+      // Evenly spread over the list, which runs in image order.
+      const int i = all[(2 * static_cast<size_t>(k) + 1) * all.size() /
+                        (2 * static_cast<size_t>(count))];
+      cells.points.push_back(points[i]);
+      sum += Eigen::Array3d(radiance[3 * static_cast<size_t>(i)],
+                            radiance[3 * static_cast<size_t>(i) + 1],
+                            radiance[3 * static_cast<size_t>(i) + 2]);
+    }
+    cells.first.push_back(static_cast<int>(cells.points.size()));
+    means.push_back(sum / count);
+  }
+  for (int c = 0; c < 3; ++c) {
+    for (const Eigen::Array3d& mean : means) {
+      cells.log_radiance.push_back(std::log(mean[c]));
+    }
+  }
+  return cells;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,51 @@
+#include "solvers/marginal/light_process.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ibrdf/light/environment_map.h"
+
+namespace ibrdf {
+namespace {
+
+Eigen::Matrix3d GreyAndChroma(double grey, double chroma) {
+  return grey * Eigen::Matrix3d::Ones() +
+         chroma * (Eigen::Matrix3d::Identity() -
+                   Eigen::Matrix3d::Constant(1.0 / 3.0));
+}
+
+}  // namespace
+
+Eigen::Matrix3d LightProcess::Local() const {
+  return GreyAndChroma(luminance_variance, chroma_variance);
+}
+
+Eigen::Matrix3d LightProcess::Level() const {
+  return GreyAndChroma(level_variance, level_chroma_variance);
+}
+
+RowMatrix LightCorrelation(int map_height, int map_width,
+                           double correlation_degrees) {
+  std::vector<Eigen::Vector3d> directions;
+  for (int r = 0; r < map_height; ++r) {
+    for (int c = 0; c < map_width; ++c) {
+      directions.push_back(
+          MapDirection(r + 0.5, c + 0.5, map_height, map_width));
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(directions.size());
+  const double scale = 180.0 / (3.14159265358979323846 * correlation_degrees);
+  RowMatrix correlation(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const double cosine = directions[i].dot(directions[j]);
+      const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+      correlation(i, j) = correlation(j, i) =
+          i == j ? 1.0 : std::exp(-angle * scale);
+    }
+  }
+  return correlation;
+}
+
+}  // namespace ibrdf

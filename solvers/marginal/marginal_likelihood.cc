@@ -1,0 +1,368 @@
+#include "solvers/marginal/marginal_likelihood.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ibrdf/base/parallel_for.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kMaxIterations = 200;
+constexpr double kSmallestStep = 1e-3;
+// A linearisation serves while each step is shorter than the last by this
+// factor.
+constexpr double kContraction = 0.3;
+constexpr double kLongestStep = 6.0;
+constexpr double kMaxLogRadiance = 80.0;
+constexpr double kSmallestRadiance = 1e-300;
+// Of the exact Hessian's inverse, as corrections of Gauss-Newton's.
+constexpr int kCurvatureCorrections = 4;
+// Rows of one task of a product.
+constexpr Eigen::Index kTileRows = 48;
+
+// C = A B over tiles of rows.
+void MultiplyInTiles(const RowMatrix& A, const RowMatrix& B, int num_threads,
+                     RowMatrix* C) {
+  C->resize(A.rows(), B.cols());
+  const Eigen::Index tiles = (A.rows() + kTileRows - 1) / kTileRows;
+  ParallelFor(tiles, num_threads, [&](int64_t tile, int) {
+    const Eigen::Index begin = tile * kTileRows;
+    const Eigen::Index rows = std::min(kTileRows, A.rows() - begin);
+    RowMatrix out;
+    Multiply(A.middleRows(begin, rows), B, &out);
+    C->middleRows(begin, rows) = out;
+  });
+}
+
+}  // namespace
+
+struct MarginalLikelihood::Point {
+  Eigen::VectorXd L;         // radiance [3 * texels]
+  Eigen::VectorXd E;         // [3 * points]
+  Eigen::VectorXd residual;  // y - log E
+};
+
+MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
+                                       const LightProcess& process,
+                                       int map_height, int map_width,
+                                       int num_threads)
+    : num_points_(static_cast<int>(log_radiance.size() / 3)),
+      y_(Eigen::Map<const Eigen::VectorXd>(
+          log_radiance.data(),
+          static_cast<Eigen::Index>(log_radiance.size()))),
+      local_(process.Local()),
+      level_(process.Level()),
+      correlation_(LightCorrelation(map_height, map_width,
+                                    process.correlation_degrees)),
+      num_threads_(num_threads) {
+  CHECK_GT(num_points_, 0);
+  CHECK_EQ(log_radiance.size() % 3, 0u);
+}
+
+double MarginalLikelihood::LevelFor(
+    const std::array<RowMatrix, 3>& matrices) const {
+  double sum = y_.sum();
+  for (const RowMatrix& T : matrices) {
+    for (Eigen::Index p = 0; p < T.rows(); ++p) {
+      sum -= std::log(std::max(T.row(p).sum(), 1e-300));
+    }
+  }
+  return sum / static_cast<double>(y_.size());
+}
+
+Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Eigen::VectorXd& g) const {
+  const Eigen::Index t = num_texels();
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3>> by_channel(
+      g.data(), t, 3);
+  Eigen::VectorXd out(g.size());
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 3>> result(out.data(), t, 3);
+  result.noalias() = (correlation_ * by_channel) * local_;
+  return out;
+}
+
+Eigen::VectorXd MarginalLikelihood::ApplyCovariance(
+    double amplitude, const Eigen::VectorXd& g) const {
+  const Eigen::Index t = num_texels();
+  Eigen::VectorXd out = amplitude * ApplyLocal(g);
+  Eigen::Vector3d sums;
+  for (int c = 0; c < 3; ++c) sums[c] = g.segment(c * t, t).sum();
+  const Eigen::Vector3d level = level_ * sums;
+  for (int c = 0; c < 3; ++c) out.segment(c * t, t).array() += level[c];
+  return out;
+}
+
+MarginalLikelihood::Point MarginalLikelihood::At(
+    const std::array<RowMatrix, 3>& matrices, double level,
+    const Eigen::VectorXd& l) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  Point point;
+  point.L = (l.array() + level).min(kMaxLogRadiance).exp();
+  point.E.resize(3 * P);
+  for (int c = 0; c < 3; ++c) {
+    point.E.segment(c * P, P).noalias() =
+        matrices[c] * point.L.segment(c * t, t);
+  }
+  point.E = point.E.cwiseMax(kSmallestRadiance);
+  point.residual = y_ - point.E.array().log().matrix();
+  return point;
+}
+
+std::shared_ptr<const LightLinearisation> MarginalLikelihood::Linearise(
+    const std::array<RowMatrix, 3>& matrices, double sigma, double amplitude,
+    const Point& point) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  auto linear = std::make_shared<LightLinearisation>();
+  for (int c = 0; c < 3; ++c) {
+    linear->jacobian[c] =
+        point.E.segment(c * P, P).cwiseInverse().asDiagonal() * matrices[c] *
+        point.L.segment(c * t, t).asDiagonal();
+    MultiplyInTiles(linear->jacobian[c], correlation_, num_threads_,
+                    &linear->JC[c]);
+  }
+  RowMatrix& A = linear->factor;
+  A.setZero(3 * P, 3 * P);
+  constexpr int kPairs[6][2] = {{0, 0}, {1, 0}, {1, 1},
+                                {2, 0}, {2, 1}, {2, 2}};
+  ParallelFor(6, num_threads_, [&](int64_t pair, int) {
+    const int c = kPairs[pair][0], d = kPairs[pair][1];
+    RowMatrix block;
+    MultiplyTransposed(linear->JC[c], linear->jacobian[d], &block);
+    // The rows of a Jacobian sum to 1: a level moves log radiance as it is.
+    A.block(c * P, d * P, P, P) =
+        (amplitude * local_(c, d) * block).array() + level_(c, d);
+  });
+  A.diagonal().array() += sigma * sigma;
+  if (!A.allFinite() || !Factorise(&A)) return nullptr;
+  return linear;
+}
+
+Eigen::VectorXd MarginalLikelihood::ApplyJacobian(
+    const LightLinearisation& linear, const Eigen::VectorXd& l) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  Eigen::VectorXd out(3 * P);
+  for (int c = 0; c < 3; ++c) {
+    out.segment(c * P, P).noalias() = linear.jacobian[c] * l.segment(c * t, t);
+  }
+  return out;
+}
+
+Eigen::VectorXd MarginalLikelihood::ApplyJacobianTransposed(
+    const LightLinearisation& linear, const Eigen::VectorXd& a) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  Eigen::VectorXd out(3 * t);
+  for (int c = 0; c < 3; ++c) {
+    out.segment(c * t, t).noalias() =
+        linear.jacobian[c].transpose() * a.segment(c * P, P);
+  }
+  return out;
+}
+
+Eigen::VectorXd MarginalLikelihood::SolveDual(const LightLinearisation& linear,
+                                              double amplitude,
+                                              const Eigen::VectorXd& x) const {
+  Eigen::VectorXd a = ApplyJacobian(linear, ApplyCovariance(amplitude, x));
+  SolveFactored(linear.factor, a.data());
+  return x - ApplyJacobianTransposed(linear, a);
+}
+
+MarginalValue MarginalLikelihood::Evaluate(
+    const std::array<RowMatrix, 3>& matrices,
+    const MarginalHyperparameters& hyper, double tolerance, LightMode* mode,
+    MarginalGradient* gradient) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  const double sigma = std::exp(hyper.log_sigma);
+  const double amplitude = std::exp(hyper.log_amplitude);
+  const double inverse_variance = 1.0 / (sigma * sigma);
+  MarginalValue value;
+  if (mode->l.size() == 0) {
+    mode->level = LevelFor(matrices);
+    mode->l = mode->dual = Eigen::VectorXd::Zero(3 * t);
+  } else {
+    mode->l = ApplyCovariance(amplitude, mode->dual);
+  }
+  Point point = At(matrices, mode->level, mode->l);
+  if (!point.residual.allFinite()) return value;
+  double likelihood = 0.5 * inverse_variance * point.residual.squaredNorm();
+  bool fresh = false;  // whether the linearisation was made here
+  double last_step = std::numeric_limits<double>::infinity();
+  while (value.iterations < kMaxIterations) {
+    if (mode->linearisation == nullptr) {
+      mode->linearisation = Linearise(matrices, sigma, amplitude, point);
+      if (mode->linearisation == nullptr) return value;
+      fresh = true;
+      last_step = std::numeric_limits<double>::infinity();
+      ++value.linearisations;
+    }
+    // Newton's step on Phi with the linearisation's Hessian.
+    Eigen::VectorXd slope(3 * t);
+    for (int c = 0; c < 3; ++c) {
+      const Eigen::VectorXd weighted =
+          point.residual.segment(c * P, P).cwiseQuotient(
+              point.E.segment(c * P, P));
+      slope.segment(c * t, t) =
+          mode->dual.segment(c * t, t) -
+          inverse_variance * point.L.segment(c * t, t).cwiseProduct(
+                                 matrices[c].transpose() * weighted);
+    }
+    const Eigen::VectorXd d_dual =
+        -SolveDual(*mode->linearisation, amplitude, slope);
+    const Eigen::VectorXd dl = ApplyCovariance(amplitude, d_dual);
+    if (!dl.allFinite()) return value;
+    const double step = dl.lpNorm<Eigen::Infinity>();
+    ++value.iterations;
+    const double cross = mode->dual.dot(dl), square = d_dual.dot(dl);
+    double taken = 0.0;
+    // From a wide start the whole step may leave the range of exp.
+    for (double s = std::min(1.0, kLongestStep / step); s > kSmallestStep;
+         s *= 0.4) {
+      const Eigen::VectorXd l = mode->l + s * dl;
+      Point trial = At(matrices, mode->level, l);
+      const double trial_likelihood =
+          0.5 * inverse_variance * trial.residual.squaredNorm();
+      if (trial_likelihood + s * cross + 0.5 * s * s * square <= likelihood) {
+        taken = s;
+        mode->dual += s * d_dual;
+        mode->l = l;
+        point = std::move(trial);
+        likelihood = trial_likelihood;
+        break;
+      }
+    }
+    if (taken * step > 0.0 && taken == 1.0 && step < tolerance) break;
+    // No decrease with a linearisation of this point: rounding, at the mode.
+    if (taken == 0.0 && fresh) break;
+    if (taken < 1.0 || step > kContraction * last_step) {
+      mode->linearisation = nullptr;
+      fresh = false;
+    } else {
+      last_step = step;
+      fresh = false;
+    }
+  }
+  mode->linearisation = Linearise(matrices, sigma, amplitude, point);
+  if (mode->linearisation == nullptr) return value;
+  ++value.linearisations;
+  value.log_determinant =
+      2.0 * mode->linearisation->factor.diagonal().array().log().sum();
+  value.cost = likelihood + 0.5 * mode->dual.dot(mode->l) +
+               0.5 * value.log_determinant;
+  value.misfit = point.residual.cwiseAbs().mean();
+  value.ok = std::isfinite(value.cost);
+  if (gradient != nullptr && value.ok) {
+    AddGradient(sigma, amplitude, *mode, point, gradient);
+  }
+  return value;
+}
+
+// With F the cost, Phi its first two terms, l* the mode: dF = (partial of F at
+// fixed l) - v . d(grad_l Phi), v = H^-1 q, H the Hessian of Phi and q the
+// gradient of the log determinant in l.
+void MarginalLikelihood::AddGradient(double sigma, double amplitude,
+                                     const LightMode& mode, const Point& point,
+                                     MarginalGradient* gradient) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  const double inverse_variance = 1.0 / (sigma * sigma);
+  const Eigen::VectorXd& r = point.residual;
+  const LightLinearisation& linear = *mode.linearisation;
+  RowMatrix inverse = linear.factor;
+  InvertFactored(&inverse);
+
+  // G = A^-1 J K per channel; a constant along a row has no effect, as it only
+  // meets differences of a Jacobian's rows. Then centred: G - sum_t G J.
+  std::array<RowMatrix, 3> G;
+  Eigen::VectorXd q(3 * t);
+  for (int c = 0; c < 3; ++c) {
+    G[c].setZero(P, t);
+    for (int d = 0; d < 3; ++d) {
+      RowMatrix product;
+      MultiplyInTiles(inverse.block(c * P, d * P, P, P), linear.JC[d],
+                      num_threads_, &product);
+      G[c] += amplitude * local_(c, d) * product;
+    }
+    const Eigen::VectorXd means =
+        G[c].cwiseProduct(linear.jacobian[c]).rowwise().sum();
+    G[c].colwise() -= means;
+    q.segment(c * t, t) =
+        G[c].cwiseProduct(linear.jacobian[c]).colwise().sum().transpose();
+  }
+
+  // v = H^-1 q = K w. H = K^-1 + J^T J / sigma^2 + C with
+  // C = -sum_p r_p / sigma^2 (diag(J_p) - J_p J_p^T), taken by corrections.
+  const Eigen::VectorXd weights = ApplyJacobianTransposed(linear, r);
+  Eigen::VectorXd right = q, w, v, Jv;
+  for (int k = 0; k <= kCurvatureCorrections; ++k) {
+    w = SolveDual(linear, amplitude, right);
+    v = ApplyCovariance(amplitude, w);
+    Jv = ApplyJacobian(linear, v);
+    if (k == kCurvatureCorrections) break;
+    right = q + inverse_variance *
+                    (weights.cwiseProduct(v) -
+                     ApplyJacobianTransposed(linear, r.cwiseProduct(Jv)));
+  }
+
+  // d(grad_l Phi) . v in T: of -(J v) . r / sigma^2.
+  for (int c = 0; c < 3; ++c) {
+    const auto L = point.L.segment(c * t, t);
+    const auto r_c = r.segment(c * P, P).array();
+    const auto Jv_c = Jv.segment(c * P, P).array();
+    const Eigen::ArrayXd inverse_E =
+        point.E.segment(c * P, P).array().inverse();
+    RowMatrix& out = gradient->matrices[c];
+    out = std::move(G[c]);
+    out.colwise() -=
+        (inverse_variance * (r_c + Jv_c * r_c + Jv_c)).matrix();
+    out.noalias() += (inverse_variance * r_c).matrix() *
+                     v.segment(c * t, t).transpose();
+    out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
+  }
+
+  const double variance_gradient =
+      -0.5 * r.squaredNorm() * inverse_variance * inverse_variance +
+      0.5 * inverse.trace() -
+      Jv.dot(r) * inverse_variance * inverse_variance;
+  gradient->log_sigma = 2.0 * sigma * sigma * variance_gradient;
+  const Eigen::VectorXd local = ApplyLocal(mode.dual);
+  // tr(A^-1 (A - sigma^2 I - B)), B the level's part.
+  double trace = 3.0 * static_cast<double>(P) - sigma * sigma * inverse.trace();
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d < 3; ++d) {
+      trace -= level_(c, d) * inverse.block(c * P, d * P, P, P).sum();
+    }
+  }
+  gradient->log_amplitude =
+      amplitude * (-0.5 * mode.dual.dot(local) + w.dot(local)) + 0.5 * trace;
+}
+
+Eigen::VectorXd MarginalLikelihood::LightVariance(
+    const std::array<RowMatrix, 3>& matrices,
+    const MarginalHyperparameters& hyper, const LightMode& mode) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  const double amplitude = std::exp(hyper.log_amplitude);
+  const auto linear = Linearise(matrices, std::exp(hyper.log_sigma), amplitude,
+                                At(matrices, mode.level, mode.l));
+  CHECK(linear != nullptr);
+  RowMatrix inverse = linear->factor;
+  InvertFactored(&inverse);
+  // diag(K - K J^T A^-1 J K), row by row of J K.
+  Eigen::VectorXd variance(3 * t);
+  for (int c = 0; c < 3; ++c) {
+    RowMatrix JK(3 * P, t);  // cov(data, l_c)
+    for (int d = 0; d < 3; ++d) {
+      JK.middleRows(d * P, P) =
+          (amplitude * local_(d, c) * linear->JC[d]).array() + level_(d, c);
+    }
+    RowMatrix product;
+    MultiplyInTiles(inverse, JK, num_threads_, &product);
+    variance.segment(c * t, t) =
+        (amplitude * local_(c, c) + level_(c, c)) -
+        product.cwiseProduct(JK).colwise().sum().transpose().array();
+  }
+  return variance.cwiseMax(0.0);
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,124 @@
+// The likelihood of a reflectance with the light integrated out.
+//
+// The maximum over reflectance and light together prefers glossy reflectance
+// under blurred light: such light is the more probable point of any smooth
+// prior, though hardly any light looks like it. Integrated over all light that
+// the prior allows, a reflectance pays for detail that it would show and the
+// image lacks. (Blind deconvolution has the same trap and the same way out:
+// Levin et al., "Understanding and evaluating blind deconvolution algorithms",
+// CVPR 2009, Sec. 3.)
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "solvers/marginal/dense_algebra.h"
+#include "solvers/marginal/light_process.h"
+
+namespace ibrdf {
+
+// Logarithms: of the standard deviation sigma of log-radiance residuals (noise
+// and what the model cannot render), of the process' amplitude.
+struct MarginalHyperparameters {
+  double log_sigma = -3.2;
+  double log_amplitude = 0.0;
+};
+
+// A linearisation of log E in l, d log E = J dl, with what its normal equations
+// need.
+struct LightLinearisation {
+  std::array<RowMatrix, 3> jacobian;  // [points][texels] of a channel
+  std::array<RowMatrix, 3> JC;        // jacobian * correlation
+  RowMatrix factor;                   // of sigma^2 I + J K J^T
+};
+
+// The most probable log radiance of the light, m + l, and l = K dual.
+struct LightMode {
+  double level = 0.0;    // m, of all three channels
+  Eigen::VectorXd l;     // [3 * texels], channel by channel; empty: none yet
+  Eigen::VectorXd dual;  // [3 * texels]
+  // At some l near the mode: the next search begins with it.
+  std::shared_ptr<const LightLinearisation> linearisation;
+};
+
+struct MarginalGradient {
+  std::array<RowMatrix, 3> matrices;  // [points][texels] each
+  double log_sigma = 0.0;
+  double log_amplitude = 0.0;
+};
+
+struct MarginalValue {
+  bool ok = false;      // false: not finite, or no mode was found
+  double cost = 0.0;    // -log p(image | reflectance), nats, up to a constant
+  double misfit = 0.0;  // mean |log E - log I| at the mode
+  double log_determinant = 0.0;  // of sigma^2 I + J K J^T
+  int iterations = 0;            // to the mode
+  int linearisations = 0;
+};
+
+// Laplace's approximation of -log of
+//   integral N(y; log E(l), sigma^2 I) N(l; 0, K) dl,  E_c = T_c exp(m + l_c):
+//   |y - log E|^2 / (2 sigma^2) + l^T K^-1 l / 2
+//   + log det(sigma^2 I + J K J^T) / 2  at the mode of l,
+// J = d log E / d l, in the space of the data, so that K needs no inverse.
+// Immutable; may be used from several threads.
+class MarginalLikelihood {
+ public:
+  // log_radiance [3 * points], channel by channel.
+  MarginalLikelihood(std::vector<double> log_radiance,
+                     const LightProcess& process, int map_height, int map_width,
+                     int num_threads);
+
+  int num_points() const { return num_points_; }
+  int num_texels() const { return static_cast<int>(correlation_.rows()); }
+
+  // matrices: T_c [points][texels], >= 0, of the reflectance in channel c.
+  // `mode` is where the search starts, if it holds one, and receives the mode,
+  // found where no texel's log radiance moves by more than `tolerance`;
+  // gradient may be null. The gradient is of the whole cost, the mode's own
+  // motion included.
+  MarginalValue Evaluate(const std::array<RowMatrix, 3>& matrices,
+                         const MarginalHyperparameters& hyper, double tolerance,
+                         LightMode* mode, MarginalGradient* gradient) const;
+
+  // The level at which constant light gives the image's mean log radiance.
+  double LevelFor(const std::array<RowMatrix, 3>& matrices) const;
+
+  // Diagonal of the posterior covariance of l [3 * texels] at the mode.
+  Eigen::VectorXd LightVariance(const std::array<RowMatrix, 3>& matrices,
+                                const MarginalHyperparameters& hyper,
+                                const LightMode& mode) const;
+
+ private:
+  struct Point;
+  // Radiance and residuals at l.
+  Point At(const std::array<RowMatrix, 3>& matrices, double level,
+           const Eigen::VectorXd& l) const;
+  // Null where the normal equations are not positive definite.
+  std::shared_ptr<const LightLinearisation> Linearise(
+      const std::array<RowMatrix, 3>& matrices, double sigma, double amplitude,
+      const Point& point) const;
+  // K g.
+  Eigen::VectorXd ApplyCovariance(double amplitude,
+                                  const Eigen::VectorXd& g) const;
+  // K1 g, the part that the amplitude scales, at amplitude 1.
+  Eigen::VectorXd ApplyLocal(const Eigen::VectorXd& g) const;
+  Eigen::VectorXd ApplyJacobian(const LightLinearisation& linear,
+                                const Eigen::VectorXd& l) const;
+  Eigen::VectorXd ApplyJacobianTransposed(const LightLinearisation& linear,
+                                          const Eigen::VectorXd& a) const;
+  // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T J / sigma^2)^-1 x.
+  Eigen::VectorXd SolveDual(const LightLinearisation& linear, double amplitude,
+                            const Eigen::VectorXd& x) const;
+  void AddGradient(double sigma, double amplitude, const LightMode& mode,
+                   const Point& point, MarginalGradient* gradient) const;
+
+  int num_points_;
+  Eigen::VectorXd y_;  // [3 * points]
+  Eigen::Matrix3d local_, level_;
+  RowMatrix correlation_;
+  int num_threads_;
+};
+
+}  // namespace ibrdf

@@ -1,0 +1,135 @@
+#include "solvers/marginal/marginal_reflectance.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ibrdf {
+namespace {
+
+double Colour(double log_colour, int channel) {
+  return std::exp(std::min(log_colour, LobeModel::kMaxLogColour)) *
+         kMerlScale[channel];
+}
+
+}  // namespace
+
+MarginalReflectance::MarginalReflectance(
+    const NeuralBrdfModel& model, int num_lobes,
+    const std::vector<ShadingPoint>& points,
+    const std::vector<double>& radiance, const LightProcess& process,
+    const MarginalResolution& resolution, int num_threads)
+    : resolution_(resolution),
+      cells_(GroupByNormal(points, radiance, resolution.cells)) {
+  CHECK_GT(cells_.num_cells(), 0);
+  TransportOptions options;
+  options.grid = resolution.grid;
+  options.num_threads = num_threads;
+  transport_ = std::make_unique<Transport>(
+      cells_.points, resolution.map_height, resolution.map_width, options);
+  lobes_ = std::make_unique<LobeModel>(model, num_lobes, resolution.grid,
+                                       num_threads);
+  likelihood_ = std::make_unique<MarginalLikelihood>(
+      cells_.log_radiance, process, resolution.map_height, resolution.map_width,
+      num_threads);
+}
+
+MarginalReflectance::FloatMatrix MarginalReflectance::CellMatrix(
+    const float* field) const {
+  FloatMatrix by_point(static_cast<Eigen::Index>(cells_.points.size()),
+                       likelihood_->num_texels());
+  transport_->LightMatrix(field, by_point.data());
+  FloatMatrix by_cell(cells_.num_cells(), by_point.cols());
+  for (int i = 0; i < cells_.num_cells(); ++i) {
+    const int begin = cells_.first[i], count = cells_.first[i + 1] - begin;
+    by_cell.row(i) = by_point.middleRows(begin, count).colwise().mean();
+  }
+  return by_cell;
+}
+
+void MarginalReflectance::CellMatrixGradient(const FloatMatrix& adjoint,
+                                             float* gradient) const {
+  FloatMatrix by_point(static_cast<Eigen::Index>(cells_.points.size()),
+                       adjoint.cols());
+  for (int i = 0; i < cells_.num_cells(); ++i) {
+    const int begin = cells_.first[i], count = cells_.first[i + 1] - begin;
+    by_point.middleRows(begin, count).rowwise() =
+        adjoint.row(i) / static_cast<float>(count);
+  }
+  transport_->LightMatrixGradient(by_point.data(), gradient);
+}
+
+std::array<RowMatrix, 3> MarginalReflectance::Matrices(
+    const double* parameters) const {
+  std::vector<float> fields;
+  lobes_->Tabulate(parameters, false, &fields);
+  return Matrices(lobes_->Combine(parameters, fields, 1));
+}
+
+std::array<RowMatrix, 3> MarginalReflectance::Matrices(
+    const BrdfGrid& grid) const {
+  std::array<RowMatrix, 3> matrices;
+  for (int c = 0; c < 3; ++c) {
+    matrices[c] = CellMatrix(grid.Channel(c)).cast<double>();
+  }
+  return matrices;
+}
+
+MarginalValue MarginalReflectance::Evaluate(
+    const double* parameters, const MarginalHyperparameters& hyper,
+    double tolerance, LightMode* mode, std::vector<double>* gradient) const {
+  const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
+  const int stride = gradient != nullptr ? 1 + size : 1;
+  const size_t nodes = lobes_->grid_shape().num_nodes();
+  std::vector<float> fields;
+  lobes_->Tabulate(parameters, gradient != nullptr, &fields);
+  std::vector<FloatMatrix> shapes;
+  std::array<RowMatrix, 3> matrices;
+  for (int k = 0; k < num_lobes; ++k) {
+    shapes.push_back(CellMatrix(&fields[k * stride * nodes]));
+    const double* lobe = parameters + k * lobes_->lobe_size();
+    for (int c = 0; c < 3; ++c) {
+      const RowMatrix part =
+          Colour(lobe[size + c], c) * shapes[k].cast<double>();
+      if (k == 0) {
+        matrices[c] = part;
+      } else {
+        matrices[c] += part;
+      }
+    }
+  }
+  MarginalGradient by_matrix;
+  const MarginalValue value =
+      likelihood_->Evaluate(matrices, hyper, tolerance, mode,
+                            gradient != nullptr ? &by_matrix : nullptr);
+  if (gradient == nullptr || !value.ok) return value;
+  gradient->assign(lobes_->num_parameters() + 2, 0.0);
+  std::vector<float> by_node(nodes);
+  for (int k = 0; k < num_lobes; ++k) {
+    const double* lobe = parameters + k * lobes_->lobe_size();
+    double* out = gradient->data() + k * lobes_->lobe_size();
+    FloatMatrix adjoint = FloatMatrix::Zero(shapes[k].rows(), shapes[k].cols());
+    for (int c = 0; c < 3; ++c) {
+      const double colour = Colour(lobe[size + c], c);
+      adjoint += (colour * by_matrix.matrices[c]).cast<float>();
+      out[size + c] =
+          colour *
+          by_matrix.matrices[c].cwiseProduct(shapes[k].cast<double>()).sum();
+    }
+    CellMatrixGradient(adjoint, by_node.data());
+    for (int d = 0; d < size; ++d) {
+      const float* derivative = &fields[(k * stride + 1 + d) * nodes];
+      double sum = 0.0;
+      for (size_t i = 0; i < nodes; ++i) {
+        sum += static_cast<double>(by_node[i]) * derivative[i];
+      }
+      out[d] = sum;
+    }
+  }
+  (*gradient)[lobes_->num_parameters()] = by_matrix.log_sigma;
+  (*gradient)[lobes_->num_parameters() + 1] = by_matrix.log_amplitude;
+  return value;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,61 @@
+// The marginal likelihood as a function of lobes.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/render/transport.h"
+#include "solvers/marginal/image_cells.h"
+#include "solvers/marginal/marginal_likelihood.h"
+
+namespace ibrdf {
+
+struct MarginalResolution {
+  ImageCellOptions cells;
+  int map_width = 32, map_height = 16;
+  BrdfGridShape grid = {48, 20, 12};
+};
+
+// Lobe parameters as LobeModel's. Immutable but for what its callers keep; may
+// be used from several threads.
+class MarginalReflectance {
+ public:
+  // radiance [points][3]. CHECKs that at least one point can be used.
+  MarginalReflectance(const NeuralBrdfModel& model, int num_lobes,
+                      const std::vector<ShadingPoint>& points,
+                      const std::vector<double>& radiance,
+                      const LightProcess& process,
+                      const MarginalResolution& resolution, int num_threads);
+
+  const LobeModel& lobes() const { return *lobes_; }
+  const MarginalLikelihood& likelihood() const { return *likelihood_; }
+  const ImageCells& cells() const { return cells_; }
+  const MarginalResolution& resolution() const { return resolution_; }
+
+  // As MarginalLikelihood::Evaluate. With gradient != nullptr it receives
+  // [num_parameters + 2]: by the lobes' parameters, log sigma and log
+  // amplitude.
+  MarginalValue Evaluate(const double* parameters,
+                         const MarginalHyperparameters& hyper, double tolerance,
+                         LightMode* mode, std::vector<double>* gradient) const;
+
+  // The matrices T_c of a reflectance.
+  std::array<RowMatrix, 3> Matrices(const double* parameters) const;
+  // Of one on the grid.
+  std::array<RowMatrix, 3> Matrices(const BrdfGrid& grid) const;
+
+ private:
+  using FloatMatrix =
+      Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  // [cells][texels] of a scalar field, and its transpose.
+  FloatMatrix CellMatrix(const float* field) const;
+  void CellMatrixGradient(const FloatMatrix& adjoint, float* gradient) const;
+
+  MarginalResolution resolution_;
+  ImageCells cells_;
+  std::unique_ptr<Transport> transport_;
+  std::unique_ptr<LobeModel> lobes_;
+  std::unique_ptr<MarginalLikelihood> likelihood_;
+};
+
+}  // namespace ibrdf
