@@ -31,10 +31,13 @@ node="$(uname -n)"
 node="${node%%.*}"
 user="$(id -un)"
 
-is_running() {  # is_running NAME: of the process that FOLDER/NAME.pid names
+# is_running NAME: the process that FOLDER/NAME.pid names. One that has ended
+# and that nobody waited for (Z), as in a container, does not count.
+is_running() {
   local pid
   pid="$(cat "${folder}/$1.pid" 2>/dev/null)" &&
-    [ "$(cat "/proc/${pid}/comm" 2>/dev/null)" = "$1" ]
+    awk -v name="$1" '$1 == "Name:" { n = $2 } $1 == "State:" { s = $2 }
+      END { exit !(n == name && s != "Z") }' "/proc/${pid}/status" 2>/dev/null
 }
 
 # start NAME COMMAND...: a daemon that leaves NAME.pid, unless it runs.

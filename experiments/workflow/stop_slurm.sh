@@ -14,10 +14,14 @@ if [ ! -d "$1" ]; then
 fi
 folder="$(cd "$1" && pwd -P)"
 
-pid_of() {  # prints the process of FOLDER/NAME.pid, if it runs
+# Prints the process of FOLDER/NAME.pid, if it runs. One that has ended and
+# that nobody waited for (Z), as in a container, does not.
+pid_of() {
   local pid
   pid="$(cat "${folder}/$1.pid" 2>/dev/null)" || return 1
-  [ "$(cat "/proc/${pid}/comm" 2>/dev/null)" = "$1" ] && echo "${pid}"
+  awk -v name="$1" '$1 == "Name:" { n = $2 } $1 == "State:" { s = $2 }
+    END { exit !(n == name && s != "Z") }' "/proc/${pid}/status" 2>/dev/null &&
+    echo "${pid}"
 }
 
 if [ -f "${folder}/slurm.conf" ] && pid_of slurmctld >/dev/null; then

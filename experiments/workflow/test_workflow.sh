@@ -187,7 +187,7 @@ sinfo
 say "sweep of ${num_cases} cases"
 workflow slurm "${work}/slurm.yaml" >"${work}/run1.txt" 2>&1 &
 workflow_pid=$!
-wait_for "finished case" at_least 1
+wait_for "finished case" at_least 1 >/dev/null
 
 victim="$(wait_for "solver" running_solver)"
 killed="${victim% *}"
@@ -198,7 +198,7 @@ cancelled="${victim% *}"
 scancel "${victim#* }"
 say "cancelled the job of ${cancelled} (scancel)"
 
-wait_for "three finished cases" at_least 3
+wait_for "three finished cases" at_least 3 >/dev/null
 wait_for "case under way" running_case none >"${work}/under_way.txt"
 kill -9 "${workflow_pid}"
 wait "${workflow_pid}" 2>/dev/null || true
