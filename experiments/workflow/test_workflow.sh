@@ -137,7 +137,8 @@ running_solver() {
   done
   return 1
 }
-# Prints "CASE JOB" of a case under way, other than $1.
+# running_case NOT [new]: prints "CASE JOB" of a case under way other than NOT;
+# with `new`, one that has not come to its solver and so cannot end meanwhile.
 running_case() {
   local case last job
   for case in $(all_cases); do
@@ -145,6 +146,8 @@ running_case() {
     last="$(tail -n 1 "${sweep}/work/${case}/attempts.log" 2>/dev/null)" ||
       continue
     [[ "${last}" == *" begin" ]] || continue
+    [ "${2:-}" != new ] || [ -z "$(find "${sweep}/work/${case}" \
+      -name solver.log 2>/dev/null)" ] || continue
     job="${last#*job=}"
     job="${job%% *}"
     [ "$(squeue -h -j "${job}" -o %T 2>/dev/null)" = RUNNING ] || continue
@@ -193,7 +196,7 @@ victim="$(wait_for "solver" running_solver)"
 killed="${victim% *}"
 kill -9 "${victim#* }"
 say "killed the solver of ${killed} (kill -9)"
-victim="$(wait_for "other case" running_case "${killed}")"
+victim="$(wait_for "other case" running_case "${killed}" new)"
 cancelled="${victim% *}"
 scancel "${victim#* }"
 say "cancelled the job of ${cancelled} (scancel)"
