@@ -17,7 +17,7 @@ namespace ibrdf {
 namespace {
 
 constexpr char kMagic[] = "ibrdf-model ";
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr size_t kMaxBytes = size_t{256} << 20;
 // Rounding of a code that was projected to the unit sphere in float.
 constexpr double kBallSlack = 1e-4;
@@ -74,11 +74,15 @@ Status ParseHeader(const std::string& path, const std::string& text,
     model->exponent = header.at("exponent").get<double>();
     model->names = header.at("names").get<std::vector<std::string>>();
     model->note = header.at("note").get<std::string>();
+    model->fit_lobes = header.at("fit_lobes").get<int>();
   } catch (const nlohmann::json::exception& e) {
     return InvalidInput(path + ": header", e.what());
   }
   const std::string wrong = model->shape.Validate();
   if (!wrong.empty()) return InvalidInput(path + ": header", wrong);
+  if (model->fit_lobes < 0 || model->fit_lobes > 8) {
+    return InvalidInput(path + ": fit_lobes", "expected 0 to 8");
+  }
   if (!(model->exponent >= 0.1 && model->exponent <= 32.0)) {
     return InvalidInput(path + ": exponent", "expected a number in [0.1, 32]");
   }
@@ -95,10 +99,10 @@ StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
   size_t at = magic;
   std::string version, length;
   if (bytes.compare(0, magic, kMagic) != 0 || !TakeLine(bytes, &at, &version)) {
-    return InvalidInput(path, "not a model file, expected \"ibrdf-model 2\"");
+    return InvalidInput(path, "not a model file, expected \"ibrdf-model 3\"");
   }
   if (version != std::to_string(kVersion)) {
-    return InvalidInput(path + ": version", "expected 2, found " + version);
+    return InvalidInput(path + ": version", "expected 3, found " + version);
   }
   if (bytes.size() < at + sizeof(uint64_t)) {
     return InvalidInput(path, "truncated model file");
@@ -121,7 +125,10 @@ StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
       ParseHeader(path, bytes.substr(at, header_size), &model));
   at += header_size;
   const size_t codes = model.names.size() * model.shape.code_size();
-  const size_t floats = model.shape.NumWeights() + codes + model.names.size();
+  const size_t fits = static_cast<size_t>(model.num_materials()) *
+                      model.fit_lobes * (model.shape.code_size() + 3);
+  const size_t floats =
+      model.shape.NumWeights() + codes + model.names.size() + fits;
   if (end - at != floats * sizeof(float)) {
     return InvalidInput(path, "expected " + std::to_string(floats) +
                                   " numbers after the header, found " +
@@ -135,6 +142,9 @@ StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
   }
   if (!TakeFloats(bytes, &at, model.names.size(), &model.log_colours)) {
     return InvalidInput(path + ": log_colours", "expected finite numbers");
+  }
+  if (!TakeFloats(bytes, &at, fits, &model.lobe_fits)) {
+    return InvalidInput(path + ": lobe_fits", "expected finite numbers");
   }
   for (int i = 0; i < model.num_codes(); ++i) {
     double sum = 0.0;
@@ -153,6 +163,7 @@ StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
 Status WriteModel(const NeuralBrdfModel& model, const std::string& path) {
   nlohmann::json header = {{"code_size", model.shape.code_size()},
                            {"exponent", model.exponent},
+                           {"fit_lobes", model.fit_lobes},
                            {"names", model.names},
                            {"note", model.note}};
   if (model.shape.architecture == FlowArchitecture::kTriangular) {
@@ -172,7 +183,7 @@ Status WriteModel(const NeuralBrdfModel& model, const std::string& path) {
   std::string bytes = kMagic + std::to_string(kVersion) + "\n" +
                       std::to_string(text.size()) + "\n" + text;
   for (const std::vector<float>* values :
-       {&model.weights, &model.codes, &model.log_colours}) {
+       {&model.weights, &model.codes, &model.log_colours, &model.lobe_fits}) {
     bytes.append(reinterpret_cast<const char*>(values->data()),
                  values->size() * sizeof(float));
   }

@@ -20,9 +20,8 @@ ImageCells GroupByNormal(const std::vector<ShadingPoint>& points,
   std::map<int, std::vector<int>> members;
   for (size_t i = 0; i < points.size(); ++i) {
     const double* rgb = &radiance[3 * i];
-    if (!std::all_of(rgb, rgb + 3, [](double v) {
-          return std::isfinite(v) && v > 0.0;
-        })) {
+    if (!std::all_of(rgb, rgb + 3,
+                     [](double v) { return std::isfinite(v) && v > 0.0; })) {
       continue;
     }
     const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();

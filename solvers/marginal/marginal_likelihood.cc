@@ -53,12 +53,11 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
                                        int num_threads)
     : num_points_(static_cast<int>(log_radiance.size() / 3)),
       y_(Eigen::Map<const Eigen::VectorXd>(
-          log_radiance.data(),
-          static_cast<Eigen::Index>(log_radiance.size()))),
+          log_radiance.data(), static_cast<Eigen::Index>(log_radiance.size()))),
       local_(process.Local()),
       level_(process.Level()),
-      correlation_(LightCorrelation(map_height, map_width,
-                                    process.correlation_degrees)),
+      correlation_(
+          LightCorrelation(map_height, map_width, process.correlation_degrees)),
       num_threads_(num_threads) {
   CHECK_GT(num_points_, 0);
   CHECK_EQ(log_radiance.size() % 3, 0u);
@@ -126,8 +125,7 @@ std::shared_ptr<const LightLinearisation> MarginalLikelihood::Linearise(
   }
   RowMatrix& A = linear->factor;
   A.setZero(3 * P, 3 * P);
-  constexpr int kPairs[6][2] = {{0, 0}, {1, 0}, {1, 1},
-                                {2, 0}, {2, 1}, {2, 2}};
+  constexpr int kPairs[6][2] = {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}};
   ParallelFor(6, num_threads_, [&](int64_t pair, int) {
     const int c = kPairs[pair][0], d = kPairs[pair][1];
     RowMatrix block;
@@ -233,7 +231,7 @@ MarginalValue MarginalLikelihood::Evaluate(
         break;
       }
     }
-    if (taken * step > 0.0 && taken == 1.0 && step < tolerance) break;
+    if (taken == 1.0 && -0.5 * slope.dot(dl) < tolerance) break;
     // No decrease with a linearisation of this point: rounding, at the mode.
     if (taken == 0.0 && fresh) break;
     if (taken < 1.0 || step > kContraction * last_step) {
@@ -249,8 +247,8 @@ MarginalValue MarginalLikelihood::Evaluate(
   ++value.linearisations;
   value.log_determinant =
       2.0 * mode->linearisation->factor.diagonal().array().log().sum();
-  value.cost = likelihood + 0.5 * mode->dual.dot(mode->l) +
-               0.5 * value.log_determinant;
+  value.cost =
+      likelihood + 0.5 * mode->dual.dot(mode->l) + 0.5 * value.log_determinant;
   value.misfit = point.residual.cwiseAbs().mean();
   value.ok = std::isfinite(value.cost);
   if (gradient != nullptr && value.ok) {
@@ -314,17 +312,15 @@ void MarginalLikelihood::AddGradient(double sigma, double amplitude,
         point.E.segment(c * P, P).array().inverse();
     RowMatrix& out = gradient->matrices[c];
     out = std::move(G[c]);
-    out.colwise() -=
-        (inverse_variance * (r_c + Jv_c * r_c + Jv_c)).matrix();
-    out.noalias() += (inverse_variance * r_c).matrix() *
-                     v.segment(c * t, t).transpose();
+    out.colwise() -= (inverse_variance * (r_c + Jv_c * r_c + Jv_c)).matrix();
+    out.noalias() +=
+        (inverse_variance * r_c).matrix() * v.segment(c * t, t).transpose();
     out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
   }
 
   const double variance_gradient =
       -0.5 * r.squaredNorm() * inverse_variance * inverse_variance +
-      0.5 * inverse.trace() -
-      Jv.dot(r) * inverse_variance * inverse_variance;
+      0.5 * inverse.trace() - Jv.dot(r) * inverse_variance * inverse_variance;
   gradient->log_sigma = 2.0 * sigma * sigma * variance_gradient;
   const Eigen::VectorXd local = ApplyLocal(mode.dual);
   // tr(A^-1 (A - sigma^2 I - B)), B the level's part.

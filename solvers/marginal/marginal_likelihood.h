@@ -75,8 +75,8 @@ class MarginalLikelihood {
 
   // matrices: T_c [points][texels], >= 0, of the reflectance in channel c.
   // `mode` is where the search starts, if it holds one, and receives the mode,
-  // found where no texel's log radiance moves by more than `tolerance`;
-  // gradient may be null. The gradient is of the whole cost, the mode's own
+  // found where another step would gain less than `tolerance` nats; gradient
+  // may be null. The gradient is of the whole cost, the mode's own
   // motion included.
   MarginalValue Evaluate(const std::array<RowMatrix, 3>& matrices,
                          const MarginalHyperparameters& hyper, double tolerance,

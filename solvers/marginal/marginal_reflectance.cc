@@ -26,8 +26,8 @@ MarginalReflectance::MarginalReflectance(
   TransportOptions options;
   options.grid = resolution.grid;
   options.num_threads = num_threads;
-  transport_ = std::make_unique<Transport>(
-      cells_.points, resolution.map_height, resolution.map_width, options);
+  transport_ = std::make_unique<Transport>(cells_.points, resolution.map_height,
+                                           resolution.map_width, options);
   lobes_ = std::make_unique<LobeModel>(model, num_lobes, resolution.grid,
                                        num_threads);
   likelihood_ = std::make_unique<MarginalLikelihood>(

@@ -23,9 +23,17 @@ struct NeuralBrdfModel {
   // log of the colour (raw MERL units) with which a code fits its table.
   std::vector<float> log_colours;  // [names.size()]
 
+  // The training materials (three codes each, in order) as lobes that share
+  // their code between channels, the most peaked first, each as of LobeModel:
+  // [materials][fit_lobes][code_size + 3]; fit_lobes 0: none. What an estimate
+  // expects of lobes before it sees an image.
+  int fit_lobes = 0;
+  std::vector<float> lobe_fits;
+
   std::string note;  // data, licence, command and score of the training
 
   int num_codes() const { return static_cast<int>(names.size()); }
+  int num_materials() const { return num_codes() / 3; }
 };
 
 }  // namespace ibrdf

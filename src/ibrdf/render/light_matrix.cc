@@ -62,31 +62,30 @@ void Transport::LightMatrix(const float* field, float* matrix) const {
     }
     return sum * pair.weight;
   };
-  ParallelFor(
-      static_cast<int64_t>(chunks_.size()), options_.num_threads,
-      [&](int64_t index, int) {
-        const Chunk& chunk = chunks_[index];
-        size_t far = 0, near = 0;
-        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
-          float* const out = matrix + texels * (chunk.begin + i);
-          std::fill(out, out + texels, 0.0f);
-          for (; far < chunk.far_end[i]; ++far) {
-            const FarPair& pair = chunk.far[far];
-            out[pair.block] += value(pair) * solid_angle[pair.block];
-          }
-          for (; near < chunk.near_end[i]; ++near) {
-            const NearPair& pair = chunk.near[near];
-            const float v = value(pair);
-            float weight[4];
-            BilinearWeights(pair, weight);
-            const int* const to = &texel[pair.texel];
-            out[to[0]] += weight[0] * v;
-            out[to[1]] += weight[1] * v;
-            out[to[row]] += weight[2] * v;
-            out[to[row + 1]] += weight[3] * v;
-          }
-        }
-      });
+  ParallelFor(static_cast<int64_t>(chunks_.size()), options_.num_threads,
+              [&](int64_t index, int) {
+                const Chunk& chunk = chunks_[index];
+                size_t far = 0, near = 0;
+                for (int i = 0; i < chunk.end - chunk.begin; ++i) {
+                  float* const out = matrix + texels * (chunk.begin + i);
+                  std::fill(out, out + texels, 0.0f);
+                  for (; far < chunk.far_end[i]; ++far) {
+                    const FarPair& pair = chunk.far[far];
+                    out[pair.block] += value(pair) * solid_angle[pair.block];
+                  }
+                  for (; near < chunk.near_end[i]; ++near) {
+                    const NearPair& pair = chunk.near[near];
+                    const float v = value(pair);
+                    float weight[4];
+                    BilinearWeights(pair, weight);
+                    const int* const to = &texel[pair.texel];
+                    out[to[0]] += weight[0] * v;
+                    out[to[1]] += weight[1] * v;
+                    out[to[row]] += weight[2] * v;
+                    out[to[row + 1]] += weight[3] * v;
+                  }
+                }
+              });
 }
 
 void Transport::LightMatrixGradient(const float* adjoint,
@@ -125,11 +124,10 @@ void Transport::LightMatrixGradient(const float* adjoint,
             float weight[4];
             BilinearWeights(pair, weight);
             const int* const from = &texel[pair.texel];
-            scatter(pair,
-                    pair.weight *
-                        (weight[0] * in[from[0]] + weight[1] * in[from[1]] +
-                         weight[2] * in[from[row]] +
-                         weight[3] * in[from[row + 1]]));
+            scatter(pair, pair.weight * (weight[0] * in[from[0]] +
+                                         weight[1] * in[from[1]] +
+                                         weight[2] * in[from[row]] +
+                                         weight[3] * in[from[row + 1]]));
           }
         }
       });

@@ -1,0 +1,48 @@
+// What the training materials say about lobes before an image is seen.
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "ibrdf/flow/neural_brdf_model.h"
+
+namespace ibrdf {
+
+// Gaussian over lobe parameters (as LobeModel's), with materials to start from.
+struct MaterialPrior {
+  struct Material {
+    std::string name;
+    Eigen::VectorXd parameters;
+  };
+
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd factor;  // lower; covariance = factor factor^T
+  std::vector<Material> materials;
+  int code_size = 0;
+  // Weight of the wall where the unit ball of codes ends (LobePrior::wall).
+  double wall = 30.0;
+
+  int num_parameters() const { return static_cast<int>(mean.size()); }
+  int num_lobes() const { return num_parameters() / (code_size + 3); }
+
+  // 1/2 |factor^-1 (x - mean)|^2 + 1/2 wall^2 sum_k max(0, |z_k| - 1)^2;
+  // gradient (may be null) is added to.
+  double Cost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;
+  // The wall's part alone, with y = factor^-1 (x - mean) in its place.
+  double WallCost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;
+};
+
+// Mean and covariance of the materials' lobes (NeuralBrdfModel::lobe_fits): how
+// the codes of two lobes and the colours of both go together. A part of the
+// covariance's off-diagonal is given up, as materials are few. Lobes beyond
+// those of the fits, and all of a model without fits, are independent: codes
+// N(0, code_sigma^2 I), colours as the embedding's.
+MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
+                                 double code_sigma);
+
+// The paper's: codes N(0, code_sigma^2 I), colours as the embedding's
+// (Chen et al. 2020, Sec. 4.3).
+MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,
+                        double code_sigma);
+
+}  // namespace ibrdf

@@ -1,0 +1,242 @@
+#include "solvers/marginal/reflectance_search.h"
+
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "ibrdf/base/parallel_for.h"
+#include "solvers/marginal/marginal_objective.h"
+#include "solvers/stop_callback.h"
+
+namespace ibrdf {
+namespace {
+
+// Of a ranking's modes, nats: materials differ by tens.
+constexpr double kRankingTolerance = 0.5;
+constexpr double kFunctionTolerance = 1e-6;
+// Step of the differences of gradients, in prior standard deviations.
+constexpr double kHessianStep = 0.02;
+
+// A search at one resolution.
+class Level {
+ public:
+  Level(const NeuralBrdfModel& model, const MaterialPrior& prior,
+        const std::vector<ShadingPoint>& points,
+        const std::vector<double>& radiance,
+        const MarginalResolution& resolution,
+        const ReflectanceSearchOptions& options)
+      : prior_(prior),
+        options_(options),
+        reflectance_(model, prior.num_lobes(), points, radiance,
+                     options.process, resolution, options.num_threads) {
+    hyper_.mean.log_sigma = std::log(options.sigma);
+    hyper_.log_sigma_std = options.log_sigma_std;
+    hyper_.log_amplitude_std = options.log_amplitude_std;
+  }
+
+  const MarginalReflectance& reflectance() const { return reflectance_; }
+  MarginalHyperparameters Start() const { return hyper_.mean; }
+  MarginalObjective Objective(LightMode* mode) const {
+    return MarginalObjective(&reflectance_, &prior_, hyper_, mode);
+  }
+
+  // -log posterior at the start's hyperparameters; infinite where it has none.
+  double Rank(const Eigen::VectorXd& lobes) const {
+    LightMode mode;
+    const MarginalValue value = reflectance_.Evaluate(
+        lobes.data(), hyper_.mean, kRankingTolerance, &mode, nullptr);
+    if (!value.ok) return std::numeric_limits<double>::infinity();
+    return value.cost + prior_.Cost(lobes, nullptr);
+  }
+
+  struct End {
+    bool ok = false;
+    std::vector<double> y;
+    double cost = std::numeric_limits<double>::infinity();
+    MarginalValue value;
+    LightMode mode;
+  };
+  End Refine(const Eigen::VectorXd& lobes, const MarginalHyperparameters& hyper,
+             int iterations) const {
+    End end;
+    // Owned by the problem, which must not outlive the mode.
+    auto* objective =
+        new MarginalObjective(&reflectance_, &prior_, hyper_, &end.mode);
+    const ceres::GradientProblem problem(objective);
+    end.y = objective->Whitened(lobes, hyper);
+    // Finds the light before the first line search needs it.
+    std::vector<double> gradient(end.y.size());
+    double first = 0.0;
+    if (!objective->Evaluate(end.y.data(), &first, gradient.data())) return end;
+    ceres::GradientProblemSolver::Options o;
+    o.line_search_direction_type = ceres::BFGS;
+    o.max_num_iterations = iterations;
+    o.function_tolerance = kFunctionTolerance;
+    o.logging_type = ceres::SILENT;
+    StopCallback stop(options_.should_stop);
+    o.callbacks.push_back(&stop);
+    ceres::GradientProblemSolver::Summary summary;
+    ceres::Solve(o, problem, end.y.data(), &summary);
+    end.ok = objective->Evaluate(end.y.data(), &end.cost, gradient.data());
+    end.value = objective->last_value();
+    return end;
+  }
+
+  // Inverse of the Hessian at y by central differences of gradients, mapped to
+  // lobe parameters. Empty where it is not positive definite or time ran out.
+  Eigen::MatrixXd Covariance(const End& end) const {
+    const auto n = static_cast<Eigen::Index>(end.y.size());
+    Eigen::MatrixXd hessian(n, n);
+    LightMode mode = end.mode;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (options_.should_stop && options_.should_stop()) return {};
+      Eigen::VectorXd side[2];
+      for (int s = 0; s < 2; ++s) {
+        std::vector<double> y = end.y;
+        y[i] += s == 0 ? kHessianStep : -kHessianStep;
+        LightMode at = mode;
+        MarginalObjective objective = Objective(&at);
+        double cost = 0.0;
+        side[s].resize(n);
+        if (!objective.Evaluate(y.data(), &cost, side[s].data())) return {};
+      }
+      hessian.col(i) = (side[0] - side[1]) / (2 * kHessianStep);
+    }
+    const Eigen::MatrixXd symmetric = 0.5 * (hessian + hessian.transpose());
+    const Eigen::LLT<Eigen::MatrixXd> llt(symmetric);
+    if (llt.info() != Eigen::Success) return {};
+    const Eigen::Index lobes = prior_.num_parameters();
+    const Eigen::MatrixXd inverse =
+        llt.solve(Eigen::MatrixXd::Identity(n, n)).topLeftCorner(lobes, lobes);
+    const Eigen::MatrixXd factor = prior_.factor.triangularView<Eigen::Lower>();
+    return factor * inverse * factor.transpose();
+  }
+
+ private:
+  const MaterialPrior& prior_;
+  const ReflectanceSearchOptions& options_;
+  HyperparameterPrior hyper_;
+  MarginalReflectance reflectance_;
+};
+
+std::vector<double> ToVector(const Eigen::VectorXd& v) {
+  return {v.data(), v.data() + v.size()};
+}
+
+}  // namespace
+
+StatusOr<ReflectanceSearchResult> SearchReflectance(
+    const NeuralBrdfModel& model, const MaterialPrior& prior,
+    const std::vector<ShadingPoint>& points,
+    const std::vector<double>& radiance,
+    const ReflectanceSearchOptions& options) {
+  CHECK(!prior.materials.empty());
+  if (GroupByNormal(points, radiance, options.coarse.cells).num_cells() == 0) {
+    return InvalidInput("image",
+                        "no pixel of the object, limb aside, is finite and "
+                        "positive in all three channels");
+  }
+  const auto stopped = [&] {
+    return options.should_stop && options.should_stop();
+  };
+  const auto report = [&](const std::string& stage, double cost,
+                          double misfit) {
+    if (options.report) options.report(stage, cost, misfit);
+  };
+  ReflectanceSearchResult result;
+  const Level coarse(model, prior, points, radiance, options.coarse, options);
+  const auto count = static_cast<int64_t>(prior.materials.size());
+  result.tried.resize(count);
+  // Whole materials in parallel: what each does inside then runs in its thread.
+  ParallelFor(count, options.num_threads, [&](int64_t i, int) {
+    const MaterialPrior::Material& m = prior.materials[i];
+    result.tried[i] = {m.name, std::numeric_limits<double>::infinity(),
+                       std::numeric_limits<double>::infinity(),
+                       ToVector(m.parameters)};
+    if (i > 0 && stopped()) return;
+    result.tried[i].first_cost = coarse.Rank(m.parameters);
+  });
+  std::stable_sort(result.tried.begin(), result.tried.end(),
+                   [](const TriedMaterial& a, const TriedMaterial& b) {
+                     return a.first_cost < b.first_cost;
+                   });
+  report("rank " + std::to_string(count) + " materials",
+         result.tried.front().first_cost, 0.0);
+  Level::End best;
+  std::string best_name = result.tried.front().name;
+  for (int k = 0; k < options.starts && k < count; ++k) {
+    if (k > 0 && stopped()) break;
+    TriedMaterial& tried = result.tried[k];
+    if (!std::isfinite(tried.first_cost)) break;
+    Level::End end =
+        coarse.Refine(Eigen::Map<const Eigen::VectorXd>(
+                          tried.parameters.data(),
+                          static_cast<Eigen::Index>(tried.parameters.size())),
+                      coarse.Start(), options.coarse_iterations);
+    if (!end.ok) continue;
+    LightMode unused;
+    tried.cost = end.cost;
+    tried.parameters =
+        ToVector(coarse.Objective(&unused).LobesOf(end.y.data()));
+    report("refine " + tried.name, end.cost, end.value.misfit);
+    if (end.cost < best.cost) {
+      best = std::move(end);
+      best_name = tried.name;
+    }
+  }
+  if (!best.ok) {
+    return Status(StatusCode::kNoImprovement,
+                  "no training material explains the image at all");
+  }
+  std::stable_sort(result.tried.begin(), result.tried.end(),
+                   [](const TriedMaterial& a, const TriedMaterial& b) {
+                     return a.cost < b.cost;
+                   });
+  const Level* level = &coarse;
+  std::unique_ptr<Level> fine;
+  LightMode unused;
+  if (options.fine_iterations > 0 && !stopped()) {
+    fine = std::make_unique<Level>(model, prior, points, radiance, options.fine,
+                                   options);
+    const MarginalObjective objective = coarse.Objective(&unused);
+    Level::End end = fine->Refine(objective.LobesOf(best.y.data()),
+                                  objective.HyperparametersOf(best.y.data()),
+                                  options.fine_iterations);
+    if (end.ok) {
+      level = fine.get();
+      best = std::move(end);
+      report("finish " + best_name, best.cost, best.value.misfit);
+    }
+  }
+  const MarginalObjective objective = level->Objective(&unused);
+  const MarginalHyperparameters hyper =
+      objective.HyperparametersOf(best.y.data());
+  result.parameters = ToVector(objective.LobesOf(best.y.data()));
+  result.start = best_name;
+  result.cost = best.cost;
+  result.misfit = best.value.misfit;
+  result.sigma = std::exp(hyper.log_sigma);
+  result.amplitude = std::exp(hyper.log_amplitude);
+  if (options.covariance && !stopped()) {
+    result.covariance = level->Covariance(best);
+  }
+  const MarginalReflectance& reflectance = level->reflectance();
+  result.map_width = reflectance.resolution().map_width;
+  result.map_height = reflectance.resolution().map_height;
+  result.log_radiance =
+      ToVector((best.mode.l.array() + best.mode.level).matrix());
+  result.log_radiance_std = ToVector(
+      reflectance.likelihood()
+          .LightVariance(reflectance.Matrices(result.parameters.data()), hyper,
+                         best.mode)
+          .cwiseSqrt());
+  return result;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,72 @@
+// The reflectance of highest posterior probability with the light integrated
+// out: many materials cheaply, the best few refined, the best one finished.
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/render/scene.h"
+#include "solvers/marginal/marginal_reflectance.h"
+#include "solvers/marginal/material_prior.h"
+
+namespace ibrdf {
+
+struct ReflectanceSearchOptions {
+  LightProcess process;
+  MarginalResolution coarse = {{12, 4, 0.2}, 24, 12, {48, 20, 12}};
+  MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}};
+  int starts = 3;              // that are refined at the coarse resolution
+  int coarse_iterations = 30;  // of BFGS, each start
+  int fine_iterations = 30;
+  // Standard deviation of log radiance between model and image, of a cell. Not
+  // the pixels' noise, which a cell averages out, but what no lobes of the
+  // model can render: free to fall to the noise, it would have light and
+  // reflectance bend to every error of the model.
+  double sigma = 0.03;
+  double log_sigma_std = 0.1;
+  double log_amplitude_std = 0.7;
+  bool covariance = true;
+  int num_threads = 0;
+  // Checked between steps; true ends early with the best so far.
+  std::function<bool()> should_stop;
+  // After each material refined and the end; may be empty.
+  std::function<void(const std::string& stage, double cost, double misfit)>
+      report;
+};
+
+// A start and where it led, costs in nats at the coarse resolution.
+struct TriedMaterial {
+  std::string name;
+  double first_cost = 0.0;
+  double cost = 0.0;
+  std::vector<double> parameters;  // at the end
+};
+
+struct ReflectanceSearchResult {
+  std::vector<double> parameters;  // as LobeModel's
+  std::string start;               // the material that it began from
+  double cost = 0.0;               // -log posterior, nats, up to a constant
+  double misfit = 0.0;             // mean |log E - log I| over cells
+  double sigma = 0.0;
+  double amplitude = 0.0;  // of the light's process, times its variances
+  // By cost: the refined ones, then the others by their first cost.
+  std::vector<TriedMaterial> tried;
+  // Of the parameters (Laplace); empty where it was not asked for, time ran
+  // out, or the end is no minimum.
+  Eigen::MatrixXd covariance;
+  // Most probable log radiance and its standard deviation given the
+  // reflectance, [3][H W] of the resolution.
+  int map_width = 0, map_height = 0;
+  std::vector<double> log_radiance, log_radiance_std;
+};
+
+// kInvalidInput where no point can be used. radiance [points][3].
+StatusOr<ReflectanceSearchResult> SearchReflectance(
+    const NeuralBrdfModel& model, const MaterialPrior& prior,
+    const std::vector<ShadingPoint>& points,
+    const std::vector<double>& radiance,
+    const ReflectanceSearchOptions& options);
+
+}  // namespace ibrdf
