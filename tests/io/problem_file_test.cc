@@ -141,8 +141,8 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
        "reflectance: expected a map of model, lobes, prior_sigma or known, "
        "found a list of 1"},
       {least + "solver: {method: newton}",
-       "solver.method: expected auto, gauss_newton, lbfgs or adam, found "
-       "'newton'"},
+       "solver.method: expected auto, alternating, gauss_newton, lbfgs, adam "
+       "or trust_region, found 'newton'"},
       {least + "solver: {seconds: 1e400}", "solver.seconds: expected"},
       {least + "likelihood: {scale: many}", "likelihood.scale: expected"},
       {least + "likelihood: {scale: []}", "expected auto or a number"},
