@@ -1,5 +1,5 @@
-// The map for a fixed BRDF, by Gauss-Newton or L-BFGS of the joint estimate with
-// the reflectance known.
+// The map for a fixed BRDF, by Gauss-Newton or L-BFGS of the joint estimate
+// with the reflectance known.
 #pragma once
 #include <functional>
 #include <vector>

@@ -124,10 +124,10 @@ JointCost JointObjective::Render(const JointState& state, bool linearise,
   } else {
     cost.illumination_prior = light_->Evaluate(state.light.data(), &map_);
   }
-  const bool known_operator = !lobes_unknown() ||
-                              (operator_.has_value() &&
-                               operator_lobes_ == state.lobes) ||
-                              linearise || num_lobe_parameters() == 0;
+  const bool known_operator =
+      !lobes_unknown() ||
+      (operator_.has_value() && operator_lobes_ == state.lobes) || linearise ||
+      num_lobe_parameters() == 0;
   if (known_operator) {
     OperatorOf(state).Apply(map_.data(), E_.data());
   } else {
@@ -180,14 +180,13 @@ JointCost JointObjective::Linearise(const JointState& state) {
   const std::vector<double> adjoint = AdjointOf(derivatives_);
   gradient_.setZero(size());
   if (nl > 0) {
-    lobe_jacobian_ =
-        lobes_->RadianceJacobian(state.lobes.data(), map_.data());
+    lobe_jacobian_ = lobes_->RadianceJacobian(state.lobes.data(), map_.data());
     lobe_prior_gradient_.setZero(nl);
     lobe_prior_hessian_.setZero(nl, nl);
     lobes_->Prior(state.lobes.data(), lobe_prior_gradient_.data(),
                   &lobe_prior_hessian_);
-    gradient_.head(nl) = lobe_prior_gradient_ + lobe_jacobian_.transpose() *
-                                                    Array(adjoint).matrix();
+    gradient_.head(nl) = lobe_prior_gradient_ +
+                         lobe_jacobian_.transpose() * Array(adjoint).matrix();
   }
   if (np > 0) light_->Gradient(ByMap(adjoint.data()), gradient_.data() + nl);
   has_point_ = true;
@@ -282,8 +281,7 @@ Eigen::VectorXd JointObjective::PriorProduct(const Eigen::VectorXd& v) {
   if (np > 0) {
     std::vector<float> d_log, d_map;
     light_->Jvp(v.data() + nl, &d_log, &d_map);
-    light_->Product(v.data() + nl, d_log,
-                    std::vector<float>(map_.size(), 0.0f),
+    light_->Product(v.data() + nl, d_log, std::vector<float>(map_.size(), 0.0f),
                     product.data() + nl);
   }
   return product;

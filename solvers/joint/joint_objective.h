@@ -99,9 +99,7 @@ class JointObjective {
   JointCost Linearise(const JointState& state);
 
   const Eigen::VectorXd& gradient() const { return gradient_; }
-  const std::vector<double>& residuals() const {
-    return derivatives_.residual;
-  }
+  const std::vector<double>& residuals() const { return derivatives_.residual; }
   // dE along v [size]; gradient [size] of sum adjoint . E.
   Eigen::VectorXd RadianceJvp(const Eigen::VectorXd& v);
   Eigen::VectorXd RadianceVjp(const Eigen::VectorXd& adjoint);

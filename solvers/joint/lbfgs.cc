@@ -30,8 +30,7 @@ class WhitenedObjective final : public ceres::FirstOrderFunction {
     run_->Offer(state, c);
     *cost = c.total();
     if (gradient != nullptr) {
-      Eigen::Map<Eigen::VectorXd>(gradient, std_.size()) =
-          g.cwiseProduct(std_);
+      Eigen::Map<Eigen::VectorXd>(gradient, std_.size()) = g.cwiseProduct(std_);
     }
     return true;
   }

@@ -84,8 +84,8 @@ void LightBlock::Vjp(const std::vector<float>& by_map, double* gradient) {
 void LightBlock::Gradient(const std::vector<float>& by_map, double* gradient) {
   Pull(by_map, prior_by_log_, gradient);
   for (size_t i = 0; i < mean_.size(); ++i) {
-    gradient[i] += inverse_variance_[i] *
-                   (static_cast<double>(parameters_[i]) - mean_[i]);
+    gradient[i] +=
+        inverse_variance_[i] * (static_cast<double>(parameters_[i]) - mean_[i]);
   }
 }
 

@@ -44,8 +44,9 @@ void LobeBlock::ReverseGradient(const double* parameters, const float* map,
     const double* lobe = parameters + first;
     double colour[3];
     for (int c = 0; c < 3; ++c) {
-      colour[c] = std::exp(std::min(lobe[codes + c], LobeModel::kMaxLogColour)) *
-                  kMerlScale[c];
+      colour[c] =
+          std::exp(std::min(lobe[codes + c], LobeModel::kMaxLogColour)) *
+          kMerlScale[c];
     }
     // by_shape: the gradient in the lobe's shape s_k, which all channels share.
     std::vector<double> by_shape(nodes);

@@ -193,6 +193,19 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
   }
 }
 
+TEST_F(ProblemFile, EveryMethodIsReadByItsName) {
+  for (int m = 0; m < kNumSolverMethods; ++m) {
+    const auto method = static_cast<SolverMethod>(m);
+    const std::string name = SolverMethodName(method);
+    const StatusOr<Problem> p = Read(kLeast, {"solver.method=" + name});
+    ASSERT_TRUE(p.ok()) << p.status().message();
+    EXPECT_EQ(method, p->solver.method);
+    EXPECT_EQ(name, ProblemToJson(*p)["solver"]["method"]);
+  }
+  EXPECT_EQ(SolverMethod::kTrustRegion,
+            Read(kLeast, {"solver.method=trust_region"})->solver.method);
+}
+
 TEST_F(ProblemFile, OverridesAreCheckedAsTheFileIs) {
   const StatusOr<Problem> read =
       Read(kLeast, {"solver.seconds=7", "image.file=/x/b.exr",
