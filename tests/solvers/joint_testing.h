@@ -11,13 +11,21 @@
 namespace ibrdf {
 namespace testing {
 
+// So few weights that dense matrices of them take no time.
+inline IlluminationUnetOptions TiniestUnetOptions() {
+  IlluminationUnetOptions options = TinyUnetOptions();
+  options.channels = 2;
+  options.skip_channels = 1;
+  return options;
+}
+
 // A sphere of some 100 points, two lobes, a map of 16x8 of a tiny UNet or of
 // free texels; observations without noise of the scene's lobes under SmoothMap.
 struct JointScene {
   explicit JointScene(bool unet, int size = 12)
       : points(SpherePoints(size)),
         transport(points, 8, 16, TinyTransportOptions()),
-        light(unet ? MakeUnetIllumination(TinyUnetOptions())
+        light(unet ? MakeUnetIllumination(TiniestUnetOptions())
                    : MakeFreeIllumination(16, 8)) {
     truth = TinyScene().Parameters();
     std::vector<float> fields;
