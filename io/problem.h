@@ -83,7 +83,19 @@ struct EffectsSpec {
   std::vector<Effect> list;  // each at most once, all available
 };
 
-enum class SolverMethod { kAuto, kGaussNewton, kLbfgs, kAdam };
+// Of the joint estimate; kAuto: the program decides.
+enum class SolverMethod {
+  kAuto,
+  kAlternating,
+  kGaussNewton,
+  kLbfgs,
+  kAdam,
+  kTrustRegion,
+};
+inline constexpr int kNumSolverMethods = 6;
+// Name in problem files, e.g. "gauss_newton".
+const char* SolverMethodName(SolverMethod method);
+
 struct SolverSpec {
   SolverMethod method = SolverMethod::kAuto;
   double seconds = 120.0;     // wall-clock budget, > 0

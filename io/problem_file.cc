@@ -274,8 +274,11 @@ void ReadSolver(ConfigContext* context, const ConfigNode* node,
   ConfigReader reader(
       context, node, "solver",
       {"method", "seconds", "tolerance", "max_iterations", "seed"});
-  ReadChoice(&reader, "method", {"auto", "gauss_newton", "lbfgs", "adam"},
-             &solver->method);
+  Strings methods;
+  for (int m = 0; m < kNumSolverMethods; ++m) {
+    methods.emplace_back(SolverMethodName(static_cast<SolverMethod>(m)));
+  }
+  ReadChoice(&reader, "method", methods, &solver->method);
   reader.Number("seconds", {0.0, kMaxSeconds, false, true}, &solver->seconds);
   reader.Number("tolerance", {0.0, 1.0, true, false}, &solver->tolerance);
   reader.Integer("max_iterations", 0, 100000000, &solver->max_iterations);
@@ -288,6 +291,24 @@ void ReadSolver(ConfigContext* context, const ConfigNode* node,
 }
 
 }  // namespace
+
+const char* SolverMethodName(SolverMethod method) {
+  switch (method) {
+    case SolverMethod::kAuto:
+      return "auto";
+    case SolverMethod::kAlternating:
+      return "alternating";
+    case SolverMethod::kGaussNewton:
+      return "gauss_newton";
+    case SolverMethod::kLbfgs:
+      return "lbfgs";
+    case SolverMethod::kAdam:
+      return "adam";
+    case SolverMethod::kTrustRegion:
+      return "trust_region";
+  }
+  return "";
+}
 
 const char* EffectName(Effect effect) {
   switch (effect) {

@@ -112,21 +112,7 @@ json EffectsJson(const EffectsSpec& effects) {
 }
 
 json SolverJson(const SolverSpec& solver) {
-  const char* method = "auto";
-  switch (solver.method) {
-    case SolverMethod::kAuto:
-      break;
-    case SolverMethod::kGaussNewton:
-      method = "gauss_newton";
-      break;
-    case SolverMethod::kLbfgs:
-      method = "lbfgs";
-      break;
-    case SolverMethod::kAdam:
-      method = "adam";
-      break;
-  }
-  json out = {{"method", method},
+  json out = {{"method", SolverMethodName(solver.method)},
               {"seconds", solver.seconds},
               {"tolerance", solver.tolerance},
               {"max_iterations", solver.max_iterations}};

@@ -1,6 +1,7 @@
 #include "solvers/illumination_model.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ibrdf {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 constexpr float kBiasStd = 10.0f;
 // Free texels: log radiance of natural light spreads over a few units.
 constexpr float kTexelStd = 3.0f;
+constexpr float kMaxLogRadiance = 60.0f;
 
 class UnetIllumination final : public IlluminationModel {
  public:
@@ -89,6 +91,18 @@ class FreeIllumination final : public IlluminationModel {
 };
 
 }  // namespace
+
+void ToRadianceMap(const std::vector<float>& log_radiance,
+                   std::vector<float>* map) {
+  map->resize(log_radiance.size());
+  const size_t texels = log_radiance.size() / 3;
+  for (size_t t = 0; t < texels; ++t) {
+    for (size_t c = 0; c < 3; ++c) {
+      (*map)[3 * t + c] = std::exp(std::clamp(
+          log_radiance[c * texels + t], -kMaxLogRadiance, kMaxLogRadiance));
+    }
+  }
+}
 
 std::unique_ptr<IlluminationModel> MakeUnetIllumination(
     const IlluminationUnetOptions& options) {

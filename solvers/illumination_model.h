@@ -37,6 +37,11 @@ class IlluminationModel {
   const int width_, height_;
 };
 
+// exp of planar log radiance [3][H][W] as a map [H, W, 3]; clamped so that
+// nothing overflows.
+void ToRadianceMap(const std::vector<float>& log_radiance,
+                   std::vector<float>* map);
+
 std::unique_ptr<IlluminationModel> MakeUnetIllumination(
     const IlluminationUnetOptions& options);
 std::unique_ptr<IlluminationModel> MakeFreeIllumination(int width, int height);

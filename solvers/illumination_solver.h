@@ -1,5 +1,5 @@
-// The map for a fixed BRDF: matrix-free Gauss-Newton with conjugate gradients
-// through UNet and transport, or Ceres' L-BFGS on the same objective.
+// The map for a fixed BRDF, by Gauss-Newton or L-BFGS of the joint estimate
+// with the reflectance known.
 #pragma once
 #include <functional>
 #include <vector>
@@ -10,15 +10,8 @@
 
 namespace ibrdf {
 
-// 1/2 |(Phi - mean) / (sigma std)|^2 on the parameters, and on the map's log
-// radiance l a robust magnitude of differences between neighbouring texels,
-//   sum over edges share * rho(|l_i - l_j| / (edge_scale sqrt(angle_ij))),
-// rho(t) = sqrt(t^2 + edge_delta^2) - edge_delta, |.| over the three channels,
-// share = solid angle of the texel relative to one at the equator. Log radiance
-// of natural light differs over an angle by about its root, with the heavy
-// tails of lamps, horizons and windows: the mean of |l_i - l_j| / sqrt(angle)
-// per channel is 0.25 to 1.8, 0.68 on average, over nine outdoor and indoor
-// maps at 64x32 (experiments/light_statistics). edge_scale 0 turns it off.
+// 1/2 |(Phi - mean) / (sigma std)|^2 on the parameters, and EdgePrior on the
+// map; edge_scale 0 turns that off.
 struct IlluminationPriorOptions {
   double weight_sigma = 1.0;
   double edge_scale = 1.0;
@@ -58,10 +51,5 @@ IlluminationCost SolveIllumination(const LightOperator& light,
                                    const std::vector<float>& prior_mean,
                                    IlluminationModel* model,
                                    std::vector<float>* parameters);
-
-// exp of planar log radiance [3][H][W] as a map [H, W, 3]; clamped so that
-// nothing overflows.
-void ToRadianceMap(const std::vector<float>& log_radiance,
-                   std::vector<float>* map);
 
 }  // namespace ibrdf

@@ -47,11 +47,6 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
                                             uint64_t default_seed,
                                             int num_threads) {
   IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
-  if (problem.solver.method == SolverMethod::kAdam) {
-    return InvalidInput(problem.path + ": solver.method",
-                        "adam is not available in this version, expected auto, "
-                        "gauss_newton or lbfgs");
-  }
   InverseProblem inverse;
   inverse.kind = problem.kind;
   inverse.lobes = problem.reflectance.lobes;

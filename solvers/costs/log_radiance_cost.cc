@@ -1,7 +1,5 @@
 #include "solvers/costs/log_radiance_cost.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -12,20 +10,13 @@ namespace {
 bool FillResiduals(const std::vector<double>& E, const Observations& observed,
                    const RobustLogLikelihood& likelihood, double* residuals,
                    std::vector<double>* dr_dE) {
-  if (dr_dE != nullptr) dr_dE->assign(E.size(), 0.0);
-  for (size_t i = 0; i < E.size(); ++i) {
-    residuals[i] = 0.0;
-    if (!observed.valid[i / 3]) continue;
-    if (!std::isfinite(E[i])) return false;
-    const double e = std::max(E[i], 0.0) + likelihood.epsilon;
-    const double t =
-        (std::log(e) - std::log(observed.radiance[i] + likelihood.epsilon)) /
-        likelihood.scale;
-    double dr_dt = 0.0;
-    residuals[i] = RobustResidual(t, likelihood.delta, &dr_dt);
-    if (dr_dE != nullptr) (*dr_dE)[i] = dr_dt / (likelihood.scale * e);
-  }
-  return true;
+  LikelihoodDerivatives derivatives;
+  const LikelihoodValue value =
+      EvaluateLikelihood(E, observed, likelihood, &derivatives);
+  std::copy(derivatives.residual.begin(), derivatives.residual.end(),
+            residuals);
+  if (dr_dE != nullptr) *dr_dE = std::move(derivatives.d_residual);
+  return std::isfinite(value.cost);
 }
 
 void ScaleRows(const std::vector<double>& dr_dE, const std::vector<double>& dE,
@@ -39,22 +30,6 @@ void ScaleRows(const std::vector<double>& dr_dE, const std::vector<double>& dE,
 }
 
 }  // namespace
-
-Observations MakeObservations(const std::vector<double>& radiance) {
-  Observations o;
-  o.radiance = radiance;
-  o.valid.resize(radiance.size() / 3);
-  for (size_t i = 0; i < o.valid.size(); ++i) {
-    bool valid = true;
-    for (int c = 0; c < 3; ++c) {
-      const double v = radiance[3 * i + c];
-      valid &= std::isfinite(v) && v > 0.0;
-    }
-    o.valid[i] = valid;
-    o.num_valid += valid;
-  }
-  return o;
-}
 
 bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
                      const double* parameters, const float* map,

@@ -8,18 +8,9 @@
 #include "ibrdf/brdf/lobe_model.h"
 #include "ibrdf/light/illumination_unet.h"
 #include "ibrdf/render/transport.h"
-#include "solvers/costs/robust_log_residual.h"
+#include "solvers/costs/log_likelihood.h"
 
 namespace ibrdf {
-
-// log radiance of observed points, [points][3] radiance; points whose three
-// values are not all finite and positive take no part.
-struct Observations {
-  std::vector<double> radiance;  // [points * 3]
-  std::vector<char> valid;       // [points]
-  int num_valid = 0;
-};
-Observations MakeObservations(const std::vector<double>& radiance);
 
 // Residuals [points * 3], row i * 3 + c:
 //   r_ic = RobustResidual((log(E_ic + eps) - log(I_ic + eps)) / b),

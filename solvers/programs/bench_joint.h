@@ -74,7 +74,8 @@ inline void AddJointExperiment(CLI::App* app, BenchSession* session) {
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
   joint->add_option("--method", options.method, "of the solver")
-      ->check(CLI::IsMember({"auto", "gauss_newton", "lbfgs", "adam"}))
+      ->check(CLI::IsMember({"auto", "alternating", "gauss_newton", "lbfgs",
+                             "adam", "trust_region"}))
       ->capture_default_str();
   joint
       ->add_option("--solver-seconds", options.solver_seconds,

@@ -141,8 +141,8 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
        "reflectance: expected a map of model, lobes, prior_sigma or known, "
        "found a list of 1"},
       {least + "solver: {method: newton}",
-       "solver.method: expected auto, gauss_newton, lbfgs or adam, found "
-       "'newton'"},
+       "solver.method: expected auto, alternating, gauss_newton, lbfgs, adam "
+       "or trust_region, found 'newton'"},
       {least + "solver: {seconds: 1e400}", "solver.seconds: expected"},
       {least + "likelihood: {scale: many}", "likelihood.scale: expected"},
       {least + "likelihood: {scale: []}", "expected auto or a number"},
@@ -191,6 +191,19 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
     EXPECT_NE(std::string::npos, message.find(c.message)) << c.text << "\n"
                                                           << message;
   }
+}
+
+TEST_F(ProblemFile, EveryMethodIsReadByItsName) {
+  for (int m = 0; m < kNumSolverMethods; ++m) {
+    const auto method = static_cast<SolverMethod>(m);
+    const std::string name = SolverMethodName(method);
+    const StatusOr<Problem> p = Read(kLeast, {"solver.method=" + name});
+    ASSERT_TRUE(p.ok()) << p.status().message();
+    EXPECT_EQ(method, p->solver.method);
+    EXPECT_EQ(name, ProblemToJson(*p)["solver"]["method"]);
+  }
+  EXPECT_EQ(SolverMethod::kTrustRegion,
+            Read(kLeast, {"solver.method=trust_region"})->solver.method);
 }
 
 TEST_F(ProblemFile, OverridesAreCheckedAsTheFileIs) {

@@ -132,10 +132,6 @@ TEST_F(SolveProblemTest, ModelWithoutCodesIsRefused) {
   ExpectRefused({"reflectance.model=bare.ibrdf"}, "bare.ibrdf");
 }
 
-TEST_F(SolveProblemTest, MethodThatIsNotThereIsRefused) {
-  ExpectRefused({"solver.method=adam"}, "solver.method");
-}
-
 TEST_F(SolveProblemTest, ResultsAreWholeAndReadBack) {
   const StatusOr<InverseProblem> p = Load({});
   ASSERT_TRUE(p.ok()) << p.status().message();

@@ -1,0 +1,62 @@
+#include "solvers/costs/log_likelihood.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ibrdf {
+
+Observations MakeObservations(const std::vector<double>& radiance) {
+  Observations o;
+  o.radiance = radiance;
+  o.valid.resize(radiance.size() / 3);
+  for (size_t i = 0; i < o.valid.size(); ++i) {
+    bool valid = true;
+    for (int c = 0; c < 3; ++c) {
+      const double v = radiance[3 * i + c];
+      valid &= std::isfinite(v) && v > 0.0;
+    }
+    o.valid[i] = valid;
+    o.num_valid += valid;
+  }
+  return o;
+}
+
+LikelihoodValue EvaluateLikelihood(const std::vector<double>& E,
+                                   const Observations& observed,
+                                   const RobustLogLikelihood& likelihood,
+                                   LikelihoodDerivatives* derivatives) {
+  CHECK_EQ(E.size(), observed.radiance.size());
+  const RobustLogLikelihood& l = likelihood;
+  if (derivatives != nullptr) {
+    derivatives->residual.assign(E.size(), 0.0);
+    derivatives->d_residual.assign(E.size(), 0.0);
+    derivatives->weight.assign(E.size(), 0.0);
+  }
+  LikelihoodValue value;
+  for (size_t i = 0; i < E.size(); ++i) {
+    if (!observed.valid[i / 3]) continue;
+    if (!std::isfinite(E[i])) {
+      value.cost = value.misfit = std::numeric_limits<double>::quiet_NaN();
+      return value;
+    }
+    const double e = std::max(E[i], 0.0) + l.epsilon;
+    const double d = std::log(e) - std::log(observed.radiance[i] + l.epsilon);
+    const double t = d / l.scale;
+    double dr_dt = 0.0;
+    const double r = RobustResidual(t, l.delta, &dr_dt);
+    value.cost += r * r / 2;
+    value.misfit += std::abs(d);
+    if (derivatives == nullptr) continue;
+    const double dt = 1.0 / (l.scale * e);
+    derivatives->residual[i] = r;
+    derivatives->d_residual[i] = dr_dt * dt;
+    derivatives->weight[i] = dt * dt / std::hypot(t, l.delta);  // rho'(t) / t
+  }
+  value.misfit /= std::max(3.0 * observed.num_valid, 1.0);
+  return value;
+}
+
+}  // namespace ibrdf

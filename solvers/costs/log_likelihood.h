@@ -1,0 +1,42 @@
+// The image likelihood of rendered radiance, with the derivatives that every
+// solver takes.
+#pragma once
+#include <vector>
+
+#include "solvers/costs/robust_log_residual.h"
+
+namespace ibrdf {
+
+// log radiance of observed points, [points][3] radiance; points whose three
+// values are not all finite and positive take no part.
+struct Observations {
+  std::vector<double> radiance;  // [points * 3]
+  std::vector<char> valid;       // [points]
+  int num_valid = 0;
+};
+Observations MakeObservations(const std::vector<double>& radiance);
+
+// Per value of E, 0 where the point takes no part:
+//   residual_i = RobustResidual((log(E_i + eps) - log(I_i + eps)) / b),
+// so that sum residual^2 / 2 is the likelihood.
+struct LikelihoodDerivatives {
+  std::vector<double> residual;
+  std::vector<double> d_residual;  // d residual / dE
+  // Of the iteratively reweighted squares that touch the likelihood at E with
+  // its slope: sum weight_i dE_i^2 / 2 has the curvature of a Gauss-Newton
+  // step.
+  std::vector<double> weight;
+};
+
+struct LikelihoodValue {
+  double cost = 0.0;    // nats; NaN where E is not finite
+  double misfit = 0.0;  // mean |log E - log I|; 0 without points
+};
+
+// E [points * 3]; derivatives may be null.
+LikelihoodValue EvaluateLikelihood(const std::vector<double>& E,
+                                   const Observations& observed,
+                                   const RobustLogLikelihood& likelihood,
+                                   LikelihoodDerivatives* derivatives);
+
+}  // namespace ibrdf

@@ -1,0 +1,59 @@
+// The unknown illumination of the joint estimate: a map as a function of
+// parameters, with its priors.
+#pragma once
+#include <vector>
+
+#include "solvers/illumination_model.h"
+#include "solvers/joint/light_prior.h"
+
+namespace ibrdf {
+
+// map [H, W, 3] = exp(model(parameters)); prior
+//   1/2 sum ((p_i - mean_i) / (sigma std_i))^2 + sum of light priors(log map),
+// std = model.PriorStd(). Keeps the point of its last Linearise.
+class LightBlock {
+ public:
+  // `model` and `priors` must outlive *this.
+  LightBlock(IlluminationModel* model, std::vector<float> mean, double sigma,
+             std::vector<LightPrior*> priors);
+
+  int num_parameters() const { return model_->num_parameters(); }
+  int num_texel_values() const { return model_->num_outputs(); }
+  const std::vector<double>& inverse_variance() const {
+    return inverse_variance_;
+  }
+  void set_mean(std::vector<float> mean);
+
+  // The map and the prior's cost.
+  double Evaluate(const float* parameters, std::vector<float>* map);
+  // And the point of what follows.
+  double Linearise(const float* parameters, std::vector<float>* map);
+
+  // d map [H, W, 3] and d log map [3][H][W] along v [parameters].
+  void Jvp(const double* v, std::vector<float>* d_log,
+           std::vector<float>* d_map);
+  // gradient [parameters] of sum by_map . map.
+  void Vjp(const std::vector<float>& by_map, double* gradient);
+  // The same plus the prior's gradient.
+  void Gradient(const std::vector<float>& by_map, double* gradient);
+  // Vjp(by_map) plus the prior's Gauss-Newton product with the v of d_log.
+  void Product(const double* v, const std::vector<float>& d_log,
+               const std::vector<float>& by_map, double* product);
+
+ private:
+  double PriorCost(const float* parameters, float* by_log);
+  // out = J^T (by_log + map * by_map)
+  void Pull(const std::vector<float>& by_map, std::vector<float> by_log,
+            double* out);
+
+  IlluminationModel* model_;
+  std::vector<float> mean_;
+  const std::vector<LightPrior*> priors_;
+  std::vector<double> inverse_variance_;
+  std::vector<float> log_map_;
+  // The point of the last Linearise.
+  std::vector<float> parameters_, map_, prior_by_log_;
+  std::vector<float> tangent_, by_parameter_;
+};
+
+}  // namespace ibrdf

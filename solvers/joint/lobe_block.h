@@ -1,0 +1,55 @@
+// The unknown reflectance of the joint estimate: lobes with their prior.
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/render/transport.h"
+#include "solvers/costs/prior_costs.h"
+
+namespace ibrdf {
+
+using RowMajorMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// Parameters as LobeModel's. Immutable.
+class LobeBlock {
+ public:
+  // `transport` and `lobes` must outlive *this.
+  LobeBlock(const Transport* transport, const LobeModel* lobes,
+            const LobePrior& prior);
+
+  int num_parameters() const { return lobes_->num_parameters(); }
+  const LobeModel& lobes() const { return *lobes_; }
+  const Transport& transport() const { return *transport_; }
+  const LobePrior& prior() const { return prior_; }
+  // Of the Gaussians of codes and colours.
+  const std::vector<double>& inverse_variance() const {
+    return inverse_variance_;
+  }
+
+  BrdfGrid Grid(const double* parameters) const;
+
+  // dE [points * 3, parameters] under a map [H, W, 3]: one scalar field per
+  // lobe and code entry, rendered together.
+  RowMajorMatrix RadianceJacobian(const double* parameters,
+                                  const float* map) const;
+  // Gradient [parameters] of sum adjoint . E in one reverse pass, which costs
+  // two renders whatever the number of parameters.
+  void ReverseGradient(const double* parameters, const float* map,
+                       const std::vector<double>& adjoint,
+                       double* gradient) const;
+
+  // Cost of the prior; with `gradient` adds its gradient, with `hessian` its
+  // Gauss-Newton matrix (either may be null).
+  double Prior(const double* parameters, double* gradient,
+               Eigen::MatrixXd* hessian) const;
+
+ private:
+  const Transport* transport_;
+  const LobeModel* lobes_;
+  const LobePrior prior_;
+  std::vector<double> inverse_variance_;
+};
+
+}  // namespace ibrdf
