@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 
+#include "solvers/costs/material_prior_cost.h"
 #include "solvers/stop_callback.h"
 
 namespace ibrdf {
@@ -16,9 +17,13 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
   problem.AddResidualBlock(new LobeRadianceCost(&transport, &lobes, map,
                                                 &observed, options.likelihood),
                            nullptr, parameters->data());
-  problem.AddResidualBlock(
-      new LobePriorCost(lobes.num_lobes(), lobes.code_size(), options.prior),
-      nullptr, parameters->data());
+  ceres::CostFunction* const prior =
+      options.materials != nullptr
+          ? static_cast<ceres::CostFunction*>(
+                new MaterialPriorCost(options.materials))
+          : new LobePriorCost(lobes.num_lobes(), lobes.code_size(),
+                              options.prior);
+  problem.AddResidualBlock(prior, nullptr, parameters->data());
   ceres::Solver::Options o;
   o.linear_solver_type = ceres::DENSE_QR;
   // Few parameters: the trust region may start wide.

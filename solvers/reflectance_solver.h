@@ -6,12 +6,15 @@
 
 #include "solvers/costs/log_radiance_cost.h"
 #include "solvers/costs/prior_costs.h"
+#include "solvers/material_prior.h"
 
 namespace ibrdf {
 
 struct ReflectanceStepOptions {
   RobustLogLikelihood likelihood;
   LobePrior prior;
+  // In place of `prior` where it is not null.
+  const MaterialPrior* materials = nullptr;
   int max_iterations = 10;
   double tolerance = 1e-4;  // relative decrease of the cost to stop at
   std::function<bool()> should_stop;

@@ -17,6 +17,12 @@ Eigen::Matrix3d GreyAndChroma(double grey, double chroma) {
 
 }  // namespace
 
+double LightProcess::VarianceWithin(double degrees) const {
+  // The mean distance of two points in a unit square is 0.52.
+  return (luminance_variance + chroma_variance * 2.0 / 3.0) *
+         (1.0 - std::exp(-0.52 * degrees / correlation_degrees));
+}
+
 Eigen::Matrix3d LightProcess::Local() const {
   return GreyAndChroma(luminance_variance, chroma_variance);
 }

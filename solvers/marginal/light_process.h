@@ -22,6 +22,10 @@ struct LightProcess {
   double level_variance = 4.0;
   double level_chroma_variance = 0.12;
 
+  // Variance of one channel's log radiance inside a square of that side, at
+  // amplitude 1.
+  double VarianceWithin(double degrees) const;
+
   Eigen::Matrix3d Local() const;  // M
   Eigen::Matrix3d Level() const;  // B
 };

@@ -74,6 +74,24 @@ double MarginalLikelihood::LevelFor(
   return sum / static_cast<double>(y_.size());
 }
 
+Eigen::VectorXd MarginalLikelihood::Sharpness(
+    const std::array<RowMatrix, 3>& matrices) const {
+  const Eigen::Index P = num_points_;
+  Eigen::VectorXd sharpness(3 * P);
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::ArrayXd sums =
+        matrices[c].rowwise().sum().array().max(kSmallestRadiance);
+    sharpness.segment(c * P, P) =
+        matrices[c].rowwise().squaredNorm().array() / sums.square();
+  }
+  return sharpness;
+}
+
+Eigen::VectorXd MarginalLikelihood::NoiseVariance(
+    const Eigen::VectorXd& sharpness, double sigma, double amplitude) const {
+  return (amplitude * texel_variance_ * sharpness).array() + sigma * sigma;
+}
+
 Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Eigen::VectorXd& g) const {
   const Eigen::Index t = num_texels();
   const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3>> by_channel(
@@ -112,8 +130,8 @@ MarginalLikelihood::Point MarginalLikelihood::At(
 }
 
 std::shared_ptr<const LightLinearisation> MarginalLikelihood::Linearise(
-    const std::array<RowMatrix, 3>& matrices, double sigma, double amplitude,
-    const Point& point) const {
+    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    double amplitude, const Point& point) const {
   const Eigen::Index t = num_texels(), P = num_points_;
   auto linear = std::make_shared<LightLinearisation>();
   for (int c = 0; c < 3; ++c) {
@@ -134,7 +152,7 @@ std::shared_ptr<const LightLinearisation> MarginalLikelihood::Linearise(
     A.block(c * P, d * P, P, P) =
         (amplitude * local_(c, d) * block).array() + level_(c, d);
   });
-  A.diagonal().array() += sigma * sigma;
+  A.diagonal() += noise;
   if (!A.allFinite() || !Factorise(&A)) return nullptr;
   return linear;
 }
@@ -175,8 +193,14 @@ MarginalValue MarginalLikelihood::Evaluate(
   const Eigen::Index t = num_texels(), P = num_points_;
   const double sigma = std::exp(hyper.log_sigma);
   const double amplitude = std::exp(hyper.log_amplitude);
-  const double inverse_variance = 1.0 / (sigma * sigma);
+  const Eigen::VectorXd noise =
+      NoiseVariance(Sharpness(matrices), sigma, amplitude);
+  const Eigen::VectorXd weight = noise.cwiseInverse();
+  const auto likelihood_of = [&](const Point& at) {
+    return 0.5 * at.residual.cwiseAbs2().dot(weight);
+  };
   MarginalValue value;
+  if (!weight.allFinite()) return value;
   if (mode->l.size() == 0) {
     mode->level = LevelFor(matrices);
     mode->l = mode->dual = Eigen::VectorXd::Zero(3 * t);
@@ -185,12 +209,12 @@ MarginalValue MarginalLikelihood::Evaluate(
   }
   Point point = At(matrices, mode->level, mode->l);
   if (!point.residual.allFinite()) return value;
-  double likelihood = 0.5 * inverse_variance * point.residual.squaredNorm();
+  double likelihood = likelihood_of(point);
   bool fresh = false;  // whether the linearisation was made here
   double last_step = std::numeric_limits<double>::infinity();
   while (value.iterations < kMaxIterations) {
     if (mode->linearisation == nullptr) {
-      mode->linearisation = Linearise(matrices, sigma, amplitude, point);
+      mode->linearisation = Linearise(matrices, noise, amplitude, point);
       if (mode->linearisation == nullptr) return value;
       fresh = true;
       last_step = std::numeric_limits<double>::infinity();
@@ -200,12 +224,12 @@ MarginalValue MarginalLikelihood::Evaluate(
     Eigen::VectorXd slope(3 * t);
     for (int c = 0; c < 3; ++c) {
       const Eigen::VectorXd weighted =
-          point.residual.segment(c * P, P).cwiseQuotient(
-              point.E.segment(c * P, P));
-      slope.segment(c * t, t) =
-          mode->dual.segment(c * t, t) -
-          inverse_variance * point.L.segment(c * t, t).cwiseProduct(
-                                 matrices[c].transpose() * weighted);
+          point.residual.segment(c * P, P)
+              .cwiseProduct(weight.segment(c * P, P))
+              .cwiseQuotient(point.E.segment(c * P, P));
+      slope.segment(c * t, t) = mode->dual.segment(c * t, t) -
+                                point.L.segment(c * t, t).cwiseProduct(
+                                    matrices[c].transpose() * weighted);
     }
     const Eigen::VectorXd d_dual =
         -SolveDual(*mode->linearisation, amplitude, slope);
@@ -220,8 +244,7 @@ MarginalValue MarginalLikelihood::Evaluate(
          s *= 0.4) {
       const Eigen::VectorXd l = mode->l + s * dl;
       Point trial = At(matrices, mode->level, l);
-      const double trial_likelihood =
-          0.5 * inverse_variance * trial.residual.squaredNorm();
+      const double trial_likelihood = likelihood_of(trial);
       if (trial_likelihood + s * cross + 0.5 * s * s * square <= likelihood) {
         taken = s;
         mode->dual += s * d_dual;
@@ -242,7 +265,7 @@ MarginalValue MarginalLikelihood::Evaluate(
       fresh = false;
     }
   }
-  mode->linearisation = Linearise(matrices, sigma, amplitude, point);
+  mode->linearisation = Linearise(matrices, noise, amplitude, point);
   if (mode->linearisation == nullptr) return value;
   ++value.linearisations;
   value.log_determinant =
@@ -252,7 +275,7 @@ MarginalValue MarginalLikelihood::Evaluate(
   value.misfit = point.residual.cwiseAbs().mean();
   value.ok = std::isfinite(value.cost);
   if (gradient != nullptr && value.ok) {
-    AddGradient(sigma, amplitude, *mode, point, gradient);
+    AddGradient(matrices, sigma, amplitude, *mode, point, gradient);
   }
   return value;
 }
@@ -260,13 +283,16 @@ MarginalValue MarginalLikelihood::Evaluate(
 // With F the cost, Phi its first two terms, l* the mode: dF = (partial of F at
 // fixed l) - v . d(grad_l Phi), v = H^-1 q, H the Hessian of Phi and q the
 // gradient of the log determinant in l.
-void MarginalLikelihood::AddGradient(double sigma, double amplitude,
+void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
+                                     double sigma, double amplitude,
                                      const LightMode& mode, const Point& point,
                                      MarginalGradient* gradient) const {
   const Eigen::Index t = num_texels(), P = num_points_;
-  const double inverse_variance = 1.0 / (sigma * sigma);
-  const Eigen::VectorXd& r = point.residual;
   const LightLinearisation& linear = *mode.linearisation;
+  const Eigen::VectorXd& r = point.residual;
+  const Eigen::VectorXd sharpness = Sharpness(matrices);
+  const Eigen::VectorXd weight =
+      NoiseVariance(sharpness, sigma, amplitude).cwiseInverse();
   RowMatrix inverse = linear.factor;
   InvertFactored(&inverse);
 
@@ -289,49 +315,64 @@ void MarginalLikelihood::AddGradient(double sigma, double amplitude,
         G[c].cwiseProduct(linear.jacobian[c]).colwise().sum().transpose();
   }
 
-  // v = H^-1 q = K w. H = K^-1 + J^T J / sigma^2 + C with
-  // C = -sum_p r_p / sigma^2 (diag(J_p) - J_p J_p^T), taken by corrections.
-  const Eigen::VectorXd weights = ApplyJacobianTransposed(linear, r);
+  // v = H^-1 q = K w. H = K^-1 + J^T D^-1 J + C with
+  // C = -sum_p r_p / D_p (diag(J_p) - J_p J_p^T), taken by corrections.
+  const Eigen::VectorXd weighted = weight.cwiseProduct(r);
+  const Eigen::VectorXd curvature = ApplyJacobianTransposed(linear, weighted);
   Eigen::VectorXd right = q, w, v, Jv;
   for (int k = 0; k <= kCurvatureCorrections; ++k) {
     w = SolveDual(linear, amplitude, right);
     v = ApplyCovariance(amplitude, w);
     Jv = ApplyJacobian(linear, v);
     if (k == kCurvatureCorrections) break;
-    right = q + inverse_variance *
-                    (weights.cwiseProduct(v) -
-                     ApplyJacobianTransposed(linear, r.cwiseProduct(Jv)));
+    right = q + curvature.cwiseProduct(v) -
+            ApplyJacobianTransposed(linear, weighted.cwiseProduct(Jv));
   }
 
-  // d(grad_l Phi) . v in T: of -(J v) . r / sigma^2.
+  // By the diagonal of D.
+  const Eigen::VectorXd by_noise =
+      -0.5 * weighted.cwiseAbs2() + 0.5 * inverse.diagonal() -
+      Jv.cwiseProduct(weighted).cwiseProduct(weight);
   for (int c = 0; c < 3; ++c) {
     const auto L = point.L.segment(c * t, t);
-    const auto r_c = r.segment(c * P, P).array();
-    const auto Jv_c = Jv.segment(c * P, P).array();
+    const Eigen::ArrayXd weighted_c = weighted.segment(c * P, P).array();
+    const Eigen::ArrayXd weight_c = weight.segment(c * P, P).array();
+    const Eigen::ArrayXd Jv_c = Jv.segment(c * P, P).array();
     const Eigen::ArrayXd inverse_E =
         point.E.segment(c * P, P).array().inverse();
     RowMatrix& out = gradient->matrices[c];
     out = std::move(G[c]);
-    out.colwise() -= (inverse_variance * (r_c + Jv_c * r_c + Jv_c)).matrix();
-    out.noalias() +=
-        (inverse_variance * r_c).matrix() * v.segment(c * t, t).transpose();
+    // d(grad_l Phi) . v in T is that of -(J v) . r / D.
+    out.colwise() -=
+        (weighted_c + Jv_c * weighted_c + Jv_c * weight_c).matrix();
+    out.noalias() += weighted_c.matrix() * v.segment(c * t, t).transpose();
     out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
+    // Sharpness: d q_p = 2 (T_pt / S_p^2 - q_p / S_p) dT_pt.
+    const Eigen::ArrayXd inverse_sum =
+        matrices[c].rowwise().sum().array().max(kSmallestRadiance).inverse();
+    const Eigen::ArrayXd by_sharpness = 2.0 * amplitude * texel_variance_ *
+                                        by_noise.segment(c * P, P).array() *
+                                        inverse_sum;
+    out.noalias() +=
+        (by_sharpness * inverse_sum).matrix().asDiagonal() * matrices[c];
+    out.colwise() -=
+        (by_sharpness * sharpness.segment(c * P, P).array()).matrix();
   }
 
-  const double variance_gradient =
-      -0.5 * r.squaredNorm() * inverse_variance * inverse_variance +
-      0.5 * inverse.trace() - Jv.dot(r) * inverse_variance * inverse_variance;
-  gradient->log_sigma = 2.0 * sigma * sigma * variance_gradient;
+  gradient->log_sigma = 2.0 * sigma * sigma * by_noise.sum();
   const Eigen::VectorXd local = ApplyLocal(mode.dual);
-  // tr(A^-1 (A - sigma^2 I - B)), B the level's part.
-  double trace = 3.0 * static_cast<double>(P) - sigma * sigma * inverse.trace();
+  // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the level.
+  double trace = 3.0 * static_cast<double>(P) -
+                 inverse.diagonal().dot(weight.cwiseInverse());
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
       trace -= level_(c, d) * inverse.block(c * P, d * P, P, P).sum();
     }
   }
   gradient->log_amplitude =
-      amplitude * (-0.5 * mode.dual.dot(local) + w.dot(local)) + 0.5 * trace;
+      amplitude * (-0.5 * mode.dual.dot(local) + w.dot(local) +
+                   texel_variance_ * sharpness.dot(by_noise)) +
+      0.5 * trace;
 }
 
 Eigen::VectorXd MarginalLikelihood::LightVariance(
@@ -339,8 +380,10 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
     const MarginalHyperparameters& hyper, const LightMode& mode) const {
   const Eigen::Index t = num_texels(), P = num_points_;
   const double amplitude = std::exp(hyper.log_amplitude);
-  const auto linear = Linearise(matrices, std::exp(hyper.log_sigma), amplitude,
-                                At(matrices, mode.level, mode.l));
+  const Eigen::VectorXd noise =
+      NoiseVariance(Sharpness(matrices), std::exp(hyper.log_sigma), amplitude);
+  const auto linear =
+      Linearise(matrices, noise, amplitude, At(matrices, mode.level, mode.l));
   CHECK(linear != nullptr);
   RowMatrix inverse = linear->factor;
   InvertFactored(&inverse);

@@ -30,7 +30,7 @@ struct MarginalHyperparameters {
 struct LightLinearisation {
   std::array<RowMatrix, 3> jacobian;  // [points][texels] of a channel
   std::array<RowMatrix, 3> JC;        // jacobian * correlation
-  RowMatrix factor;                   // of sigma^2 I + J K J^T
+  RowMatrix factor;                   // of D + J K J^T
 };
 
 // The most probable log radiance of the light, m + l, and l = K dual.
@@ -52,16 +52,22 @@ struct MarginalValue {
   bool ok = false;      // false: not finite, or no mode was found
   double cost = 0.0;    // -log p(image | reflectance), nats, up to a constant
   double misfit = 0.0;  // mean |log E - log I| at the mode
-  double log_determinant = 0.0;  // of sigma^2 I + J K J^T
+  double log_determinant = 0.0;  // of D + J K J^T
   int iterations = 0;            // to the mode
   int linearisations = 0;
 };
 
 // Laplace's approximation of -log of
-//   integral N(y; log E(l), sigma^2 I) N(l; 0, K) dl,  E_c = T_c exp(m + l_c):
-//   |y - log E|^2 / (2 sigma^2) + l^T K^-1 l / 2
-//   + log det(sigma^2 I + J K J^T) / 2  at the mode of l,
+//   integral N(y; log E(l), D) N(l; 0, K) dl,  E_c = T_c exp(m + l_c):
+//   (y - log E)^T D^-1 (y - log E) / 2 + l^T K^-1 l / 2
+//   + log det(D + J K J^T) / 2  at the mode of l,
 // J = d log E / d l, in the space of the data, so that K needs no inverse.
+//
+// The map's texels are coarse, and what light does inside them shows where a
+// lobe is narrower: D = diag(sigma^2 + amplitude v_texel q), q_p the sum over
+// texels of (T_pt / sum_t T_pt)^2, one over the number of texels that a point
+// sees, and v_texel the process' variance inside a texel. A mirror is then not
+// blamed for what the map cannot hold, nor preferred for it.
 // Immutable; may be used from several threads.
 class MarginalLikelihood {
  public:
@@ -97,8 +103,12 @@ class MarginalLikelihood {
            const Eigen::VectorXd& l) const;
   // Null where the normal equations are not positive definite.
   std::shared_ptr<const LightLinearisation> Linearise(
-      const std::array<RowMatrix, 3>& matrices, double sigma, double amplitude,
-      const Point& point) const;
+      const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+      double amplitude, const Point& point) const;
+  // q and the diagonal of D, [3 * points].
+  Eigen::VectorXd Sharpness(const std::array<RowMatrix, 3>& matrices) const;
+  Eigen::VectorXd NoiseVariance(const Eigen::VectorXd& sharpness, double sigma,
+                                double amplitude) const;
   // K g.
   Eigen::VectorXd ApplyCovariance(double amplitude,
                                   const Eigen::VectorXd& g) const;
@@ -108,16 +118,18 @@ class MarginalLikelihood {
                                 const Eigen::VectorXd& l) const;
   Eigen::VectorXd ApplyJacobianTransposed(const LightLinearisation& linear,
                                           const Eigen::VectorXd& a) const;
-  // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T J / sigma^2)^-1 x.
+  // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T D^-1 J)^-1 x.
   Eigen::VectorXd SolveDual(const LightLinearisation& linear, double amplitude,
                             const Eigen::VectorXd& x) const;
-  void AddGradient(double sigma, double amplitude, const LightMode& mode,
-                   const Point& point, MarginalGradient* gradient) const;
+  void AddGradient(const std::array<RowMatrix, 3>& matrices, double sigma,
+                   double amplitude, const LightMode& mode, const Point& point,
+                   MarginalGradient* gradient) const;
 
   int num_points_;
   Eigen::VectorXd y_;  // [3 * points]
   Eigen::Matrix3d local_, level_;
   RowMatrix correlation_;
+  double texel_variance_;  // v_texel
   int num_threads_;
 };
 

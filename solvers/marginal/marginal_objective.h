@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solvers/marginal/marginal_reflectance.h"
-#include "solvers/marginal/material_prior.h"
+#include "solvers/material_prior.h"
 
 namespace ibrdf {
 

@@ -9,7 +9,7 @@
 #include "ibrdf/base/status.h"
 #include "ibrdf/render/scene.h"
 #include "solvers/marginal/marginal_reflectance.h"
-#include "solvers/marginal/material_prior.h"
+#include "solvers/material_prior.h"
 
 namespace ibrdf {
 

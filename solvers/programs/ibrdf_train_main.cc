@@ -14,6 +14,7 @@
 #include "solvers/programs/common_flags.h"
 #include "solvers/trainer/analytic_materials.h"
 #include "solvers/trainer/flow_trainer.h"
+#include "solvers/trainer/material_lobes.h"
 
 namespace ibrdf {
 namespace {
@@ -22,7 +23,7 @@ std::atomic<bool> stop_requested{false};
 void RequestStop(int) { stop_requested = true; }
 
 struct TrainFlags {
-  std::string data, out, leave_out, note;
+  std::string data, refit, out, leave_out, note;
   int columns = 2048;
   int analytic = 48;
   bool fresh = false;
@@ -52,8 +53,34 @@ std::vector<std::string> SplitByComma(const std::string& text) {
   return parts;
 }
 
+// Estimates of two lobes are what users ask for.
+constexpr int kFitLobes = 2;
+
+Status FitLobes(const CommonFlags& common, NeuralBrdfModel* model) {
+  if (!common.quiet) {
+    std::printf("fitting %d lobes to each of %d materials\n", kFitLobes,
+                model->num_materials());
+    std::fflush(stdout);
+  }
+  return FitMaterialLobes(kFitLobes, common.threads, model);
+}
+
+Status Refit(const TrainFlags& flags, const CommonFlags& common) {
+  StatusOr<NeuralBrdfModel> model = ReadModel(flags.refit);
+  if (!model.ok()) return model.status();
+  if (model->num_materials() == 0) {
+    return InvalidInput(flags.refit, "expected the codes of a material");
+  }
+  IBRDF_RETURN_IF_ERROR(FitLobes(common, &*model));
+  return WriteModel(*model, flags.out);
+}
+
 Status Train(const TrainFlags& flags, const CommonFlags& common,
              TrainerOptions options) {
+  if (flags.data.empty()) {
+    return InvalidInput("command line: --data",
+                        "expected a folder of MERL .binary files, or --refit");
+  }
   SetShape(flags, &options.shape);
   const std::string wrong = options.shape.Validate();
   if (!wrong.empty()) return InvalidInput("command line", wrong);
@@ -128,6 +155,7 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
                 " codes x " + std::to_string(options.columns_per_code) +
                 " columns x " + std::to_string(options.points_per_column) +
                 " points, seed " + std::to_string(options.seed) + ".";
+  IBRDF_RETURN_IF_ERROR(FitLobes(common, &*model));
   IBRDF_RETURN_IF_ERROR(WriteModel(*model, flags.out));
   std::remove(options.checkpoint.c_str());
   return OkStatus();
@@ -142,9 +170,14 @@ int Main(int argc, char** argv) {
   TrainFlags flags;
   TrainerOptions options;
   AddCommonFlags(&app, &common);
-  app.add_option("--data", flags.data, "folder of MERL .binary files")
-      ->required();
+  CLI::Option* data =
+      app.add_option("--data", flags.data, "folder of MERL .binary files");
   app.add_option("--out", flags.out, "model file to write")->required();
+  CLI::Option* refit = app.add_option(
+      "--refit", flags.refit,
+      "a trained model: trains nothing, fits the lobes of its materials (the "
+      "prior of estimates) anew and writes it to --out");
+  refit->excludes(data);
   app.add_option("--leave-out", flags.leave_out,
                  "comma-separated materials not to train on");
   app.add_option("--note", flags.note, "text kept in the model: data, licence");
@@ -209,7 +242,11 @@ int Main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   return RunProgram(&app, argc, argv,
-                    [&] { return Train(flags, common, options); });
+                    [&] {
+                      return flags.refit.empty()
+                                 ? Train(flags, common, options)
+                                 : Refit(flags, common);
+                    });
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "solvers/marginal/material_prior.h"
+#include "solvers/material_prior.h"
 
 #include <glog/logging.h>
 

@@ -1,0 +1,112 @@
+#include "solvers/joint/process_prior.h"
+
+#include <glog/logging.h>
+
+#include <cmath>
+
+#include "ibrdf/light/environment_map.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kColumns = 32;
+
+// Rows: grey, then two axes of chroma; orthonormal.
+Eigen::Matrix3d ColourAxes() {
+  Eigen::Matrix3d axes;
+  axes << 1 / std::sqrt(3.0), 1 / std::sqrt(3.0), 1 / std::sqrt(3.0),  //
+      1 / std::sqrt(2.0), -1 / std::sqrt(2.0), 0.0,                    //
+      1 / std::sqrt(6.0), 1 / std::sqrt(6.0), -2 / std::sqrt(6.0);
+  return axes;
+}
+
+int BlockSide(int height, int width) {
+  int block = 1;
+  while (width / (2 * block) >= kColumns && width % (2 * block) == 0 &&
+         height % (2 * block) == 0) {
+    block *= 2;
+  }
+  return block;
+}
+
+RowMatrix Precision(const RowMatrix& correlation, double local, double level) {
+  RowMatrix precision = (local * correlation).array() + level;
+  CHECK(Factorise(&precision));
+  InvertFactored(&precision);
+  return precision;
+}
+
+}  // namespace
+
+ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
+                           double amplitude, double level)
+    : height_(height),
+      width_(width),
+      block_(BlockSide(height, width)),
+      level_(level) {
+  for (int r = 0; r < height; ++r) {
+    double sum = 0.0;
+    for (int k = 0; k < block_; ++k) {
+      sum += TexelSolidAngle(r / block_ * block_ + k, height, width);
+    }
+    row_weight_.push_back(TexelSolidAngle(r, height, width) / (sum * block_));
+  }
+  const RowMatrix correlation = LightCorrelation(
+      height / block_, width / block_, process.correlation_degrees);
+  // Along grey the channels add up.
+  grey_ = Precision(correlation, 3 * amplitude * process.luminance_variance,
+                    3 * process.level_variance);
+  chroma_ = Precision(correlation, amplitude * process.chroma_variance,
+                      process.level_chroma_variance);
+}
+
+Eigen::MatrixXd ProcessPrior::Means(const float* log_map) const {
+  const int columns = width_ / block_;
+  Eigen::MatrixXd means = Eigen::MatrixXd::Zero(grey_.rows(), 3);
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < height_; ++r) {
+      for (int x = 0; x < width_; ++x) {
+        means(r / block_ * columns + x / block_, c) +=
+            row_weight_[r] *
+            log_map[(static_cast<size_t>(c) * height_ + r) * width_ + x];
+      }
+    }
+  }
+  return means * ColourAxes().transpose();
+}
+
+Eigen::MatrixXd ProcessPrior::Weighted(const Eigen::MatrixXd& means) const {
+  Eigen::MatrixXd out(means.rows(), 3);
+  out.col(0) = grey_ * means.col(0);
+  out.rightCols(2) = chroma_ * means.rightCols(2);
+  return out;
+}
+
+void ProcessPrior::Spread(const Eigen::MatrixXd& by_mean, float* out) const {
+  const int columns = width_ / block_;
+  const Eigen::MatrixXd by_channel = by_mean * ColourAxes();
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < height_; ++r) {
+      for (int x = 0; x < width_; ++x) {
+        out[(static_cast<size_t>(c) * height_ + r) * width_ + x] +=
+            static_cast<float>(
+                row_weight_[r] *
+                by_channel(r / block_ * columns + x / block_, c));
+      }
+    }
+  }
+}
+
+double ProcessPrior::Evaluate(const float* log_map, float* gradient) {
+  Eigen::MatrixXd means = Means(log_map);
+  means.col(0).array() -= std::sqrt(3.0) * level_;
+  const Eigen::MatrixXd weighted = Weighted(means);
+  if (gradient != nullptr) Spread(weighted, gradient);
+  return 0.5 * means.cwiseProduct(weighted).sum();
+}
+
+void ProcessPrior::AddProduct(const float* v, float* out) const {
+  Spread(Weighted(Means(v)), out);
+}
+
+}  // namespace ibrdf

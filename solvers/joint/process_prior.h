@@ -1,0 +1,36 @@
+// The Gaussian process of natural light as a prior on a map of any size.
+#pragma once
+#include <vector>
+
+#include "solvers/joint/light_prior.h"
+#include "solvers/marginal/dense_algebra.h"
+#include "solvers/marginal/light_process.h"
+
+namespace ibrdf {
+
+// 1/2 (D l - m)^T K^-1 (D l - m): D means of log radiance over blocks that
+// leave some 32 columns, K the covariance of LightProcess between the blocks'
+// centres, m one level for all channels. Finer detail is left to others.
+class ProcessPrior final : public LightPrior {
+ public:
+  ProcessPrior(int height, int width, const LightProcess& process,
+               double amplitude, double level);
+
+  double Evaluate(const float* log_map, float* gradient) override;
+  void AddProduct(const float* v, float* out) const override;
+
+ private:
+  // Means over blocks as [blocks][3], in axes of grey and two of chroma.
+  Eigen::MatrixXd Means(const float* log_map) const;
+  // Precision times those.
+  Eigen::MatrixXd Weighted(const Eigen::MatrixXd& means) const;
+  // out += D^T of them.
+  void Spread(const Eigen::MatrixXd& by_mean, float* out) const;
+
+  int height_, width_, block_;
+  std::vector<double> row_weight_;  // of a texel in the mean of its block
+  double level_;
+  RowMatrix grey_, chroma_;  // precisions of the two kinds of axes
+};
+
+}  // namespace ibrdf
