@@ -20,7 +20,8 @@ std::string ProblemText(const KnownBrdfSweepOptions& options,
          "truth: {illumination: " + Quoted(c.map_path) + "}\n";
 }
 
-Status CompareMaps(const KnownBrdfSweepOptions& options, const SolverRun& run,
+Status CompareMaps(const KnownBrdfSweepOptions& options,
+                   const SphereGallery& gallery, const SolverRun& run,
                    const std::string& folder, bool solved, NamedRow* row) {
   const StatusOr<Image> truth = TrueMap(options, run.of);
   if (!truth.ok()) return truth.status();
@@ -29,15 +30,13 @@ Status CompareMaps(const KnownBrdfSweepOptions& options, const SolverRun& run,
   const StatusOr<Image> map =
       ReadImage(folder + "/" + run.estimate + "/illumination.exr");
   if (!map.ok()) return map.status();
-  for (const Sphere sphere :
-       {Sphere::kMirror, Sphere::kDiffuse, Sphere::kGlossy}) {
-    const StatusOr<SphereMetrics> m =
-        CompareSpheres(*map, *truth, sphere, options.num_threads);
-    if (!m.ok()) return m.status();
-    const std::string name = SphereName(sphere);
-    row->Set(name + "_log_rmse", NumberCell(m->log_rmse));
-    row->Set(name + "_rmse", NumberCell(m->rmse));
-    row->Set(name + "_dssim", NumberCell(m->dssim));
+  const auto spheres = gallery.Compare(*map, *truth);
+  if (!spheres.ok()) return spheres.status();
+  for (int k = 0; k < kNumSpheres; ++k) {
+    const std::string name = SphereName(static_cast<Sphere>(k));
+    row->Set(name + "_log_rmse", NumberCell((*spheres)[k].log_rmse));
+    row->Set(name + "_rmse", NumberCell((*spheres)[k].rmse));
+    row->Set(name + "_dssim", NumberCell((*spheres)[k].dssim));
   }
   return OkStatus();
 }
@@ -100,9 +99,10 @@ Status RunKnownBrdfSweep(const KnownBrdfSweepOptions& options) {
   sweep.columns = &KnownBrdfColumns();
   sweep.key_columns = kKeyColumns;
   sweep.runs = *std::move(runs);
+  const SphereGallery gallery(options.num_threads);
   sweep.finish = [&](const SolverRun& run, const std::string& folder,
                      bool solved, NamedRow* row) {
-    return CompareMaps(options, run, folder, solved, row);
+    return CompareMaps(options, gallery, run, folder, solved, row);
   };
   return RunSolverSweep(options, sweep);
 }

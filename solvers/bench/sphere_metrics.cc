@@ -9,13 +9,14 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/metrics/image_metrics.h"
+#include "ibrdf/render/reference_batch.h"
 #include "ibrdf/render/reference_renderer.h"
 
 namespace ibrdf {
 namespace {
 
 constexpr int kMirrorSize = 128;
-constexpr int kSmoothSize = 48;
+constexpr int kSmoothSize = 40;
 
 std::vector<ShadingPoint> SpherePoints(int size, int samples_per_side) {
   StatusOr<std::vector<ShadingPoint>> points = FindShadingPoints(
@@ -36,68 +37,13 @@ Image RenderMirror(const Image& map) {
   return PixelMeans(points, E.data(), kMirrorSize, kMirrorSize);
 }
 
-Image RenderSmooth(const Image& map, const CookTorrance& brdf,
-                   int num_threads) {
-  ReferenceOptions options;
-  options.near_rings /= 4;
-  options.near_ring_samples /= 4;
-  options.far_width = 64;
-  options.num_threads = num_threads;
-  const std::vector<ShadingPoint> points = SpherePoints(kSmoothSize, 1);
-  std::vector<double> E(3 * points.size());
-  ReferenceRenderer(map, options).Render(points, brdf.Function(), E.data());
-  return PixelMeans(points, E.data(), kSmoothSize, kSmoothSize);
-}
-
 bool IsFinite(const Image& map) {
   return std::all_of(map.rgb.begin(), map.rgb.end(),
                      [](float v) { return std::isfinite(v); });
 }
 
-}  // namespace
-
-std::string SphereName(Sphere sphere) {
-  switch (sphere) {
-    case Sphere::kDiffuse:
-      return "diffuse";
-    case Sphere::kGlossy:
-      return "glossy";
-    case Sphere::kMirror:
-      break;
-  }
-  return "mirror";
-}
-
-Image RenderSphere(const Image& map, Sphere sphere, int num_threads) {
-  CookTorrance brdf;
-  switch (sphere) {
-    case Sphere::kDiffuse:
-      brdf.diffuse = Eigen::Array3d::Ones();
-      brdf.specular = Eigen::Array3d::Zero();
-      return RenderSmooth(map, brdf, num_threads);
-    case Sphere::kGlossy:
-      brdf.diffuse = Eigen::Array3d::Constant(0.2);
-      brdf.specular = Eigen::Array3d::Ones();
-      brdf.roughness = Eigen::Array3d::Constant(0.15);
-      brdf.f0 = Eigen::Array3d::Constant(0.04);
-      return RenderSmooth(map, brdf, num_threads);
-    case Sphere::kMirror:
-      break;
-  }
-  return RenderMirror(map);
-}
-
-StatusOr<SphereMetrics> CompareSpheres(const Image& estimate,
-                                       const Image& reference, Sphere sphere,
-                                       int num_threads) {
-  if (!IsFinite(estimate)) {
-    return InvalidInput("estimate", "expected finite radiance");
-  }
-  if (!IsFinite(reference)) {
-    return InvalidInput("reference", "expected finite radiance");
-  }
-  Image e = RenderSphere(estimate, sphere, num_threads);
-  const Image r = RenderSphere(reference, sphere, num_threads);
+// e: not yet scaled.
+StatusOr<SphereMetrics> ComparePictures(Image e, const Image& r) {
   Mask mask(r.width, r.height, 0);
   for (const ShadingPoint& p : SpherePoints(r.width, 1)) {
     mask.inside[p.pixel] = 255;
@@ -125,6 +71,70 @@ StatusOr<SphereMetrics> CompareSpheres(const Image& estimate,
   metrics.log_rmse = std::sqrt(log_squares / static_cast<double>(count));
   metrics.rmse = std::sqrt(squares / static_cast<double>(count));
   metrics.dssim = image->dssim;
+  return metrics;
+}
+
+}  // namespace
+
+std::string SphereName(Sphere sphere) {
+  switch (sphere) {
+    case Sphere::kDiffuse:
+      return "diffuse";
+    case Sphere::kGlossy:
+      return "glossy";
+    case Sphere::kMirror:
+      break;
+  }
+  return "mirror";
+}
+
+SphereGallery::SphereGallery(int num_threads)
+    : num_threads_(num_threads), tables_(kNumSpheres - 1) {
+  CookTorrance diffuse;
+  diffuse.diffuse = Eigen::Array3d::Ones();
+  diffuse.specular = Eigen::Array3d::Zero();
+  tables_.Set(0, SampleMerl(diffuse.Function()));
+  CookTorrance glossy;
+  glossy.diffuse = Eigen::Array3d::Constant(0.2);
+  glossy.specular = Eigen::Array3d::Ones();
+  glossy.roughness = Eigen::Array3d::Constant(0.15);
+  glossy.f0 = Eigen::Array3d::Constant(0.04);
+  tables_.Set(1, SampleMerl(glossy.Function()));
+}
+
+SphereGallery::Pictures SphereGallery::Render(const Image& map) const {
+  ReferenceOptions options;
+  options.near_rings /= 4;
+  options.near_ring_samples /= 4;
+  options.far_width = 64;
+  options.num_threads = num_threads_;
+  const std::vector<ShadingPoint> points = SpherePoints(kSmoothSize, 1);
+  std::vector<double> E(3 * tables_.count() * points.size());
+  ReferenceBatch(tables_, {&map}, options).Render(points, E.data());
+  Pictures pictures;
+  pictures[0] = RenderMirror(map);
+  for (int m = 0; m < tables_.count(); ++m) {
+    pictures[m + 1] =
+        PixelMeans(points, &E[3 * m * points.size()], kSmoothSize, kSmoothSize);
+  }
+  return pictures;
+}
+
+StatusOr<std::array<SphereMetrics, kNumSpheres>> SphereGallery::Compare(
+    const Image& estimate, const Image& reference) const {
+  if (!IsFinite(estimate)) {
+    return InvalidInput("estimate", "expected finite radiance");
+  }
+  if (!IsFinite(reference)) {
+    return InvalidInput("reference", "expected finite radiance");
+  }
+  const Pictures e = Render(estimate), r = Render(reference);
+  std::array<SphereMetrics, kNumSpheres> metrics;
+  for (int k = 0; k < kNumSpheres; ++k) {
+    const StatusOr<SphereMetrics> one = ComparePictures(e[k], r[k]);
+    if (!one.ok()) return one.status();
+    metrics[k] = *one;
+  }
   return metrics;
 }
 
