@@ -20,7 +20,7 @@ struct SweepOptions {
   std::string geometry = "sphere";     // or a mesh file
   int size = 128;                      // of the square image, pixels
   double noise = 0.02;                 // log-normal, of the images
-  int batch = 16;      // materials whose images are rendered together
+  int batch = 32;      // materials whose images are rendered together
   int only_index = 1;  // of only_count, from 1: every n-th case
   int only_count = 1;
   std::string command;  // as typed, for results.md
