@@ -51,6 +51,8 @@ class NormalNumbers {
   std::mt19937_64 rng_;
 };
 
+}  // namespace
+
 void AddNoise(double sigma, uint64_t seed, Image* image) {
   if (sigma <= 0.0) return;
   NormalNumbers normal(seed);
@@ -59,13 +61,27 @@ void AddNoise(double sigma, uint64_t seed, Image* image) {
   }
 }
 
-Mask PixelsOf(const std::vector<ShadingPoint>& points, int width, int height) {
-  Mask mask(width, height, 0);
-  for (const ShadingPoint& p : points) mask.inside[p.pixel] = 255;
-  return mask;
+StatusOr<ViewPoints> FindViewPoints(const Problem& problem) {
+  const StatusOr<Scene> scene = LoadScene(problem.geometry);
+  if (!scene.ok()) return scene.status();
+  const int width = problem.image.width, height = problem.image.height;
+  StatusOr<std::vector<ShadingPoint>> found = FindShadingPoints(
+      *scene, problem.camera, width, height, Mask(),
+      problem.quality == RenderQuality::kReference ? kReferenceSamplesPerSide
+                                                   : 1);
+  if (!found.ok()) {
+    return InvalidInput(problem.path, found.status().message());
+  }
+  ViewPoints view;
+  view.points = *std::move(found);
+  view.mask = Mask(width, height, 0);
+  for (const ShadingPoint& p : view.points) view.mask.inside[p.pixel] = 255;
+  std::stable_sort(view.points.begin(), view.points.end(),
+                   [](const ShadingPoint& a, const ShadingPoint& b) {
+                     return a.normal.dot(a.wo) < b.normal.dot(b.wo);
+                   });
+  return view;
 }
-
-}  // namespace
 
 StatusOr<Scene> LoadScene(const GeometrySpec& geometry) {
   switch (geometry.kind) {
@@ -127,19 +143,11 @@ StatusOr<MerlTable> LoadKnownReflectance(const ReflectanceSpec& reflectance) {
 
 StatusOr<RenderedScene> RenderScene(const Problem& problem,
                                     const RenderSceneOptions& options) {
-  const StatusOr<Scene> scene = LoadScene(problem.geometry);
-  if (!scene.ok()) return scene.status();
+  const StatusOr<ViewPoints> view = FindViewPoints(problem);
+  if (!view.ok()) return view.status();
+  const std::vector<ShadingPoint>& points = view->points;
   StatusOr<Image> map = LoadKnownIllumination(problem.illumination);
   if (!map.ok()) return map.status();
-  const int width = problem.image.width, height = problem.image.height;
-  const StatusOr<std::vector<ShadingPoint>> found = FindShadingPoints(
-      *scene, problem.camera, width, height, Mask(),
-      problem.quality == RenderQuality::kReference ? kReferenceSamplesPerSide
-                                                   : 1);
-  if (!found.ok()) {
-    return InvalidInput(problem.path, found.status().message());
-  }
-  const std::vector<ShadingPoint>& points = *found;
 
   MerlTable table;
   if (!problem.reflectance.known_file.empty()) {
@@ -150,22 +158,15 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
 
   const ReferenceRenderer renderer(
       *map, QualityOptions(problem.quality, options.num_threads));
-  // By view angle, so that points of one angle fall into one step and share
-  // their work.
-  std::vector<ShadingPoint> ordered = points;
-  std::stable_sort(ordered.begin(), ordered.end(),
-                   [](const ShadingPoint& a, const ShadingPoint& b) {
-                     return a.normal.dot(a.wo) < b.normal.dot(b.wo);
-                   });
-  std::vector<double> E(3 * ordered.size());
-  for (size_t begin = 0; begin < ordered.size(); begin += kPointsPerStep) {
+  std::vector<double> E(3 * points.size());
+  for (size_t begin = 0; begin < points.size(); begin += kPointsPerStep) {
     if (options.progress &&
-        !options.progress(static_cast<double>(begin) / ordered.size())) {
+        !options.progress(static_cast<double>(begin) / points.size())) {
       return Status(StatusCode::kInterrupted, problem.path + ": interrupted");
     }
-    const size_t end = std::min(begin + kPointsPerStep, ordered.size());
-    const std::vector<ShadingPoint> step(ordered.begin() + begin,
-                                         ordered.begin() + end);
+    const size_t end = std::min(begin + kPointsPerStep, points.size());
+    const std::vector<ShadingPoint> step(points.begin() + begin,
+                                         points.begin() + end);
     if (problem.reflectance.analytic.has_value()) {
       renderer.Render(step, problem.reflectance.analytic->Function(),
                       &E[3 * begin]);
@@ -176,8 +177,9 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
   if (options.progress) options.progress(1.0);
 
   RenderedScene out;
-  out.image = PixelMeans(ordered, E.data(), width, height);
-  out.mask = PixelsOf(ordered, width, height);
+  out.image =
+      PixelMeans(points, E.data(), problem.image.width, problem.image.height);
+  out.mask = view->mask;
   out.illumination = *std::move(map);
   AddNoise(problem.noise,
            problem.solver.seed.has_value()

@@ -23,6 +23,20 @@ StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination);
 // centres.
 StatusOr<MerlTable> LoadKnownReflectance(const ReflectanceSpec& reflectance);
 
+// What a renderable problem's camera sees: 2x2 points a pixel at reference
+// quality, else one.
+struct ViewPoints {
+  // By view angle: those of one angle share their work when they are rendered
+  // together.
+  std::vector<ShadingPoint> points;
+  Mask mask;  // pixels with a point
+};
+StatusOr<ViewPoints> FindViewPoints(const Problem& problem);
+
+// Multiplies each channel of each pixel by exp(sigma * normal), row-major; the
+// same seed gives the same noise anywhere.
+void AddNoise(double sigma, uint64_t seed, Image* image);
+
 struct RenderSceneOptions {
   uint64_t seed = 1;    // of the noise, where the problem has no seed
   int num_threads = 0;  // <= 0: all

@@ -8,7 +8,10 @@
 #include "solvers/programs/bench_albedo.h"
 #include "solvers/programs/bench_embedding.h"
 #include "solvers/programs/bench_joint.h"
+#include "solvers/programs/bench_known_brdf.h"
+#include "solvers/programs/bench_known_light.h"
 #include "solvers/programs/bench_merl_fit.h"
+#include "solvers/programs/bench_render_inputs.h"
 #include "solvers/programs/bench_session.h"
 
 namespace ibrdf {
@@ -35,6 +38,9 @@ int Main(int argc, char** argv) {
   AddCommonFlags(&app, &session.common);
   app.require_subcommand(0, 1);
   AddJointExperiment(&app, &session);
+  AddKnownLightExperiment(&app, &session);
+  AddKnownBrdfExperiment(&app, &session);
+  AddRenderInputsExperiment(&app, &session);
   AddMerlFitExperiment(&app, &session);
   AddAlbedoExperiment(&app, &session);
   AddEmbeddingExperiment(&app, &session);

@@ -8,7 +8,7 @@ namespace ibrdf {
 // 3e-7 in float, relative to the result where |y| < |x|. Without branches, so
 // that loops of it become vector code. Arguments must be finite.
 template <typename T>
-inline T FastAtan2(T y, T x) {
+[[gnu::always_inline]] inline T FastAtan2(T y, T x) {
   const T ax = x < 0 ? -x : x, ay = y < 0 ? -y : y;
   const T larger = ax > ay ? ax : ay, smaller = ax > ay ? ay : ax;
   // The addend keeps 0 / 0 at 0 and is lost beside anything else.

@@ -232,13 +232,13 @@ double PointQuadrature::SampleNear(double cos_o, double sin_o,
   return correction;
 }
 
-double PointQuadrature::SampleFar(const Eigen::Vector3d& n,
+void PointQuadrature::SampleCells(const std::vector<FarCell>& cells,
+                                  const Eigen::Vector3d& n,
                                   const Eigen::Vector3d& wo,
                                   std::vector<FarSample>* samples) const {
   samples->clear();
-  double sum = 0.0;
-  for (size_t i = 0; i < cells_.size(); ++i) {
-    const FarCell& cell = cells_[i];
+  for (size_t i = 0; i < cells.size(); ++i) {
+    const FarCell& cell = cells[i];
     const double c = n.dot(cell.direction);
     const double along_theta = n.dot(cell.half_theta);
     const double along_phi = n.dot(cell.half_phi);
@@ -264,8 +264,17 @@ double PointQuadrature::SampleFar(const Eigen::Vector3d& n,
     s.phi_d = FoldPhi(
         FastAtan2(n.cross(h).dot(wi) / length, cos_h * cos_d - n.dot(wi)));
     s.cell = static_cast<int>(i);
-    sum += s.weight * cell.solid_angle;
     samples->push_back(s);
+  }
+}
+
+double PointQuadrature::SampleFar(const Eigen::Vector3d& n,
+                                  const Eigen::Vector3d& wo,
+                                  std::vector<FarSample>* samples) const {
+  SampleCells(cells_, n, wo, samples);
+  double sum = 0.0;
+  for (const FarSample& s : *samples) {
+    sum += s.weight * cells_[s.cell].solid_angle;
   }
   Eigen::Vector3d t, b;
   ViewFrame(n, wo, &t, &b);

@@ -83,6 +83,10 @@ class PointQuadrature {
                     std::vector<NearSample>* samples) const;
   double SampleFar(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
                    std::vector<FarSample>* samples) const;
+  // The far rule over other cells, without correction.
+  void SampleCells(const std::vector<FarCell>& cells, const Eigen::Vector3d& n,
+                   const Eigen::Vector3d& wo,
+                   std::vector<FarSample>* samples) const;
 
  private:
   struct HalfVector {

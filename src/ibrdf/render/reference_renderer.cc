@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
 #include <utility>
 
-#include "ibrdf/base/fast_atan2.h"
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/light/environment_map.h"
 
@@ -20,12 +18,6 @@ constexpr double kPi = 3.14159265358979323846;
 // times brighter than its mean, is split into texels.
 constexpr double kBrightBlock = 4.0;
 constexpr double kUnevenBlock = 1.5;
-
-// Points that share their near samples; more would starve the other threads
-// where every point is seen at the same angle.
-constexpr int kMaxGroup = 64;
-// Rays looked up together; their sum is taken in float.
-constexpr int kRayBlock = 128;
 
 using Float4 [[gnu::vector_size(16)]] = float;
 
@@ -47,52 +39,28 @@ class MerlSampler {
 
   Eigen::Array3d operator()(double theta_h, double theta_d,
                             double phi_d) const {
-    const auto x =
-        static_cast<float>(std::sqrt(theta_h * (2 / kPi)) * kMerlThetaH - 0.5);
-    const auto y = static_cast<float>(theta_d * (2 / kPi) * kMerlThetaD - 0.5);
-    const auto z = static_cast<float>(phi_d * (1 / kPi) * kMerlPhiD - 0.5);
-    const float x0 = std::floor(x), y0 = std::floor(y), z0 = std::floor(z);
-    const float fx = x - x0, fy = y - y0, fz = z - z0;
-    const auto clamp = [](int i, int n) { return std::clamp(i, 0, n - 1); };
-    const int i = static_cast<int>(x0), j = static_cast<int>(y0);
-    const int i0 = clamp(i, kMerlThetaH), i1 = clamp(i + 1, kMerlThetaH);
-    const int j0 = clamp(j, kMerlThetaD), j1 = clamp(j + 1, kMerlThetaD);
-    int k0 = static_cast<int>(z0);
-    if (k0 < 0) k0 += kMerlPhiD;
-    if (k0 >= kMerlPhiD) k0 -= kMerlPhiD;
-    const int k1 = k0 + 1 < kMerlPhiD ? k0 + 1 : 0;
-    const auto row = [&](int a, int b) {
-      return (1 - fz) * Lane(a, b, k0) + fz * Lane(a, b, k1);
-    };
-    const Float4 sum = (1 - fx) * ((1 - fy) * row(i0, j0) + fy * row(i0, j1)) +
-                       fx * ((1 - fy) * row(i1, j0) + fy * row(i1, j1));
+    const MerlTaps taps = MerlTapsAt(theta_h, theta_d, phi_d, 1.0);
+    Float4 even = {0.0f, 0.0f, 0.0f, 0.0f}, odd = even;
+    for (int k = 0; k < 8; k += 2) {
+      even += taps.weight[k] * Lane(taps.bin[k]);
+      odd += taps.weight[k + 1] * Lane(taps.bin[k + 1]);
+    }
+    const Float4 sum = even + odd;
     if (!(sum[3] > 0.0f)) return Eigen::Array3d::Zero();
     const float scale = 1.0f / sum[3];
     return {sum[0] * scale, sum[1] * scale, sum[2] * scale};
   }
 
  private:
-  Float4 Lane(int i, int j, int k) const {
+  Float4 Lane(int bin) const {
     Float4 v;
-    std::memcpy(&v, &lanes_[size_t{4} * MerlTable::Bin(i, j, k)], sizeof(v));
+    std::memcpy(&v, &lanes_[size_t{4} * bin], sizeof(v));
     return v;
   }
   std::vector<float> lanes_;
 };
 
 }  // namespace
-
-QuadratureOptions ReferenceRenderer::NearOptions(
-    const Image& map, const ReferenceOptions& options) {
-  const double finer = std::max(1.0, map.width / 512.0);
-  QuadratureOptions q;
-  q.near_begin_degrees = options.near_begin_degrees;
-  q.near_end_degrees = options.near_end_degrees;
-  q.near_rings = static_cast<int>(std::ceil(options.near_rings * finer));
-  q.near_ring_samples =
-      static_cast<int>(std::ceil(options.near_ring_samples * finer));
-  return q;
-}
 
 ReferenceRenderer::Light ReferenceRenderer::GatherLight(const Image& map,
                                                         int far_width) {
@@ -150,73 +118,38 @@ ReferenceRenderer::ReferenceRenderer(const Image& map,
 ReferenceRenderer::ReferenceRenderer(const Image& map, Light light,
                                      const ReferenceOptions& options)
     : num_threads_(options.num_threads),
-      map_(map),
+      map_({&map}, 4),
       power_(std::move(light.power)),
-      quadrature_(std::move(light.cells), NearOptions(map, options)) {}
+      quadrature_(std::move(light.cells), NearOptions(map.width, options)) {}
 
-struct ReferenceRenderer::PaddedMap::Rays {
+struct ReferenceRenderer::Rays {
   std::vector<float> x, y, z;  // direction
   std::vector<float> f;        // weight times BRDF, four lanes
 };
 
-ReferenceRenderer::PaddedMap::PaddedMap(const Image& map)
-    : width(map.width),
-      height(map.height),
-      lanes(size_t{4} * (map.height + 2) * (map.width + 1), 0.0f) {
-  for (int r = -1; r <= height; ++r) {
-    const int row = std::clamp(r, 0, height - 1);
-    for (int c = 0; c <= width; ++c) {
-      // Across a pole the other half of the same row lies.
-      const int column = (row == r ? c : c + width / 2) % width;
-      std::memcpy(&lanes[4 * (static_cast<size_t>(r + 1) * (width + 1) + c)],
-                  map.At(column, row), 3 * sizeof(float));
-    }
-  }
-}
-
-Eigen::Array3d ReferenceRenderer::PaddedMap::Gather(
-    const Rays& rays, const Eigen::Matrix3f& frame) const {
+Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
+                                         const Eigen::Matrix3f& axes) const {
   const auto load = [](const float* p) {
     Float4 v;
     std::memcpy(&v, p, sizeof(v));
     return v;
   };
-  const float rows_per_radian = static_cast<float>(height / kPi);
-  const float columns_per_radian = static_cast<float>(width / (2.0 * kPi));
-  const auto last_row = static_cast<float>(height) + 0.5f;
-  const auto columns = static_cast<float>(width);
-  const float tx = frame(0, 0), ty = frame(1, 0), tz = frame(2, 0);
-  const float bx = frame(0, 1), by = frame(1, 1), bz = frame(2, 1);
-  const float nx = frame(0, 2), ny = frame(1, 2), nz = frame(2, 2);
   Eigen::Array3d sum = Eigen::Array3d::Zero();
   const size_t count = rays.x.size();
   for (size_t begin = 0; begin < count; begin += kRayBlock) {
     const int n = static_cast<int>(std::min<size_t>(kRayBlock, count - begin));
-    const float* const rx = &rays.x[begin];
-    const float* const ry = &rays.y[begin];
-    const float* const rz = &rays.z[begin];
     float row[kRayBlock], column[kRayBlock];
-    for (int k = 0; k < n; ++k) {
-      const float x = rx[k] * tx + ry[k] * bx + rz[k] * nx;
-      const float y = rx[k] * ty + ry[k] * by + rz[k] * ny;
-      const float z = rx[k] * tz + ry[k] * bz + rz[k] * nz;
-      const float theta = FastAtan2(std::sqrt(x * x + z * z), y);
-      const float phi = FastAtan2(x, z);
-      // In rows and columns of the padded map, from its first texel's centre.
-      const float r = theta * rows_per_radian + 0.5f;
-      const float c = phi * columns_per_radian - 0.5f;
-      row[k] = r < last_row ? r : last_row;
-      column[k] = c < 0.0f ? c + columns : c;
-    }
+    kernels_.place_rays(&rays.x[begin], &rays.y[begin], &rays.z[begin], n,
+                        axes.data(), map_.height, map_.width, row, column);
     Float4 block = {0.0f, 0.0f, 0.0f, 0.0f};
     for (int k = 0; k < n; ++k) {
-      const int r = std::min(static_cast<int>(row[k]), height);
-      const int c = std::min(static_cast<int>(column[k]), width - 1);
+      const int r = std::min(static_cast<int>(row[k]), map_.height);
+      const int c = std::min(static_cast<int>(column[k]), map_.width - 1);
       const float fy = row[k] - static_cast<float>(r);
       const float fx = column[k] - static_cast<float>(c);
       const float* const texel =
-          &lanes[4 * (static_cast<size_t>(r) * (width + 1) + c)];
-      const float* const below = texel + size_t{4} * (width + 1);
+          &map_.lanes[4 * (static_cast<size_t>(r) * (map_.width + 1) + c)];
+      const float* const below = texel + size_t{4} * (map_.width + 1);
       const Float4 upper = (1 - fx) * load(texel) + fx * load(texel + 4);
       const Float4 lower = (1 - fx) * load(below) + fx * load(below + 4);
       block += load(&rays.f[4 * (begin + k)]) * ((1 - fy) * upper + fy * lower);
@@ -227,15 +160,10 @@ Eigen::Array3d ReferenceRenderer::PaddedMap::Gather(
 }
 
 template <typename Lookup>
-void ReferenceRenderer::ShadeNear(const Eigen::Vector3d& n,
-                                  const Eigen::Vector3d& wo,
-                                  const Lookup& lookup,
+void ReferenceRenderer::ShadeNear(const PointFrame& frame, const Lookup& lookup,
                                   std::vector<NearSample>* samples,
-                                  PaddedMap::Rays* rays) const {
-  Eigen::Vector3d t, b;
-  ViewFrame(n, wo, &t, &b);
-  quadrature_.SampleNear(std::clamp(n.dot(wo), 0.0, 1.0),
-                         std::max(wo.dot(t), 0.0), samples);
+                                  Rays* rays) const {
+  SampleNearOf(frame, quadrature_, samples);
   const size_t count = samples->size();
   for (std::vector<float>* v : {&rays->x, &rays->y, &rays->z}) v->resize(count);
   rays->f.resize(4 * count);
@@ -253,59 +181,31 @@ void ReferenceRenderer::ShadeNear(const Eigen::Vector3d& n,
 template <typename Lookup>
 void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
                                    const Lookup& lookup, double* E) const {
-  const auto normal = [&](int i) {
-    return Eigen::Vector3d(points[i].normal.cast<double>().normalized());
-  };
-  const auto view = [&](int i) {
-    return Eigen::Vector3d(points[i].wo.cast<double>().normalized());
-  };
-  // Groups of points seen at exactly the same angle, each by index.
-  std::vector<double> cosine(points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
-    cosine[i] = normal(static_cast<int>(i)).dot(view(static_cast<int>(i)));
-  }
-  std::vector<int> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return cosine[a] < cosine[b]; });
-  std::vector<size_t> begins;
-  for (size_t k = 0; k < order.size(); ++k) {
-    if (k == 0 || cosine[order[k]] != cosine[order[begins.back()]] ||
-        k - begins.back() == kMaxGroup) {
-      begins.push_back(k);
-    }
-  }
-  begins.push_back(order.size());
-
+  const ViewGroups groups(points);
   struct Scratch {
     std::vector<NearSample> near;
     std::vector<FarSample> far;
-    PaddedMap::Rays rays;
+    Rays rays;
   };
   std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
                                                 : HardwareThreads());
-  ParallelFor(static_cast<int64_t>(begins.size()) - 1, num_threads_,
-              [&](int64_t group, int worker) {
-                Scratch& s = scratch[worker];
-                const int first = order[begins[group]];
-                ShadeNear(normal(first), view(first), lookup, &s.near, &s.rays);
-                for (size_t k = begins[group]; k < begins[group + 1]; ++k) {
-                  const int i = order[k];
-                  const Eigen::Vector3d n = normal(i), wo = view(i);
-                  Eigen::Vector3d t, b;
-                  ViewFrame(n, wo, &t, &b);
-                  Eigen::Matrix3f frame;
-                  frame << t.cast<float>(), b.cast<float>(), n.cast<float>();
-                  Eigen::Array3d sum = map_.Gather(s.rays, frame);
-                  quadrature_.SampleFar(n, wo, &s.far);
-                  for (const FarSample& far : s.far) {
-                    sum += far.weight *
-                           lookup(far.theta_h, far.theta_d, far.phi_d) *
-                           power_[far.cell];
-                  }
-                  for (int c = 0; c < 3; ++c) E[size_t{3} * i + c] = sum[c];
-                }
-              });
+  ParallelFor(groups.count(), num_threads_, [&](int64_t group, int worker) {
+    Scratch& s = scratch[worker];
+    const size_t begin = groups.begins[group];
+    ShadeNear(PointFrame(points[groups.order[begin]]), lookup, &s.near,
+              &s.rays);
+    for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
+      const int i = groups.order[k];
+      const PointFrame frame(points[i]);
+      Eigen::Array3d sum = Gather(s.rays, frame.Axes());
+      quadrature_.SampleFar(frame.n, frame.wo, &s.far);
+      for (const FarSample& far : s.far) {
+        sum += far.weight * lookup(far.theta_h, far.theta_d, far.phi_d) *
+               power_[far.cell];
+      }
+      for (int c = 0; c < 3; ++c) E[size_t{3} * i + c] = sum[c];
+    }
+  });
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,

@@ -1,0 +1,110 @@
+#include "solvers/bench/known_brdf_sweep.h"
+
+#include <utility>
+
+#include "io/image_file.h"
+#include "solvers/bench/sphere_metrics.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kKeyColumns = 5;
+
+std::string ProblemText(const KnownBrdfSweepOptions& options,
+                        const SweepCase& c, const std::string& prior) {
+  return "problem: illumination\n" + ImageYaml(options) +
+         "reflectance: {known: " + Quoted(c.brdf_path) +
+         "}\nillumination: {width: " + std::to_string(kSweepMapWidth) +
+         ", height: " + std::to_string(kSweepMapHeight) + ", prior: " + prior +
+         "}\n" + SolverYaml(options) +
+         "truth: {illumination: " + Quoted(c.map_path) + "}\n";
+}
+
+Status CompareMaps(const KnownBrdfSweepOptions& options,
+                   const SphereGallery& gallery, const SolverRun& run,
+                   const std::string& folder, bool solved, NamedRow* row) {
+  const StatusOr<Image> truth = TrueMap(options, run.of);
+  if (!truth.ok()) return truth.status();
+  IBRDF_RETURN_IF_ERROR(SetConstantMap(*truth, row));
+  if (!solved) return OkStatus();
+  const StatusOr<Image> map =
+      ReadImage(folder + "/" + run.estimate + "/illumination.exr");
+  if (!map.ok()) return map.status();
+  const auto spheres = gallery.Compare(*map, *truth);
+  if (!spheres.ok()) return spheres.status();
+  for (int k = 0; k < kNumSpheres; ++k) {
+    const std::string name = SphereName(static_cast<Sphere>(k));
+    row->Set(name + "_log_rmse", NumberCell((*spheres)[k].log_rmse));
+    row->Set(name + "_rmse", NumberCell((*spheres)[k].rmse));
+    row->Set(name + "_dssim", NumberCell((*spheres)[k].dssim));
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
+const std::vector<std::string>& KnownBrdfColumns() {
+  static const std::vector<std::string> columns = {
+      "material",
+      "map",
+      "geometry",
+      "prior",
+      "method",
+      "seconds",
+      "peak_mb",
+      "misfit",
+      "illumination_relative_log_rmse",
+      "illumination_relative_log_rmse_aligned",
+      "status",
+      "mirror_log_rmse",
+      "mirror_rmse",
+      "mirror_dssim",
+      "diffuse_log_rmse",
+      "diffuse_rmse",
+      "diffuse_dssim",
+      "glossy_log_rmse",
+      "glossy_rmse",
+      "glossy_dssim",
+      "constant_map_relative_log_rmse",
+      "constant_map_relative_log_rmse_aligned"};
+  return columns;
+}
+
+StatusOr<std::vector<SolverRun>> ListKnownBrdfRuns(
+    const KnownBrdfSweepOptions& options) {
+  const StatusOr<std::vector<SweepCase>> cases = ListSweepCases(options);
+  if (!cases.ok()) return cases.status();
+  std::vector<SolverRun> runs;
+  for (const SweepCase& c : *cases) {
+    for (const std::string& prior : options.priors) {
+      NamedRow row(KnownBrdfColumns());
+      row.Set("material", c.material);
+      row.Set("map", c.map);
+      row.Set("geometry", GeometryName(options));
+      row.Set("prior", prior);
+      row.Set("method", options.method);
+      runs.push_back({c, "known_brdf_" + prior + ".yaml",
+                      ProblemText(options, c, prior),
+                      "known_brdf_" + prior + "_" + options.method, row});
+    }
+  }
+  return runs;
+}
+
+Status RunKnownBrdfSweep(const KnownBrdfSweepOptions& options) {
+  StatusOr<std::vector<SolverRun>> runs = ListKnownBrdfRuns(options);
+  if (!runs.ok()) return runs.status();
+  SolverSweep sweep;
+  sweep.title = "Illumination of a known material";
+  sweep.columns = &KnownBrdfColumns();
+  sweep.key_columns = kKeyColumns;
+  sweep.runs = *std::move(runs);
+  const SphereGallery gallery(options.num_threads);
+  sweep.finish = [&](const SolverRun& run, const std::string& folder,
+                     bool solved, NamedRow* row) {
+    return CompareMaps(options, gallery, run, folder, solved, row);
+  };
+  return RunSolverSweep(options, sweep);
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,30 @@
+// The sweep `known-brdf` (Chen et al. 2020, Fig. 4 and supplement, Table 2):
+// illumination from one image of a known material, with the deep illumination
+// prior and without.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "solvers/bench/solver_sweep.h"
+
+namespace ibrdf {
+
+struct KnownBrdfSweepOptions : SolverSweepOptions {
+  std::vector<std::string> priors = {"unet", "none"};
+};
+
+// Columns of its results.csv, in order; the first five name the run.
+const std::vector<std::string>& KnownBrdfColumns();
+
+// What options select, by material, map, then prior. Fails on a material or map
+// that is not there.
+StatusOr<std::vector<SolverRun>> ListKnownBrdfRuns(
+    const KnownBrdfSweepOptions& options);
+
+// See RunSolverSweep. A case's folder also receives known_brdf_PRIOR.yaml and
+// known_brdf_PRIOR_METHOD/. Estimated maps are compared as spheres too
+// (sphere_metrics.h), with the true map at the estimate's size.
+Status RunKnownBrdfSweep(const KnownBrdfSweepOptions& options);
+
+}  // namespace ibrdf

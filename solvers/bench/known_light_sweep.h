@@ -1,0 +1,29 @@
+// The sweep `known-light` (Chen et al. 2020, Fig. 3): reflectance from one
+// image under a known map, by models that have not seen the material.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "solvers/bench/held_out_models.h"
+#include "solvers/bench/solver_sweep.h"
+
+namespace ibrdf {
+
+struct KnownLightSweepOptions : SolverSweepOptions, ModelOptions {
+  int lobes = 2;
+};
+
+// Columns of its results.csv, in order; the first six name the run.
+const std::vector<std::string>& KnownLightColumns();
+
+// What options select, by material, then map. Fails on a material, map or model
+// that is not there.
+StatusOr<std::vector<SolverRun>> ListKnownLightRuns(
+    const KnownLightSweepOptions& options);
+
+// See RunSolverSweep. A case's folder also receives known_light.yaml and
+// known_light_LOBES_METHOD[_MODEL]/.
+Status RunKnownLightSweep(const KnownLightSweepOptions& options);
+
+}  // namespace ibrdf

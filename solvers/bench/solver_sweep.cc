@@ -1,0 +1,172 @@
+#include "solvers/bench/solver_sweep.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "ibrdf/light/environment_map.h"
+#include "io/atomic_file.h"
+#include "solvers/baselines/cook_torrance_fit.h"
+#include "solvers/bench/child_process.h"
+#include "solvers/bench/sweep_inputs.h"
+#include "solvers/render_scene.h"
+
+namespace ibrdf {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kMaxJsonBytes = size_t{1} << 28;
+
+std::string DescribeEnd(const ChildResult& child) {
+  if (child.signal != 0) return "signal_" + std::to_string(child.signal);
+  switch (child.exit_code) {
+    case 0:
+      return "ok";
+    case 1:
+      return "internal_error";
+    case 2:
+      return "bad_input";
+    case 3:
+      return "no_improvement";
+    case 127:
+      return "not_executable";
+    default:
+      return "exit_" + std::to_string(child.exit_code);
+  }
+}
+
+// False where result.json has no metrics.
+bool ReadMetrics(const std::string& path,
+                 const std::vector<std::string>& columns, NamedRow* row) {
+  const StatusOr<std::string> text = ReadFile(path, kMaxJsonBytes);
+  if (!text.ok()) return false;
+  const nlohmann::json json = nlohmann::json::parse(*text, nullptr, false);
+  if (!json.is_object() || !json.contains("metrics") ||
+      !json["metrics"].is_object()) {
+    return false;
+  }
+  for (const char* name :
+       {"misfit", "brdf_log_rmse", "brdf_log_rmse_aligned",
+        "brdf_log_rmse_below80", "illumination_relative_log_rmse",
+        "illumination_relative_log_rmse_aligned"}) {
+    const bool wanted =
+        std::find(columns.begin(), columns.end(), name) != columns.end();
+    const auto value = json["metrics"].find(name);
+    if (wanted && value != json["metrics"].end() && value->is_number()) {
+      row->Set(name, NumberCell(value->get<double>()));
+    }
+  }
+  return true;
+}
+
+Status RunOne(const SolverSweepOptions& options, const SolverSweep& sweep,
+              const SolverRun& run, const std::string& results) {
+  const fs::path folder = CaseFolder(options, run.of);
+  const fs::path estimate = folder / run.estimate;
+  std::error_code error;
+  fs::create_directories(estimate, error);
+  if (error) return InvalidInput(estimate.string(), error.message());
+  // A result left by a run that was cut off is not this run's.
+  fs::remove(estimate / "result.json", error);
+  const std::string problem = (folder / run.problem_name).string();
+  IBRDF_RETURN_IF_ERROR(WriteFileAtomically(problem, run.problem));
+
+  const StatusOr<ChildResult> child = RunChild(
+      {options.solver_program, "--problem", problem, "--out", estimate.string(),
+       "--threads", std::to_string(options.num_threads), "--seed",
+       std::to_string(options.seed), "--quiet"},
+      (estimate / "solver.log").string(), options.stop);
+  if (!child.ok()) return child.status();
+  if (child->exit_code == 130 || options.stopped()) {
+    return Status(StatusCode::kInterrupted, run.of.name + ": interrupted");
+  }
+  NamedRow row = run.row;
+  row.Set("seconds", NumberCell(child->seconds));
+  row.Set("peak_mb", NumberCell(child->peak_mb));
+  std::string status = DescribeEnd(*child);
+  bool solved =
+      child->signal == 0 && (child->exit_code == 0 || child->exit_code == 3);
+  if (solved &&
+      !ReadMetrics((estimate / "result.json").string(), *sweep.columns, &row)) {
+    status = "no_result";
+    solved = false;
+  }
+  row.Set("status", status);
+  if (sweep.finish) {
+    const Status finished = sweep.finish(run, folder.string(), solved, &row);
+    if (!finished.ok())
+      LOG(WARNING) << run.of.name << ": " << finished.message();
+  }
+  return AppendResult(results, *sweep.columns, row.cells());
+}
+
+}  // namespace
+
+std::string SolverYaml(const SolverSweepOptions& options) {
+  return "solver: {method: " + options.method +
+         ", seconds: " + NumberCell(options.solver_seconds) + "}\n";
+}
+
+StatusOr<Image> TrueMap(const SweepOptions& options, const SweepCase& c) {
+  const StatusOr<Image> full =
+      LoadKnownIllumination(RenderProblem(options, c).illumination);
+  if (!full.ok()) return full.status();
+  return ResizeMap(*full, kSweepMapHeight, kSweepMapWidth);
+}
+
+Status SetConstantMap(const Image& truth, NamedRow* row) {
+  const StatusOr<IlluminationMetrics> constant = ScoreConstantMap(truth);
+  if (!constant.ok()) return constant.status();
+  row->Set("constant_map_relative_log_rmse",
+           NumberCell(constant->relative_log_rmse));
+  row->Set("constant_map_relative_log_rmse_aligned",
+           NumberCell(constant->relative_log_rmse_aligned));
+  return OkStatus();
+}
+
+Status RunSolverSweep(const SolverSweepOptions& options,
+                      const SolverSweep& sweep) {
+  if (!fs::is_regular_file(options.solver_program)) {
+    return InvalidInput(options.solver_program,
+                        "expected the program of the "
+                        "solver (--solver-program)");
+  }
+  std::error_code error;
+  fs::create_directories(options.out, error);
+  if (error) return InvalidInput(options.out, error.message());
+  const std::string results = options.out + "/results.csv";
+  const StatusOr<std::vector<ResultsRow>> present =
+      ReadResults(results, *sweep.columns);
+  if (!present.ok()) return present.status();
+  std::vector<bool> done;
+  std::vector<SweepCase> open;
+  for (const SolverRun& run : sweep.runs) {
+    done.push_back(HoldsCase(*present, run.row.cells(), sweep.key_columns));
+    const bool listed = !open.empty() && open.back().name == run.of.name;
+    if (!done.back() && !listed) open.push_back(run.of);
+  }
+  IBRDF_RETURN_IF_ERROR(MakeInputs(options, open));
+  for (size_t i = 0; i < sweep.runs.size(); ++i) {
+    if (options.report) {
+      options.report("case " + std::to_string(i + 1) + " / " +
+                     std::to_string(sweep.runs.size()) + "  " +
+                     sweep.runs[i].of.name + "  " + sweep.runs[i].estimate +
+                     (done[i] ? "  (in results.csv)" : ""));
+    }
+    if (!done[i]) {
+      IBRDF_RETURN_IF_ERROR(RunOne(options, sweep, sweep.runs[i], results));
+    }
+  }
+  const StatusOr<std::vector<ResultsRow>> rows =
+      ReadResults(results, *sweep.columns);
+  if (!rows.ok()) return rows.status();
+  return WriteFileAtomically(
+      options.out + "/results.md",
+      ResultsMarkdown("# " + sweep.title + "\n\n    " + options.command + "\n",
+                      *sweep.columns, *rows));
+}
+
+}  // namespace ibrdf

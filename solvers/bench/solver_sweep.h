@@ -1,0 +1,60 @@
+// A sweep whose cases are solved by the program ibrdf_solve.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "solvers/bench/results_table.h"
+#include "solvers/bench/sweep_cases.h"
+
+namespace ibrdf {
+
+// Size of the estimated maps, and of the true ones that they are held against.
+inline constexpr int kSweepMapWidth = 128;
+inline constexpr int kSweepMapHeight = 64;
+
+struct SolverSweepOptions : SweepOptions {
+  std::string method = "auto";
+  double solver_seconds = 120.0;  // budget of the solver
+  std::string solver_program;
+};
+
+struct SolverRun {
+  SweepCase of;
+  std::string problem_name;  // of the problem file in the case's folder
+  std::string problem;       // its text
+  std::string estimate;      // folder of the results in the case's folder
+  NamedRow row;              // with the cells that name the run
+};
+
+struct SolverSweep {
+  std::string title;  // of results.md
+  const std::vector<std::string>* columns = nullptr;
+  int key_columns = 0;  // the first ones, which name a run
+  std::vector<SolverRun> runs;
+  // Fills further cells of the row once the solver has ended; `solved`: it left
+  // an estimate. What it fails with is logged. May be empty.
+  std::function<Status(const SolverRun& run, const std::string& folder,
+                       bool solved, NamedRow* row)>
+      finish;
+};
+
+// "solver: {...}" of a problem file.
+std::string SolverYaml(const SolverSweepOptions& options);
+
+// The true map of a case at the estimate's size.
+StatusOr<Image> TrueMap(const SweepOptions& options, const SweepCase& c);
+
+// Sets the columns constant_map_relative_log_rmse and ..._aligned.
+Status SetConstantMap(const Image& truth, NamedRow* row);
+
+// Runs what out/results.csv does not hold yet: makes the inputs that are
+// missing, runs the solver on each problem, and appends the row: seconds,
+// peak_mb, status and those metrics of result.json that are columns. Then
+// writes out/results.md. A solver that fails gets a row whose `status` says
+// how; one that was interrupted gets none and ends the sweep (kInterrupted).
+Status RunSolverSweep(const SolverSweepOptions& options,
+                      const SolverSweep& sweep);
+
+}  // namespace ibrdf

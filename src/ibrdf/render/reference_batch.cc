@@ -1,0 +1,321 @@
+#include "ibrdf/render/reference_batch.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "ibrdf/base/parallel_for.h"
+#include "ibrdf/light/environment_map.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+// Texels with this many times the mean power of a texel stay apart.
+constexpr double kBrightTexel = 16.0;
+
+int RoundUp(size_t n) {
+  return static_cast<int>((n + kReferenceStride - 1) / kReferenceStride *
+                          kReferenceStride);
+}
+
+// A texel's two neighbours among the centres of blocks and their weights; of
+// the four, those across a pole or a seam are wrapped.
+struct Share {
+  int block[2];
+  double weight[2];
+};
+Share ShareOf(int texel, int block) {
+  const double x = (texel + 0.5) / block - 0.5;
+  const double first = std::floor(x);
+  Share share;
+  for (int k = 0; k < 2; ++k) share.block[k] = static_cast<int>(first) + k;
+  share.weight[1] = x - first;
+  share.weight[0] = 1.0 - share.weight[1];
+  return share;
+}
+
+}  // namespace
+
+// The point mirrored so that its normal has no negative x and y. Cells of a map
+// are mirrored with it: points of one key share the far rule's samples, but for
+// the sense of phi_d, which one mirror turns around.
+struct ReferenceBatch::Mirrored {
+  using Key = std::array<float, 6>;
+  explicit Mirrored(const ShadingPoint& point)
+      : across_x(point.normal.x() < 0.0f), across_y(point.normal.y() < 0.0f) {
+    for (Eigen::Vector3f* v : {&out.normal, &out.wo}) {
+      *v = v == &out.normal ? point.normal : point.wo;
+      if (across_x) v->x() = -v->x();
+      if (across_y) v->y() = -v->y();
+    }
+  }
+  Key key() const {
+    return {out.normal.x(), out.normal.y(), out.normal.z(),
+            out.wo.x(),     out.wo.y(),     out.wo.z()};
+  }
+  bool other_hand() const { return across_x != across_y; }
+  // Cell of the point's own map for a cell of the mirrored one.
+  int Cell(int cell, int height, int width) const {
+    const int row = cell / width, column = cell % width;
+    return (across_y ? height - 1 - row : row) * width +
+           (across_x ? width - 1 - column : column);
+  }
+
+  bool across_x, across_y;
+  ShadingPoint out{};
+};
+
+struct ReferenceBatch::Scratch {
+  std::vector<NearSample> near;
+  std::vector<FarSample> far;
+  std::vector<MerlTaps> taps;
+  std::vector<float> f;  // [kRayBlock][tables.stride] and room to read beyond
+  std::vector<float> g;  // [kRayBlock][maps.stride]
+  std::vector<double> sums;  // [points of the group][3][maps][tables, rounded]
+};
+
+ReferenceBatch::Light ReferenceBatch::GatherLight(
+    const std::vector<const Image*>& maps, int stride, int far_width) {
+  const int height = maps[0]->height, width = maps[0]->width;
+  const int block = FarBlockSize(height, width, far_width);
+  const std::vector<FarCell> texels = MapCells(height, width, 1);
+  const size_t count = maps.size();
+  const auto power = [&](size_t map, size_t texel) {
+    const float* const rgb = &maps[map]->rgb[3 * texel];
+    return Eigen::Array3d(Eigen::Array3d(rgb[0], rgb[1], rgb[2]) *
+                          texels[texel].solid_angle);
+  };
+  std::vector<double> bright(count, 0.0);  // a texel's least
+  for (size_t l = 0; l < count; ++l) {
+    for (size_t t = 0; t < texels.size(); ++t) {
+      bright[l] += power(l, t).abs().sum();
+    }
+    bright[l] *= kBrightTexel / static_cast<double>(texels.size());
+  }
+
+  Light light;
+  light.height = height / block;
+  light.width = width / block;
+  light.blocks = MapCells(height, width, block);
+  std::vector<double> sums(light.blocks.size() * stride, 0.0);
+  std::vector<double> solid_angle(light.blocks.size(), 0.0);
+  for (int t = 0; t < height * width; ++t) {
+    const Share rows = ShareOf(t / width, block);
+    const Share columns = ShareOf(t % width, block);
+    double weight[4];
+    double* to[4];
+    for (int corner = 0; corner < 4; ++corner) {
+      const int a = corner >> 1, b = corner & 1;
+      const int row = std::clamp(rows.block[a], 0, light.height - 1);
+      int column = columns.block[b] + light.width;
+      if (row != rows.block[a]) column += light.width / 2;  // across a pole
+      const size_t cell =
+          static_cast<size_t>(row) * light.width + column % light.width;
+      weight[corner] = rows.weight[a] * columns.weight[b];
+      solid_angle[cell] += weight[corner] * texels[t].solid_angle;
+      to[corner] = &sums[cell * stride];
+    }
+    std::vector<float> apart;
+    for (size_t l = 0; l < count; ++l) {
+      const Eigen::Array3d p = power(l, t);
+      if (block > 1 && p.abs().sum() > bright[l]) {
+        apart.resize(stride, 0.0f);
+        for (int c = 0; c < 3; ++c) {
+          apart[c * count + l] = static_cast<float>(p[c]);
+        }
+        continue;
+      }
+      for (int corner = 0; corner < 4; ++corner) {
+        for (int c = 0; c < 3; ++c) {
+          to[corner][c * count + l] += weight[corner] * p[c];
+        }
+      }
+    }
+    if (apart.empty()) continue;
+    light.texels.push_back(texels[t]);
+    light.texel_power.insert(light.texel_power.end(), apart.begin(),
+                             apart.end());
+  }
+  // So that constant light stays constant.
+  for (size_t i = 0; i < light.blocks.size(); ++i) {
+    light.blocks[i].solid_angle = solid_angle[i];
+  }
+  light.block_power.assign(sums.begin(), sums.end());
+  return light;
+}
+
+ReferenceBatch::ReferenceBatch(const MerlTableStack& tables,
+                               const std::vector<const Image*>& maps,
+                               const ReferenceOptions& options)
+    : ReferenceBatch(
+          tables, maps,
+          GatherLight(maps, RoundUp(3 * maps.size()), options.far_width),
+          options) {}
+
+ReferenceBatch::ReferenceBatch(const MerlTableStack& tables,
+                               const std::vector<const Image*>& maps,
+                               Light&& light, const ReferenceOptions& options)
+    : tables_(tables),
+      num_maps_(static_cast<int>(maps.size())),
+      num_threads_(options.num_threads),
+      sums_size_(3 * maps.size() * RoundUp(tables.count())),
+      maps_(maps, RoundUp(3 * maps.size())),
+      far_height_(light.height),
+      far_width_(light.width),
+      texels_(std::move(light.texels)),
+      block_power_(std::move(light.block_power)),
+      texel_power_(std::move(light.texel_power)),
+      quadrature_(std::move(light.blocks),
+                  NearOptions(maps[0]->width, options)) {}
+
+void ReferenceBatch::AddProducts(const float* const* rows, int n, int index,
+                                 Scratch* s) const {
+  kernels_.add_products(s->f.data(), tables_.stride(), tables_.count(), rows,
+                        num_maps_, n, &s->sums[index * sums_size_]);
+}
+
+void ReferenceBatch::AddNear(const std::vector<ShadingPoint>& points,
+                             const int* group, int count, Scratch* s) const {
+  SampleNearOf(PointFrame(points[group[0]]), quadrature_, &s->near);
+  std::vector<Eigen::Matrix3f> axes(count);
+  for (int p = 0; p < count; ++p) axes[p] = PointFrame(points[group[p]]).Axes();
+  for (size_t begin = 0; begin < s->near.size(); begin += kRayBlock) {
+    const int n =
+        static_cast<int>(std::min<size_t>(kRayBlock, s->near.size() - begin));
+    float x[kRayBlock], y[kRayBlock], z[kRayBlock];
+    float row[kRayBlock], column[kRayBlock];
+    for (int k = 0; k < n; ++k) {
+      const NearSample& near = s->near[begin + k];
+      x[k] = static_cast<float>(near.wi.x());
+      y[k] = static_cast<float>(near.wi.y());
+      z[k] = static_cast<float>(near.wi.z());
+      s->taps[k] =
+          MerlTapsAt(near.theta_h, near.theta_d, near.phi_d, near.weight);
+    }
+    tables_.Blend(kernels_, s->taps.data(), n, s->f.data());
+    for (int p = 0; p < count; ++p) {
+      kernels_.place_rays(x, y, z, n, axes[p].data(), maps_.height, maps_.width,
+                          row, column);
+      kernels_.look_up_maps(maps_.lanes.data(), maps_.height, maps_.width,
+                            maps_.stride, row, column, n, s->g.data());
+      const float* rows[kRayBlock];
+      for (int k = 0; k < n; ++k) rows[k] = &s->g[size_t{1} * k * maps_.stride];
+      AddProducts(rows, n, p, s);
+    }
+  }
+}
+
+void ReferenceBatch::AddFar(const std::vector<ShadingPoint>& points,
+                            const int* group, int count, Scratch* s) const {
+  std::vector<std::pair<Mirrored, int>> mirrored, own;
+  for (int p = 0; p < count; ++p) {
+    mirrored.emplace_back(Mirrored(points[group[p]]), p);
+  }
+  std::stable_sort(mirrored.begin(), mirrored.end(),
+                   [](const auto& a, const auto& b) {
+                     return a.first.key() < b.first.key();
+                   });
+  for (size_t first = 0, last = 0; first < mirrored.size(); first = last) {
+    const Mirrored& shared = mirrored[first].first;
+    while (last < mirrored.size() &&
+           mirrored[last].first.key() == shared.key()) {
+      ++last;
+    }
+    const PointFrame frame(shared.out);
+    const double correction = quadrature_.SampleFar(frame.n, frame.wo, &s->far);
+    for (const bool other_hand : {false, true}) {
+      own.clear();
+      for (size_t m = first; m < last; ++m) {
+        if (mirrored[m].first.other_hand() == other_hand) {
+          own.push_back(mirrored[m]);
+        }
+      }
+      if (!own.empty()) AddBlocks(own, other_hand, s);
+    }
+    for (size_t m = first; m < last; ++m) {
+      const int index = mirrored[m].second;
+      AddTexels(PointFrame(points[group[index]]), correction, index, s);
+    }
+  }
+}
+
+void ReferenceBatch::AddBlocks(
+    const std::vector<std::pair<Mirrored, int>>& points, bool other_hand,
+    Scratch* s) const {
+  for (size_t begin = 0; begin < s->far.size(); begin += kRayBlock) {
+    const int n =
+        static_cast<int>(std::min<size_t>(kRayBlock, s->far.size() - begin));
+    const FarSample* const far = &s->far[begin];
+    for (int k = 0; k < n; ++k) {
+      const double phi_d = other_hand ? kPi - far[k].phi_d : far[k].phi_d;
+      s->taps[k] =
+          MerlTapsAt(far[k].theta_h, far[k].theta_d, phi_d, far[k].weight);
+    }
+    tables_.Blend(kernels_, s->taps.data(), n, s->f.data());
+    for (const auto& [mirrored, index] : points) {
+      const float* rows[kRayBlock];
+      for (int k = 0; k < n; ++k) {
+        const int cell = mirrored.Cell(far[k].cell, far_height_, far_width_);
+        rows[k] = &block_power_[static_cast<size_t>(cell) * maps_.stride];
+      }
+      AddProducts(rows, n, index, s);
+    }
+  }
+}
+
+void ReferenceBatch::AddTexels(const PointFrame& frame, double correction,
+                               int index, Scratch* s) const {
+  quadrature_.SampleCells(texels_, frame.n, frame.wo, &s->far);
+  for (size_t begin = 0; begin < s->far.size(); begin += kRayBlock) {
+    const int n =
+        static_cast<int>(std::min<size_t>(kRayBlock, s->far.size() - begin));
+    const float* rows[kRayBlock];
+    for (int k = 0; k < n; ++k) {
+      const FarSample& far = s->far[begin + k];
+      s->taps[k] = MerlTapsAt(far.theta_h, far.theta_d, far.phi_d,
+                              far.weight * correction);
+      rows[k] = &texel_power_[static_cast<size_t>(far.cell) * maps_.stride];
+    }
+    tables_.Blend(kernels_, s->taps.data(), n, s->f.data());
+    AddProducts(rows, n, index, s);
+  }
+}
+
+void ReferenceBatch::Render(const std::vector<ShadingPoint>& points,
+                            double* E) const {
+  const ViewGroups groups(points);
+  const size_t tables = tables_.count(), maps = num_maps_;
+  const size_t row = RoundUp(tables);
+  std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
+                                                : HardwareThreads());
+  ParallelFor(groups.count(), num_threads_, [&](int64_t g, int worker) {
+    Scratch& s = scratch[worker];
+    const int* const group = &groups.order[groups.begins[g]];
+    const size_t count = groups.begins[g + 1] - groups.begins[g];
+    s.taps.resize(kRayBlock);
+    s.f.resize(size_t{kRayBlock} * tables_.stride() + kReferenceStride);
+    s.g.resize(size_t{kRayBlock} * maps_.stride);
+    s.sums.assign(count * sums_size_, 0.0);
+    AddNear(points, group, static_cast<int>(count), &s);
+    AddFar(points, group, static_cast<int>(count), &s);
+    for (size_t p = 0; p < count; ++p) {
+      for (size_t m = 0; m < tables; ++m) {
+        for (size_t l = 0; l < maps; ++l) {
+          double* const to =
+              E + 3 * ((m * maps + l) * points.size() + group[p]);
+          for (int c = 0; c < 3; ++c) {
+            to[c] = s.sums[p * sums_size_ + (c * maps + l) * row + m];
+          }
+        }
+      }
+    }
+  });
+}
+
+}  // namespace ibrdf

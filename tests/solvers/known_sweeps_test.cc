@@ -1,0 +1,123 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "io/model_file.h"
+#include "solvers/bench/known_brdf_sweep.h"
+#include "solvers/bench/known_light_sweep.h"
+#include "tests/solvers/sweep_testing.h"
+#include "tests/support/tiny_model.h"
+
+namespace ibrdf {
+namespace {
+
+class KnownSweepsTest : public testing::SweepTest {};
+
+TEST_F(KnownSweepsTest, KnownLightSolvesWithModelsThatHaveNotSeenTheMaterial) {
+  NeuralBrdfModel model = TinyModel(2);
+  std::filesystem::create_directories(dir_.File("models/fold0"));
+  std::filesystem::create_directories(dir_.File("models/fold1"));
+  ASSERT_TRUE(WriteModel(model, dir_.File("models/fold1/m.ibrdf")).ok());
+  model.names = {"m0.red",    "m0.green",    "m0.blue",
+                 "paint.red", "paint.green", "paint.blue"};
+  ASSERT_TRUE(WriteModel(model, dir_.File("models/fold0/m.ibrdf")).ok());
+
+  KnownLightSweepOptions options;
+  Apply(&options);
+  options.models = dir_.File("models");
+  options.map_names = {"a", "b"};
+  ASSERT_TRUE(RunKnownLightSweep(options).ok());
+  const auto& columns = KnownLightColumns();
+  ASSERT_EQ(2u, Rows(columns).size());
+  const ResultsRow row = Rows(columns)[1];
+  EXPECT_EQ("b", Cell(columns, row, "map"));
+  EXPECT_EQ("fold1/m.ibrdf", Cell(columns, row, "model"));
+  EXPECT_EQ("0.25", Cell(columns, row, "misfit"));
+  EXPECT_EQ("ok", Cell(columns, row, "status"));
+  const std::string yaml =
+      ReadBytes(options.out + "/cases/paint_b/known_light.yaml");
+  EXPECT_NE(std::string::npos, yaml.find("problem: reflectance\n"));
+  EXPECT_NE(std::string::npos, yaml.find("models/fold1/m.ibrdf"));
+  EXPECT_NE(std::string::npos, yaml.find("known: "));
+
+  CutResults();
+  ASSERT_TRUE(RunKnownLightSweep(options).ok());
+  EXPECT_EQ(3u, Calls());
+  EXPECT_EQ(2u, Rows(columns).size());
+  // Another model is another run.
+  options.models.clear();
+  ASSERT_TRUE(RunKnownLightSweep(options).ok());
+  EXPECT_EQ(5u, Calls());
+  ASSERT_TRUE(RunKnownLightSweep(options).ok());
+  EXPECT_EQ(5u, Calls());
+}
+
+TEST_F(KnownSweepsTest, KnownBrdfComparesPriorsAndSpheres) {
+  Image estimate =
+      ResizeMap(testing::SmoothMap(8, 16), kSweepMapHeight, kSweepMapWidth);
+  for (float& v : estimate.rgb) v *= 3.0f;
+  ASSERT_TRUE(WriteExr(estimate, dir_.File("estimate.exr")).ok());
+  KnownBrdfSweepOptions options;
+  Apply(&options);
+  options.map_names = {"a"};
+  ASSERT_TRUE(RunKnownBrdfSweep(options).ok());
+  const auto& columns = KnownBrdfColumns();
+  const std::vector<ResultsRow> rows = Rows(columns);
+  ASSERT_EQ(2u, rows.size());
+  EXPECT_EQ("unet", Cell(columns, rows[0], "prior"));
+  EXPECT_EQ("none", Cell(columns, rows[1], "prior"));
+  for (const ResultsRow& row : rows) {
+    EXPECT_EQ("0.125", Cell(columns, row, "illumination_relative_log_rmse"));
+    EXPECT_LT(0.0,
+              std::stod(Cell(columns, row, "constant_map_relative_log_rmse")));
+    for (const char* column :
+         {"mirror_log_rmse", "diffuse_log_rmse", "glossy_log_rmse"}) {
+      // The true map but for the scale.
+      EXPECT_NEAR(0.0, std::stod(Cell(columns, row, column)), 1e-4) << column;
+    }
+  }
+  const std::string folder = options.out + "/cases/paint_a/";
+  EXPECT_NE(std::string::npos,
+            ReadBytes(folder + "known_brdf_none.yaml").find("prior: none"));
+
+  // A kill after the first prior: only the second runs again.
+  const std::string csv = ReadBytes(Results());
+  WriteBytes(Results(), csv.substr(0, csv.rfind("paint") + 4));
+  ASSERT_TRUE(RunKnownBrdfSweep(options).ok());
+  EXPECT_EQ(3u, Calls());
+  EXPECT_EQ(2u, Rows(columns).size());
+}
+
+TEST_F(KnownSweepsTest, AnEstimateThatIsNotThereLeavesCellsEmpty) {
+  WriteSolver("{}", 1);
+  KnownBrdfSweepOptions options;
+  Apply(&options);
+  options.map_names = {"a"};
+  options.priors = {"none"};
+  ASSERT_TRUE(RunKnownBrdfSweep(options).ok());
+  const auto& columns = KnownBrdfColumns();
+  const ResultsRow row = Rows(columns).at(0);
+  EXPECT_EQ("internal_error", Cell(columns, row, "status"));
+  EXPECT_EQ("", Cell(columns, row, "mirror_rmse"));
+  EXPECT_NE("", Cell(columns, row, "constant_map_relative_log_rmse"));
+}
+
+TEST_F(KnownSweepsTest, ListRuns) {
+  KnownBrdfSweepOptions brdf;
+  Apply(&brdf);
+  EXPECT_EQ(6u, ListKnownBrdfRuns(brdf).value().size());
+  brdf.only_index = brdf.only_count = 3;
+  const std::vector<SolverRun> runs = ListKnownBrdfRuns(brdf).value();
+  ASSERT_EQ(2u, runs.size());
+  EXPECT_EQ("paint_c", runs[1].of.name);
+  EXPECT_EQ("known_brdf_none_auto", runs[1].estimate);
+  KnownLightSweepOptions light;
+  Apply(&light);
+  light.materials = {"gold"};
+  EXPECT_NE(std::string::npos,
+            ListKnownLightRuns(light).status().message().find("gold.binary"));
+  EXPECT_EQ(0u, Calls());
+}
+
+}  // namespace
+}  // namespace ibrdf
