@@ -58,6 +58,9 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
       level_(process.Level()),
       correlation_(
           LightCorrelation(map_height, map_width, process.correlation_degrees)),
+      map_height_(map_height),
+      map_width_(map_width),
+      texel_variance_(process.VarianceWithin(180.0 / map_height)),
       num_threads_(num_threads) {
   CHECK_GT(num_points_, 0);
   CHECK_EQ(log_radiance.size() % 3, 0u);
@@ -74,22 +77,34 @@ double MarginalLikelihood::LevelFor(
   return sum / static_cast<double>(y_.size());
 }
 
-Eigen::VectorXd MarginalLikelihood::Sharpness(
-    const std::array<RowMatrix, 3>& matrices) const {
-  const Eigen::Index P = num_points_;
-  Eigen::VectorXd sharpness(3 * P);
-  for (int c = 0; c < 3; ++c) {
-    const Eigen::ArrayXd sums =
-        matrices[c].rowwise().sum().array().max(kSmallestRadiance);
-    sharpness.segment(c * P, P) =
-        matrices[c].rowwise().squaredNorm().array() / sums.square();
-  }
-  return sharpness;
-}
-
 Eigen::VectorXd MarginalLikelihood::NoiseVariance(
-    const Eigen::VectorXd& sharpness, double sigma, double amplitude) const {
-  return (amplitude * texel_variance_ * sharpness).array() + sigma * sigma;
+    const std::array<RowMatrix, 3>& matrices, double sigma,
+    const LightMode& mode) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  const Point point = At(matrices, mode.level, mode.l);
+  Eigen::VectorXd noise(3 * P);
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd power = point.L.segment(c * t, t).cwiseAbs2();
+    for (Eigen::Index p = 0; p < P; ++p) {
+      const double* T = matrices[c].row(p).data();
+      double sum = 0.0;
+      const auto add = [&](int a, int b) {
+        const double difference = T[a] - T[b];
+        sum += difference * difference * (power[a] + power[b]);
+      };
+      for (int r = 0; r < map_height_; ++r) {
+        const int row = r * map_width_;
+        for (int x = 0; x < map_width_; ++x) {
+          add(row + x, row + (x + 1) % map_width_);
+          if (r + 1 < map_height_) add(row + x, row + map_width_ + x);
+        }
+      }
+      const double E = point.E[c * P + p];
+      noise[c * P + p] =
+          sigma * sigma + texel_variance_ * 0.125 * sum / (E * E);
+    }
+  }
+  return noise;
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Eigen::VectorXd& g) const {
@@ -187,20 +202,17 @@ Eigen::VectorXd MarginalLikelihood::SolveDual(const LightLinearisation& linear,
 }
 
 MarginalValue MarginalLikelihood::Evaluate(
-    const std::array<RowMatrix, 3>& matrices,
-    const MarginalHyperparameters& hyper, double tolerance, LightMode* mode,
+    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    double log_amplitude, double tolerance, LightMode* mode,
     MarginalGradient* gradient) const {
   const Eigen::Index t = num_texels(), P = num_points_;
-  const double sigma = std::exp(hyper.log_sigma);
-  const double amplitude = std::exp(hyper.log_amplitude);
-  const Eigen::VectorXd noise =
-      NoiseVariance(Sharpness(matrices), sigma, amplitude);
+  const double amplitude = std::exp(log_amplitude);
   const Eigen::VectorXd weight = noise.cwiseInverse();
   const auto likelihood_of = [&](const Point& at) {
     return 0.5 * at.residual.cwiseAbs2().dot(weight);
   };
   MarginalValue value;
-  if (!weight.allFinite()) return value;
+  if (!weight.allFinite() || !std::isfinite(amplitude)) return value;
   if (mode->l.size() == 0) {
     mode->level = LevelFor(matrices);
     mode->l = mode->dual = Eigen::VectorXd::Zero(3 * t);
@@ -275,7 +287,7 @@ MarginalValue MarginalLikelihood::Evaluate(
   value.misfit = point.residual.cwiseAbs().mean();
   value.ok = std::isfinite(value.cost);
   if (gradient != nullptr && value.ok) {
-    AddGradient(matrices, sigma, amplitude, *mode, point, gradient);
+    AddGradient(weight, amplitude, *mode, point, gradient);
   }
   return value;
 }
@@ -283,16 +295,13 @@ MarginalValue MarginalLikelihood::Evaluate(
 // With F the cost, Phi its first two terms, l* the mode: dF = (partial of F at
 // fixed l) - v . d(grad_l Phi), v = H^-1 q, H the Hessian of Phi and q the
 // gradient of the log determinant in l.
-void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
-                                     double sigma, double amplitude,
-                                     const LightMode& mode, const Point& point,
+void MarginalLikelihood::AddGradient(const Eigen::VectorXd& weight,
+                                     double amplitude, const LightMode& mode,
+                                     const Point& point,
                                      MarginalGradient* gradient) const {
   const Eigen::Index t = num_texels(), P = num_points_;
   const LightLinearisation& linear = *mode.linearisation;
   const Eigen::VectorXd& r = point.residual;
-  const Eigen::VectorXd sharpness = Sharpness(matrices);
-  const Eigen::VectorXd weight =
-      NoiseVariance(sharpness, sigma, amplitude).cwiseInverse();
   RowMatrix inverse = linear.factor;
   InvertFactored(&inverse);
 
@@ -329,10 +338,6 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
             ApplyJacobianTransposed(linear, weighted.cwiseProduct(Jv));
   }
 
-  // By the diagonal of D.
-  const Eigen::VectorXd by_noise =
-      -0.5 * weighted.cwiseAbs2() + 0.5 * inverse.diagonal() -
-      Jv.cwiseProduct(weighted).cwiseProduct(weight);
   for (int c = 0; c < 3; ++c) {
     const auto L = point.L.segment(c * t, t);
     const Eigen::ArrayXd weighted_c = weighted.segment(c * P, P).array();
@@ -347,19 +352,8 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
         (weighted_c + Jv_c * weighted_c + Jv_c * weight_c).matrix();
     out.noalias() += weighted_c.matrix() * v.segment(c * t, t).transpose();
     out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
-    // Sharpness: d q_p = 2 (T_pt / S_p^2 - q_p / S_p) dT_pt.
-    const Eigen::ArrayXd inverse_sum =
-        matrices[c].rowwise().sum().array().max(kSmallestRadiance).inverse();
-    const Eigen::ArrayXd by_sharpness = 2.0 * amplitude * texel_variance_ *
-                                        by_noise.segment(c * P, P).array() *
-                                        inverse_sum;
-    out.noalias() +=
-        (by_sharpness * inverse_sum).matrix().asDiagonal() * matrices[c];
-    out.colwise() -=
-        (by_sharpness * sharpness.segment(c * P, P).array()).matrix();
   }
 
-  gradient->log_sigma = 2.0 * sigma * sigma * by_noise.sum();
   const Eigen::VectorXd local = ApplyLocal(mode.dual);
   // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the level.
   double trace = 3.0 * static_cast<double>(P) -
@@ -370,18 +364,14 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
     }
   }
   gradient->log_amplitude =
-      amplitude * (-0.5 * mode.dual.dot(local) + w.dot(local) +
-                   texel_variance_ * sharpness.dot(by_noise)) +
-      0.5 * trace;
+      amplitude * (-0.5 * mode.dual.dot(local) + w.dot(local)) + 0.5 * trace;
 }
 
 Eigen::VectorXd MarginalLikelihood::LightVariance(
-    const std::array<RowMatrix, 3>& matrices,
-    const MarginalHyperparameters& hyper, const LightMode& mode) const {
+    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    double log_amplitude, const LightMode& mode) const {
   const Eigen::Index t = num_texels(), P = num_points_;
-  const double amplitude = std::exp(hyper.log_amplitude);
-  const Eigen::VectorXd noise =
-      NoiseVariance(Sharpness(matrices), std::exp(hyper.log_sigma), amplitude);
+  const double amplitude = std::exp(log_amplitude);
   const auto linear =
       Linearise(matrices, noise, amplitude, At(matrices, mode.level, mode.l));
   CHECK(linear != nullptr);

@@ -18,13 +18,6 @@
 
 namespace ibrdf {
 
-// Logarithms: of the standard deviation sigma of log-radiance residuals (noise
-// and what the model cannot render), of the process' amplitude.
-struct MarginalHyperparameters {
-  double log_sigma = -3.2;
-  double log_amplitude = 0.0;
-};
-
 // A linearisation of log E in l, d log E = J dl, with what its normal equations
 // need.
 struct LightLinearisation {
@@ -44,7 +37,6 @@ struct LightMode {
 
 struct MarginalGradient {
   std::array<RowMatrix, 3> matrices;  // [points][texels] each
-  double log_sigma = 0.0;
   double log_amplitude = 0.0;
 };
 
@@ -63,11 +55,7 @@ struct MarginalValue {
 //   + log det(D + J K J^T) / 2  at the mode of l,
 // J = d log E / d l, in the space of the data, so that K needs no inverse.
 //
-// The map's texels are coarse, and what light does inside them shows where a
-// lobe is narrower: D = diag(sigma^2 + amplitude v_texel q), q_p the sum over
-// texels of (T_pt / sum_t T_pt)^2, one over the number of texels that a point
-// sees, and v_texel the process' variance inside a texel. A mirror is then not
-// blamed for what the map cannot hold, nor preferred for it.
+// D is diagonal and the caller's, see NoiseVariance.
 // Immutable; may be used from several threads.
 class MarginalLikelihood {
  public:
@@ -79,21 +67,34 @@ class MarginalLikelihood {
   int num_points() const { return num_points_; }
   int num_texels() const { return static_cast<int>(correlation_.rows()); }
 
-  // matrices: T_c [points][texels], >= 0, of the reflectance in channel c.
+  // matrices: T_c [points][texels], >= 0, of the reflectance in channel c;
+  // noise: the diagonal of D [3 * points], > 0; the process' variances are
+  // multiplied by exp(log_amplitude).
   // `mode` is where the search starts, if it holds one, and receives the mode,
   // found where another step would gain less than `tolerance` nats; gradient
   // may be null. The gradient is of the whole cost, the mode's own
   // motion included.
   MarginalValue Evaluate(const std::array<RowMatrix, 3>& matrices,
-                         const MarginalHyperparameters& hyper, double tolerance,
-                         LightMode* mode, MarginalGradient* gradient) const;
+                         const Eigen::VectorXd& noise, double log_amplitude,
+                         double tolerance, LightMode* mode,
+                         MarginalGradient* gradient) const;
+
+  // sigma^2 and what the map's coarse texels cannot hold: light inside a texel
+  // shows where a lobe changes within it,
+  //   sigma^2 + v / E_p^2 sum_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,
+  // n the four neighbours of t, v the process' variance inside a texel, L and E
+  // those of `mode`. Small for a matte surface under soft light, v for a ray.
+  // A mirror is then not blamed for what the map lacks, nor preferred for it.
+  Eigen::VectorXd NoiseVariance(const std::array<RowMatrix, 3>& matrices,
+                                double sigma, const LightMode& mode) const;
 
   // The level at which constant light gives the image's mean log radiance.
   double LevelFor(const std::array<RowMatrix, 3>& matrices) const;
 
   // Diagonal of the posterior covariance of l [3 * texels] at the mode.
   Eigen::VectorXd LightVariance(const std::array<RowMatrix, 3>& matrices,
-                                const MarginalHyperparameters& hyper,
+                                const Eigen::VectorXd& noise,
+                                double log_amplitude,
                                 const LightMode& mode) const;
 
  private:
@@ -105,10 +106,6 @@ class MarginalLikelihood {
   std::shared_ptr<const LightLinearisation> Linearise(
       const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
       double amplitude, const Point& point) const;
-  // q and the diagonal of D, [3 * points].
-  Eigen::VectorXd Sharpness(const std::array<RowMatrix, 3>& matrices) const;
-  Eigen::VectorXd NoiseVariance(const Eigen::VectorXd& sharpness, double sigma,
-                                double amplitude) const;
   // K g.
   Eigen::VectorXd ApplyCovariance(double amplitude,
                                   const Eigen::VectorXd& g) const;
@@ -121,14 +118,15 @@ class MarginalLikelihood {
   // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T D^-1 J)^-1 x.
   Eigen::VectorXd SolveDual(const LightLinearisation& linear, double amplitude,
                             const Eigen::VectorXd& x) const;
-  void AddGradient(const std::array<RowMatrix, 3>& matrices, double sigma,
-                   double amplitude, const LightMode& mode, const Point& point,
+  void AddGradient(const Eigen::VectorXd& weight, double amplitude,
+                   const LightMode& mode, const Point& point,
                    MarginalGradient* gradient) const;
 
   int num_points_;
   Eigen::VectorXd y_;  // [3 * points]
   Eigen::Matrix3d local_, level_;
   RowMatrix correlation_;
+  int map_height_, map_width_;
   double texel_variance_;  // v_texel
   int num_threads_;
 };

@@ -2,6 +2,8 @@
 
 #include <glog/logging.h>
 
+#include <utility>
+
 namespace ibrdf {
 namespace {
 
@@ -13,14 +15,18 @@ constexpr double kModeTolerance = 1e-3;
 
 MarginalObjective::MarginalObjective(const MarginalReflectance* reflectance,
                                      const MaterialPrior* prior,
-                                     const HyperparameterPrior& hyper,
-                                     LightMode* mode)
-    : reflectance_(reflectance), prior_(prior), hyper_(hyper), mode_(mode) {
+                                     double log_amplitude_std,
+                                     Eigen::VectorXd noise, LightMode* mode)
+    : reflectance_(reflectance),
+      prior_(prior),
+      log_amplitude_std_(log_amplitude_std),
+      noise_(std::move(noise)),
+      mode_(mode) {
   CHECK_EQ(reflectance->lobes().num_parameters(), prior->num_parameters());
 }
 
 int MarginalObjective::NumParameters() const {
-  return prior_->num_parameters() + 2;
+  return prior_->num_parameters() + 1;
 }
 
 Eigen::VectorXd MarginalObjective::LobesOf(const double* y) const {
@@ -29,22 +35,16 @@ Eigen::VectorXd MarginalObjective::LobesOf(const double* y) const {
              Eigen::Map<const Eigen::VectorXd>(y, prior_->num_parameters());
 }
 
-MarginalHyperparameters MarginalObjective::HyperparametersOf(
-    const double* y) const {
-  const double* last = y + prior_->num_parameters();
-  return {hyper_.mean.log_sigma + hyper_.log_sigma_std * last[0],
-          hyper_.mean.log_amplitude + hyper_.log_amplitude_std * last[1]};
+double MarginalObjective::LogAmplitudeOf(const double* y) const {
+  return log_amplitude_std_ * y[prior_->num_parameters()];
 }
 
-std::vector<double> MarginalObjective::Whitened(
-    const Eigen::VectorXd& lobes, const MarginalHyperparameters& hyper) const {
+std::vector<double> MarginalObjective::Whitened(const Eigen::VectorXd& lobes,
+                                                double log_amplitude) const {
   const Eigen::VectorXd y =
       prior_->factor.triangularView<Eigen::Lower>().solve(lobes - prior_->mean);
   std::vector<double> out(y.data(), y.data() + y.size());
-  out.push_back((hyper.log_sigma - hyper_.mean.log_sigma) /
-                hyper_.log_sigma_std);
-  out.push_back((hyper.log_amplitude - hyper_.mean.log_amplitude) /
-                hyper_.log_amplitude_std);
+  out.push_back(log_amplitude / log_amplitude_std_);
   return out;
 }
 
@@ -55,24 +55,23 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
   std::vector<double> by_lobes;
   // A trial that a line search turns down must not move the mode's start.
   LightMode mode = *mode_;
-  const MarginalValue value =
-      reflectance_->Evaluate(lobes.data(), HyperparametersOf(y), kModeTolerance,
-                             &mode, gradient != nullptr ? &by_lobes : nullptr);
+  const MarginalValue value = reflectance_->Evaluate(
+      lobes.data(), noise_, LogAmplitudeOf(y), kModeTolerance, &mode,
+      gradient != nullptr ? &by_lobes : nullptr);
   if (!value.ok) return false;
   last_value_ = value;
-  const Eigen::Map<const Eigen::VectorXd> whitened(y, n + 2);
+  const Eigen::Map<const Eigen::VectorXd> whitened(y, n + 1);
   Eigen::VectorXd wall = Eigen::VectorXd::Zero(n);
   *cost = value.cost + 0.5 * whitened.squaredNorm() +
           prior_->WallCost(lobes, &wall);
   if (gradient != nullptr) {
     *mode_ = std::move(mode);
     wall += Eigen::Map<const Eigen::VectorXd>(by_lobes.data(), n);
-    Eigen::Map<Eigen::VectorXd> out(gradient, n + 2);
+    Eigen::Map<Eigen::VectorXd> out(gradient, n + 1);
     out = whitened;
     out.head(n) +=
         prior_->factor.triangularView<Eigen::Lower>().transpose() * wall;
-    out[n] += hyper_.log_sigma_std * by_lobes[n];
-    out[n + 1] += hyper_.log_amplitude_std * by_lobes[n + 1];
+    out[n] += log_amplitude_std_ * by_lobes[n];
   }
   return true;
 }

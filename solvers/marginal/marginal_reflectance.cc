@@ -77,8 +77,9 @@ std::array<RowMatrix, 3> MarginalReflectance::Matrices(
 }
 
 MarginalValue MarginalReflectance::Evaluate(
-    const double* parameters, const MarginalHyperparameters& hyper,
-    double tolerance, LightMode* mode, std::vector<double>* gradient) const {
+    const double* parameters, const Eigen::VectorXd& noise,
+    double log_amplitude, double tolerance, LightMode* mode,
+    std::vector<double>* gradient) const {
   const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
   const int stride = gradient != nullptr ? 1 + size : 1;
   const size_t nodes = lobes_->grid_shape().num_nodes();
@@ -101,10 +102,10 @@ MarginalValue MarginalReflectance::Evaluate(
   }
   MarginalGradient by_matrix;
   const MarginalValue value =
-      likelihood_->Evaluate(matrices, hyper, tolerance, mode,
+      likelihood_->Evaluate(matrices, noise, log_amplitude, tolerance, mode,
                             gradient != nullptr ? &by_matrix : nullptr);
   if (gradient == nullptr || !value.ok) return value;
-  gradient->assign(lobes_->num_parameters() + 2, 0.0);
+  gradient->assign(lobes_->num_parameters() + 1, 0.0);
   std::vector<float> by_node(nodes);
   for (int k = 0; k < num_lobes; ++k) {
     const double* lobe = parameters + k * lobes_->lobe_size();
@@ -127,8 +128,7 @@ MarginalValue MarginalReflectance::Evaluate(
       out[d] = sum;
     }
   }
-  (*gradient)[lobes_->num_parameters()] = by_matrix.log_sigma;
-  (*gradient)[lobes_->num_parameters() + 1] = by_matrix.log_amplitude;
+  (*gradient)[lobes_->num_parameters()] = by_matrix.log_amplitude;
   return value;
 }
 

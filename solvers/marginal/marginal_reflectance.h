@@ -33,10 +33,9 @@ class MarginalReflectance {
   const MarginalResolution& resolution() const { return resolution_; }
 
   // As MarginalLikelihood::Evaluate. With gradient != nullptr it receives
-  // [num_parameters + 2]: by the lobes' parameters, log sigma and log
-  // amplitude.
-  MarginalValue Evaluate(const double* parameters,
-                         const MarginalHyperparameters& hyper, double tolerance,
+  // [num_parameters + 1]: by the lobes' parameters and log amplitude.
+  MarginalValue Evaluate(const double* parameters, const Eigen::VectorXd& noise,
+                         double log_amplitude, double tolerance,
                          LightMode* mode, std::vector<double>* gradient) const;
 
   // The matrices T_c of a reflectance.

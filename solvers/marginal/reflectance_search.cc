@@ -19,6 +19,9 @@ namespace {
 
 // Of a ranking's modes, nats: materials differ by tens.
 constexpr double kRankingTolerance = 0.5;
+// Standard deviation of log radiance with which a first mode is sought, from
+// which the noise of the coarse map follows.
+constexpr double kFirstSigma = 0.15;
 constexpr double kFunctionTolerance = 1e-6;
 // Step of the differences of gradients, in prior standard deviations.
 constexpr double kHessianStep = 0.02;
@@ -34,23 +37,37 @@ class Level {
       : prior_(prior),
         options_(options),
         reflectance_(model, prior.num_lobes(), points, radiance,
-                     options.process, resolution, options.num_threads) {
-    hyper_.mean.log_sigma = std::log(options.sigma);
-    hyper_.log_sigma_std = options.log_sigma_std;
-    hyper_.log_amplitude_std = options.log_amplitude_std;
-  }
+                     options.process, resolution, options.num_threads) {}
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
-  MarginalHyperparameters Start() const { return hyper_.mean; }
-  MarginalObjective Objective(LightMode* mode) const {
-    return MarginalObjective(&reflectance_, &prior_, hyper_, mode);
+
+  // The noise of a reflectance's mode; `mode` receives that mode.
+  Eigen::VectorXd NoiseOf(const Eigen::VectorXd& lobes, double log_amplitude,
+                          LightMode* mode) const {
+    const std::array<RowMatrix, 3> matrices =
+        reflectance_.Matrices(lobes.data());
+    const MarginalLikelihood& likelihood = reflectance_.likelihood();
+    const Eigen::Index n =
+        3 * static_cast<Eigen::Index>(reflectance_.cells().num_cells());
+    likelihood.Evaluate(matrices,
+                        Eigen::VectorXd::Constant(n, kFirstSigma * kFirstSigma),
+                        log_amplitude, kRankingTolerance, mode, nullptr);
+    return likelihood.NoiseVariance(matrices, options_.sigma, *mode);
   }
 
-  // -log posterior at the start's hyperparameters; infinite where it has none.
+  MarginalObjective Objective(const Eigen::VectorXd& noise,
+                              LightMode* mode) const {
+    return MarginalObjective(&reflectance_, &prior_, options_.log_amplitude_std,
+                             noise, mode);
+  }
+
+  // -log posterior at amplitude 1; infinite where it has none.
   double Rank(const Eigen::VectorXd& lobes) const {
     LightMode mode;
+    const Eigen::VectorXd noise = NoiseOf(lobes, 0.0, &mode);
+    mode.linearisation = nullptr;
     const MarginalValue value = reflectance_.Evaluate(
-        lobes.data(), hyper_.mean, kRankingTolerance, &mode, nullptr);
+        lobes.data(), noise, 0.0, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
     return value.cost + prior_.Cost(lobes, nullptr);
   }
@@ -61,15 +78,19 @@ class Level {
     double cost = std::numeric_limits<double>::infinity();
     MarginalValue value;
     LightMode mode;
+    Eigen::VectorXd noise;
   };
-  End Refine(const Eigen::VectorXd& lobes, const MarginalHyperparameters& hyper,
+  End Refine(const Eigen::VectorXd& lobes, double log_amplitude,
              int iterations) const {
     End end;
+    end.noise = NoiseOf(lobes, log_amplitude, &end.mode);
+    end.mode.linearisation = nullptr;
     // Owned by the problem, which must not outlive the mode.
     auto* objective =
-        new MarginalObjective(&reflectance_, &prior_, hyper_, &end.mode);
+        new MarginalObjective(&reflectance_, &prior_,
+                              options_.log_amplitude_std, end.noise, &end.mode);
     const ceres::GradientProblem problem(objective);
-    end.y = objective->Whitened(lobes, hyper);
+    end.y = objective->Whitened(lobes, log_amplitude);
     // Finds the light before the first line search needs it.
     std::vector<double> gradient(end.y.size());
     double first = 0.0;
@@ -101,7 +122,7 @@ class Level {
         std::vector<double> y = end.y;
         y[i] += s == 0 ? kHessianStep : -kHessianStep;
         LightMode at = mode;
-        MarginalObjective objective = Objective(&at);
+        MarginalObjective objective = Objective(end.noise, &at);
         double cost = 0.0;
         side[s].resize(n);
         if (!objective.Evaluate(y.data(), &cost, side[s].data())) return {};
@@ -121,7 +142,6 @@ class Level {
  private:
   const MaterialPrior& prior_;
   const ReflectanceSearchOptions& options_;
-  HyperparameterPrior hyper_;
   MarginalReflectance reflectance_;
 };
 
@@ -150,27 +170,39 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
     if (options.report) options.report(stage, cost, misfit);
   };
   ReflectanceSearchResult result;
-  const Level coarse(model, prior, points, radiance, options.coarse, options);
   const auto count = static_cast<int64_t>(prior.materials.size());
-  result.tried.resize(count);
+  for (const MaterialPrior::Material& m : prior.materials) {
+    result.tried.push_back({m.name, std::numeric_limits<double>::infinity(),
+                            std::numeric_limits<double>::infinity(),
+                            ToVector(m.parameters)});
+  }
   // Whole materials in parallel: what each does inside then runs in its thread.
-  ParallelFor(count, options.num_threads, [&](int64_t i, int) {
-    const MaterialPrior::Material& m = prior.materials[i];
-    result.tried[i] = {m.name, std::numeric_limits<double>::infinity(),
-                       std::numeric_limits<double>::infinity(),
-                       ToVector(m.parameters)};
-    if (i > 0 && stopped()) return;
-    result.tried[i].first_cost = coarse.Rank(m.parameters);
-  });
-  std::stable_sort(result.tried.begin(), result.tried.end(),
-                   [](const TriedMaterial& a, const TriedMaterial& b) {
-                     return a.first_cost < b.first_cost;
-                   });
+  const auto rank = [&](const Level& level, int64_t first_count) {
+    ParallelFor(first_count, options.num_threads, [&](int64_t i, int) {
+      TriedMaterial& tried = result.tried[i];
+      if (i > 0 && stopped()) return;
+      tried.first_cost = level.Rank(Eigen::Map<const Eigen::VectorXd>(
+          tried.parameters.data(),
+          static_cast<Eigen::Index>(tried.parameters.size())));
+    });
+    std::stable_sort(result.tried.begin(), result.tried.begin() + first_count,
+                     [](const TriedMaterial& a, const TriedMaterial& b) {
+                       return a.first_cost < b.first_cost;
+                     });
+  };
+  rank(Level(model, prior, points, radiance, options.screen, options), count);
+  const Level coarse(model, prior, points, radiance, options.coarse, options);
+  // Costs of the two resolutions do not compare.
+  const int64_t kept = std::min<int64_t>(options.kept, count);
+  for (int64_t i = kept; i < count; ++i) {
+    result.tried[i].first_cost = std::numeric_limits<double>::infinity();
+  }
+  rank(coarse, kept);
   report("rank " + std::to_string(count) + " materials",
          result.tried.front().first_cost, 0.0);
   Level::End best;
   std::string best_name = result.tried.front().name;
-  for (int k = 0; k < options.starts && k < count; ++k) {
+  for (int k = 0; k < options.starts && k < kept; ++k) {
     if (k > 0 && stopped()) break;
     TriedMaterial& tried = result.tried[k];
     if (!std::isfinite(tried.first_cost)) break;
@@ -178,12 +210,12 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
         coarse.Refine(Eigen::Map<const Eigen::VectorXd>(
                           tried.parameters.data(),
                           static_cast<Eigen::Index>(tried.parameters.size())),
-                      coarse.Start(), options.coarse_iterations);
+                      0.0, options.coarse_iterations);
     if (!end.ok) continue;
     LightMode unused;
     tried.cost = end.cost;
     tried.parameters =
-        ToVector(coarse.Objective(&unused).LobesOf(end.y.data()));
+        ToVector(coarse.Objective(end.noise, &unused).LobesOf(end.y.data()));
     report("refine " + tried.name, end.cost, end.value.misfit);
     if (end.cost < best.cost) {
       best = std::move(end);
@@ -204,9 +236,9 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
   if (options.fine_iterations > 0 && !stopped()) {
     fine = std::make_unique<Level>(model, prior, points, radiance, options.fine,
                                    options);
-    const MarginalObjective objective = coarse.Objective(&unused);
+    const MarginalObjective objective = coarse.Objective(best.noise, &unused);
     Level::End end = fine->Refine(objective.LobesOf(best.y.data()),
-                                  objective.HyperparametersOf(best.y.data()),
+                                  objective.LogAmplitudeOf(best.y.data()),
                                   options.fine_iterations);
     if (end.ok) {
       level = fine.get();
@@ -214,15 +246,13 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
       report("finish " + best_name, best.cost, best.value.misfit);
     }
   }
-  const MarginalObjective objective = level->Objective(&unused);
-  const MarginalHyperparameters hyper =
-      objective.HyperparametersOf(best.y.data());
+  const MarginalObjective objective = level->Objective(best.noise, &unused);
+  const double log_amplitude = objective.LogAmplitudeOf(best.y.data());
   result.parameters = ToVector(objective.LobesOf(best.y.data()));
   result.start = best_name;
   result.cost = best.cost;
   result.misfit = best.value.misfit;
-  result.sigma = std::exp(hyper.log_sigma);
-  result.amplitude = std::exp(hyper.log_amplitude);
+  result.amplitude = std::exp(log_amplitude);
   if (options.covariance && !stopped()) {
     result.covariance = level->Covariance(best);
   }
@@ -233,8 +263,8 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
       ToVector((best.mode.l.array() + best.mode.level).matrix());
   result.log_radiance_std = ToVector(
       reflectance.likelihood()
-          .LightVariance(reflectance.Matrices(result.parameters.data()), hyper,
-                         best.mode)
+          .LightVariance(reflectance.Matrices(result.parameters.data()),
+                         best.noise, log_amplitude, best.mode)
           .cwiseSqrt());
   return result;
 }

@@ -15,18 +15,21 @@ namespace ibrdf {
 
 struct ReflectanceSearchOptions {
   LightProcess process;
+  // All materials are ranked at the first resolution, the best of them at the
+  // second, where some are refined; the end is found at the third.
+  MarginalResolution screen = {{8, 4, 0.2}, 16, 8, {48, 20, 12}};
   MarginalResolution coarse = {{12, 4, 0.2}, 24, 12, {48, 20, 12}};
   MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}};
+  int kept = 20;
   int starts = 3;              // that are refined at the coarse resolution
-  int coarse_iterations = 30;  // of BFGS, each start
+  int coarse_iterations = 20;  // of BFGS, each start
   int fine_iterations = 30;
   // Standard deviation of log radiance between model and image, of a cell. Not
   // the pixels' noise, which a cell averages out, but what no lobes of the
-  // model can render: free to fall to the noise, it would have light and
-  // reflectance bend to every error of the model.
+  // model can render: were it free to fall to the noise, light and reflectance
+  // would bend to every error of the model.
   double sigma = 0.03;
-  double log_sigma_std = 0.1;
-  double log_amplitude_std = 0.7;
+  double log_amplitude_std = 0.7;  // of the light process
   bool covariance = true;
   int num_threads = 0;
   // Checked between steps; true ends early with the best so far.
@@ -49,7 +52,6 @@ struct ReflectanceSearchResult {
   std::string start;               // the material that it began from
   double cost = 0.0;               // -log posterior, nats, up to a constant
   double misfit = 0.0;             // mean |log E - log I| over cells
-  double sigma = 0.0;
   double amplitude = 0.0;  // of the light's process, times its variances
   // By cost: the refined ones, then the others by their first cost.
   std::vector<TriedMaterial> tried;
