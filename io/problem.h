@@ -96,7 +96,13 @@ inline constexpr int kNumSolverMethods = 6;
 // Name in problem files, e.g. "gauss_newton".
 const char* SolverMethodName(SolverMethod method);
 
+// What a joint problem's reflectance maximises. kMarginal: its posterior with
+// the light integrated out; the map is then the most probable one given it.
+// kMaximum: the posterior of both together (Chen et al. 2020, Eq. 8).
+enum class SolverEstimator { kMarginal, kMaximum };
+
 struct SolverSpec {
+  SolverEstimator estimator = SolverEstimator::kMarginal;
   SolverMethod method = SolverMethod::kAuto;
   double seconds = 120.0;     // wall-clock budget, > 0
   double tolerance = 1e-4;    // relative decrease of the cost to stop at, >= 0

@@ -273,7 +273,10 @@ void ReadSolver(ConfigContext* context, const ConfigNode* node,
                 SolverSpec* solver) {
   ConfigReader reader(
       context, node, "solver",
-      {"method", "seconds", "tolerance", "max_iterations", "seed"});
+      {"estimator", "method", "seconds", "tolerance", "max_iterations",
+       "seed"});
+  ReadChoice(&reader, "estimator", {"marginal", "maximum"},
+             &solver->estimator);
   Strings methods;
   for (int m = 0; m < kNumSolverMethods; ++m) {
     methods.emplace_back(SolverMethodName(static_cast<SolverMethod>(m)));

@@ -112,7 +112,10 @@ json EffectsJson(const EffectsSpec& effects) {
 }
 
 json SolverJson(const SolverSpec& solver) {
-  json out = {{"method", SolverMethodName(solver.method)},
+  json out = {{"estimator",
+               solver.estimator == SolverEstimator::kMarginal ? "marginal"
+                                                              : "maximum"},
+              {"method", SolverMethodName(solver.method)},
               {"seconds", solver.seconds},
               {"tolerance", solver.tolerance},
               {"max_iterations", solver.max_iterations}};

@@ -10,31 +10,41 @@
 #include <numeric>
 
 #include "ibrdf/brdf/lobe_model.h"
-#include "ibrdf/flow/brdf_flow.h"
 #include "ibrdf/light/environment_map.h"
-#include "solvers/costs/log_radiance_cost.h"
+#include "ibrdf/metrics/brdf_metrics.h"
 #include "solvers/embedding_prior.h"
 #include "solvers/illumination_model.h"
-#include "solvers/illumination_solver.h"
+#include "solvers/joint/edge_prior.h"
+#include "solvers/joint/joint_method.h"
+#include "solvers/joint/process_prior.h"
+#include "solvers/known_light_search.h"
+#include "solvers/marginal/reflectance_search.h"
 #include "solvers/reflectance_solver.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr int kStarts = 5;
-constexpr double kStartShare = 0.4;    // of the time, at most
-constexpr double kCoarseShare = 0.65;  // of the time, starts included
+// Of the time, at most: until the search for the reflectance, then the map on
+// thinned pixels, are over.
+constexpr double kSearchShare = 0.5;
+constexpr double kCoarseShare = 0.8;
 // More points than this are thinned to every other row and column first.
 constexpr size_t kCoarsePoints = 4000;
-// The BRDF grid of the first stages: a fifth of the nodes of the last one.
-constexpr BrdfGridShape kCoarseGrid = {48, 20, 12};
-constexpr double kFirstScale = 0.2;      // b of the starts: tolerant
+constexpr double kFirstScale = 0.2;      // b at first: tolerant
 constexpr double kSmallestScale = 3e-3;  // below any real image's noise
 // Standard deviation of log (red / green) and log (blue / green) of a map's
-// mean log radiance: 0.25 and 0.43 over nine maps
-// (experiments/light_statistics).
+// mean log radiance (experiments/light_statistics).
 constexpr double kLightChromaStd = 0.35;
 constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
+// EdgePrior: log radiance over the root of a radian, and where it turns from
+// square to magnitude (experiments/light_statistics).
+constexpr double kEdgeScale = 1.0;
+constexpr double kEdgeDelta = 0.3;
+// Under known light: pixels of about this many normals across the object say
+// all that a few dozen parameters can learn.
+constexpr ImageCellOptions kKnownLightCells = {26, 1, 0.1};
+constexpr int kKnownLightStarts = 4;
+constexpr int kKnownLightSteps = 6;  // of the trust region, each time
 
 double Now() {
   return std::chrono::duration<double>(
@@ -42,23 +52,11 @@ double Now() {
       .count();
 }
 
-// Reflectance and illumination together, as vectors.
-struct State {
-  std::vector<double> lobes;  // empty: known
-  std::vector<float> light;   // empty: known
-  // Where the prior of `light` is centred: a constant map at the image's level,
-  // whatever the image's unit.
-  std::vector<float> light_mean;
-};
-
 // A set of points with its observations, and the lobes on its BRDF grid.
 struct Level {
   std::vector<ShadingPoint> points;
-  BrdfGridShape grid;
   Observations observed;
   std::unique_ptr<Transport> transport;
-  std::unique_ptr<LobeModel> lobes;
-  Level* lobe_level = nullptr;  // where lobes are fitted; null: here
 };
 
 class Estimator {
@@ -70,11 +68,32 @@ class Estimator {
   StatusOr<Estimate> Run() {
     IBRDF_RETURN_IF_ERROR(Prepare());
     likelihood_.scale = problem_.scale.value_or(kFirstScale);
-    State best = ChooseStart();
-    const State first = first_state_;
-    Rounds("coarse", coarse_.get(), kCoarseShare, &best);
-    Rounds("full", full_.get(), 1.0, &best);
-    return Finish(first, best);
+    JointState state;
+    if (!light_unknown()) {
+      state = StartUnderKnownLight();
+      if (problem_.solver.max_iterations > 0) KnownLightRounds(&state);
+    } else if (lobes_unknown() &&
+               problem_.solver.estimator == SolverEstimator::kMarginal) {
+      IBRDF_RETURN_IF_ERROR(SearchMarginal(&state));
+      MatchLight(&state);
+      first_.light = state.light;
+      first_mean_ = light_mean_;
+      Rounds("coarse map", coarse_.get(), JointBlocks::kLight, kCoarseShare,
+             &state);
+      Rounds("map", full_.get(), JointBlocks::kLight, 1.0, &state);
+    } else {
+      if (lobes_unknown()) StartAtMeanMaterial(&state);
+      MatchLight(&state);
+      FixGauge(&state);
+      first_ = state;
+      first_mean_ = light_mean_;
+      const JointBlocks blocks =
+          lobes_unknown() ? JointBlocks::kBoth : JointBlocks::kLight;
+      Report("start", coarse_.get(), state);
+      Rounds("coarse", coarse_.get(), blocks, kCoarseShare, &state);
+      Rounds("full", full_.get(), blocks, 1.0, &state);
+    }
+    return Finish(state);
   }
 
  private:
@@ -87,31 +106,26 @@ class Estimator {
     return
         [this, share] { return Interrupted() || Elapsed() > share * Budget(); };
   }
-  const LobeModel& lobes() const { return *full_->lobes; }
 
   Status Prepare() {
-    full_ = MakeLevel(problem_.points, problem_.transport.grid);
+    full_ = MakeLevel(problem_.points);
     if (full_->observed.num_valid == 0) {
       return InvalidInput("image",
                           "no pixel of the object is finite and positive in "
                           "all three channels");
     }
-    std::vector<ShadingPoint> thin = problem_.points;
-    if (problem_.points.size() > kCoarsePoints) {
-      thin.clear();
-      for (const ShadingPoint& p : problem_.points) {
-        const int x = p.pixel % problem_.image.width;
-        const int y = p.pixel / problem_.image.width;
-        if (x % 2 == 0 && y % 2 == 0) thin.push_back(p);
+    std::vector<ShadingPoint> thin;
+    for (const ShadingPoint& p : problem_.points) {
+      const int x = p.pixel % problem_.image.width;
+      const int y = p.pixel / problem_.image.width;
+      if (problem_.points.size() <= kCoarsePoints ||
+          (x % 2 == 0 && y % 2 == 0)) {
+        thin.push_back(p);
       }
     }
-    coarse_ = MakeLevel(thin, kCoarseGrid);
+    coarse_ = MakeLevel(std::move(thin));
     if (coarse_->observed.num_valid == 0) {
-      coarse_ = MakeLevel(problem_.points, kCoarseGrid);
-    } else if (thin.size() < problem_.points.size()) {
-      // A few dozen lobe parameters do not need every pixel.
-      thin_ = MakeLevel(std::move(thin), problem_.transport.grid);
-      full_->lobe_level = thin_.get();
+      coarse_ = MakeLevel(problem_.points);
     }
     double mean = 0.0;
     for (size_t i = 0; i < full_->observed.radiance.size(); ++i) {
@@ -121,7 +135,12 @@ class Estimator {
     likelihood_.epsilon = problem_.epsilon.value_or(kEpsilonShare * mean);
 
     if (lobes_unknown()) {
-      prior_ = EmbeddingPrior(problem_.model, problem_.prior_sigma);
+      lobes_ = std::make_unique<LobeModel>(problem_.model, problem_.lobes,
+                                           problem_.transport.grid,
+                                           problem_.num_threads);
+      lobe_prior_ = EmbeddingPrior(problem_.model, problem_.prior_sigma);
+      materials_ = JointMaterialPrior(problem_.model, problem_.lobes,
+                                      problem_.prior_sigma);
     }
     if (light_unknown()) {
       if (problem_.illumination_prior == IlluminationPrior::kUNet) {
@@ -134,27 +153,27 @@ class Estimator {
       } else {
         light_ = MakeFreeIllumination(problem_.map_width, problem_.map_height);
       }
+      light_priors_.push_back(std::make_unique<EdgePrior>(
+          problem_.map_height, problem_.map_width, kEdgeScale, kEdgeDelta));
     }
     return OkStatus();
   }
 
-  std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points,
-                                   const BrdfGridShape& grid) const {
+  std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points) const {
     auto level = std::make_unique<Level>();
-    // A known BRDF comes on one grid.
-    level->grid = lobes_unknown() ? grid : problem_.known_brdf->shape;
-    if (lobes_unknown()) {
-      level->lobes = std::make_unique<LobeModel>(
-          problem_.model, problem_.lobes, level->grid, problem_.num_threads);
-    }
+    level->observed = MakeObservations(RadianceOf(points));
+    level->points = std::move(points);
+    return level;
+  }
+
+  std::vector<double> RadianceOf(
+      const std::vector<ShadingPoint>& points) const {
     std::vector<double> radiance;
     for (const ShadingPoint& p : points) {
       const float* rgb = problem_.image.rgb.data() + size_t{3} * p.pixel;
       radiance.insert(radiance.end(), rgb, rgb + 3);
     }
-    level->observed = MakeObservations(radiance);
-    level->points = std::move(points);
-    return level;
+    return radiance;
   }
 
   // Built at first use: a level that is never reached costs nothing.
@@ -162,72 +181,69 @@ class Estimator {
     if (level->transport == nullptr) {
       TransportOptions options = problem_.transport;
       options.num_threads = problem_.num_threads;
-      options.grid = level->grid;
       level->transport = std::make_unique<Transport>(
           level->points, problem_.map_height, problem_.map_width, options);
     }
     return *level->transport;
   }
 
-  BrdfGrid GridOf(const Level& level, const State& state) const {
-    if (!lobes_unknown()) return *problem_.known_brdf;
-    std::vector<float> fields;
-    level.lobes->Tabulate(state.lobes.data(), false, &fields);
-    return level.lobes->Combine(state.lobes.data(), fields, 1);
+  // The objective on a level, at the current scale and light mean. It must not
+  // outlive the next change of either.
+  struct LevelObjective {
+    std::unique_ptr<LightOperator> known_brdf;
+    std::unique_ptr<JointObjective> objective;
+  };
+  LevelObjective ObjectiveOn(Level* level) const {
+    LevelObjective out;
+    JointTerms terms;
+    terms.observed = &level->observed;
+    terms.likelihood = likelihood_;
+    if (lobes_unknown()) {
+      terms.transport = &TransportOf(level);
+      terms.lobes = lobes_.get();
+      terms.lobe_prior = lobe_prior_;
+    } else {
+      out.known_brdf = std::make_unique<LightOperator>(
+          TransportOf(level).ByLight(*problem_.known_brdf));
+      terms.known_brdf = out.known_brdf.get();
+    }
+    if (light_unknown()) {
+      terms.illumination = light_.get();
+      terms.light_mean = light_mean_;
+      for (const auto& prior : light_priors_) {
+        terms.light_priors.push_back(prior.get());
+      }
+    } else {
+      terms.known_map = problem_.known_map->rgb;
+    }
+    out.objective = std::make_unique<JointObjective>(std::move(terms));
+    return out;
   }
 
-  std::vector<float> MapOf(const State& state) const {
-    if (!light_unknown()) return problem_.known_map->rgb;
-    std::vector<float> log_map(light_->num_outputs()), map;
-    light_->Forward(state.light.data(), log_map.data());
-    ToRadianceMap(log_map, &map);
-    return map;
-  }
-
-  // The state's cost on a level at the current scale; E and map optional.
-  TraceEntry Evaluate(const std::string& stage, Level* level,
-                      const State& state, std::vector<double>* E_out = nullptr,
-                      std::vector<float>* map_out = nullptr) {
+  // At the image's pixels under known light the materials' prior stands in for
+  // the one of the joint maximum.
+  TraceEntry Entry(const std::string& stage, const Level& level,
+                   const JointState& state, const JointCost& cost) const {
     TraceEntry entry;
     entry.stage = stage;
     entry.scale = likelihood_.scale;
-    entry.pixels = level->observed.num_valid;
-    const Transport& transport = TransportOf(level);
-    const BrdfGrid grid = GridOf(*level, state);
-    std::vector<double> E(level->observed.radiance.size());
-    std::vector<float> map;
-    if (light_unknown()) {
-      const LightOperator light = transport.ByLight(grid);
-      const IlluminationCost cost = EvaluateIllumination(
-          light, level->observed, LightOptions(0.0), state.light_mean,
-          state.light.data(), light_.get(), &E, &map);
-      entry.illumination_prior = cost.prior;
-    } else {
-      map = problem_.known_map->rgb;
-      transport.Render(grid, map.data(), E.data());
-    }
-    double absolute = 0.0;
-    const Observations& o = level->observed;
-    for (size_t i = 0; i < E.size(); ++i) {
-      if (!o.valid[i / 3]) continue;
-      const double d = std::log(std::max(E[i], 0.0) + likelihood_.epsilon) -
-                       std::log(o.radiance[i] + likelihood_.epsilon);
-      absolute += std::abs(d);
-      const double r =
-          RobustResidual(d / likelihood_.scale, likelihood_.delta, nullptr);
-      entry.likelihood += r * r / 2;
-    }
-    entry.misfit = absolute / (3.0 * o.num_valid);
-    if (lobes_unknown()) {
-      entry.reflectance_prior =
-          LobePriorCostValue(lobes(), prior_, state.lobes);
-    }
+    entry.pixels = level.observed.num_valid;
+    entry.likelihood = cost.likelihood;
+    entry.reflectance_prior =
+        light_unknown() ? cost.reflectance_prior
+                        : materials_.Cost(VectorOf(state.lobes), nullptr);
+    entry.illumination_prior = cost.illumination_prior;
     entry.cost =
         entry.likelihood + entry.reflectance_prior + entry.illumination_prior;
+    entry.misfit = cost.misfit;
     entry.seconds = Elapsed();
-    if (E_out != nullptr) *E_out = std::move(E);
-    if (map_out != nullptr) *map_out = std::move(map);
     return entry;
+  }
+
+  TraceEntry Evaluate(const std::string& stage, Level* level,
+                      const JointState& state) {
+    const LevelObjective on = ObjectiveOn(level);
+    return Entry(stage, *level, state, on.objective->Evaluate(state));
   }
 
   void Report(const TraceEntry& entry) {
@@ -236,43 +252,95 @@ class Estimator {
             << entry.misfit << " cost " << entry.cost;
     if (progress_) progress_(entry, std::min(entry.seconds / Budget(), 1.0));
   }
-
-  IlluminationStepOptions LightOptions(double share) const {
-    IlluminationStepOptions o;
-    o.likelihood = likelihood_;
-    o.lbfgs = problem_.solver.method == SolverMethod::kLbfgs;
-    o.tolerance = problem_.solver.tolerance;
-    o.should_stop = StopAfter(share);
-    return o;
+  void Report(const std::string& stage, Level* level, const JointState& state) {
+    Report(Evaluate(stage, level, state));
   }
 
-  void LightStep(Level* level, int iterations, int cg_iterations, double share,
-                 State* state) {
-    if (!light_unknown()) return;
-    const LightOperator light =
-        TransportOf(level).ByLight(GridOf(*level, *state));
-    IlluminationStepOptions o = LightOptions(share);
-    o.max_iterations = iterations;
-    o.max_cg_iterations = cg_iterations;
-    SolveIllumination(light, level->observed, o, state->light_mean,
-                      light_.get(), &state->light);
+  static Eigen::VectorXd VectorOf(const std::vector<double>& v) {
+    return Eigen::Map<const Eigen::VectorXd>(
+        v.data(), static_cast<Eigen::Index>(v.size()));
   }
 
-  void LobeStep(Level* level, int iterations, double share, State* state) {
-    if (!lobes_unknown()) return;
-    ReflectanceStepOptions o;
-    o.likelihood = likelihood_;
-    o.prior = prior_;
-    o.max_iterations = iterations;
-    o.tolerance = problem_.solver.tolerance;
-    o.should_stop = StopAfter(share);
-    if (level->lobe_level != nullptr) level = level->lobe_level;
-    SolveReflectance(TransportOf(level), *level->lobes, MapOf(*state),
-                     level->observed, o, &state->lobes);
+  // The reflectance whose posterior is highest with the light integrated out.
+  Status SearchMarginal(JointState* state) {
+    ReflectanceSearchOptions o;
+    o.num_threads = problem_.num_threads;
+    o.should_stop = StopAfter(kSearchShare);
+    // The first stages of a small budget of iterations are cut short alike.
+    const int iterations = problem_.solver.max_iterations;
+    o.starts = iterations == 0 ? 1 : o.starts;
+    o.coarse_iterations = std::min(o.coarse_iterations, 5 * iterations);
+    o.fine_iterations = std::min(o.fine_iterations, 5 * iterations);
+    o.covariance = iterations > 0;
+    o.report = [this](const std::string& stage, double cost, double misfit) {
+      TraceEntry entry;
+      entry.stage = stage;
+      entry.pixels = full_->observed.num_valid;
+      entry.cost = entry.likelihood = cost;
+      entry.misfit = misfit;
+      entry.seconds = Elapsed();
+      Report(entry);
+    };
+    const StatusOr<ReflectanceSearchResult> found =
+        SearchReflectance(problem_.model, materials_, problem_.points,
+                          RadianceOf(problem_.points), o);
+    if (!found.ok()) return found.status();
+    state->lobes = found->parameters;
+    start_name_ = found->start;
+    light_amplitude_ = found->amplitude;
+    const auto& materials = materials_.materials;
+    const auto start =
+        std::find_if(materials.begin(), materials.end(),
+                     [&](const auto& m) { return m.name == found->start; });
+    first_.lobes.assign(start->parameters.data(),
+                        start->parameters.data() + start->parameters.size());
+    covariance_ = found->covariance;
+    map_std_ = Image(found->map_width, found->map_height);
+    const size_t texels = map_std_.num_pixels();
+    for (size_t i = 0; i < 3 * texels; ++i) {
+      map_std_.rgb[i] =
+          static_cast<float>(found->log_radiance_std[i % 3 * texels + i / 3]);
+    }
+    for (const TriedMaterial& tried : found->tried) {
+      if (std::isfinite(tried.cost)) tried_.push_back(tried);
+    }
+    return OkStatus();
+  }
+
+  void StartAtMeanMaterial(JointState* state) {
+    const std::string name = SpreadMaterials(problem_.model, 1).front().name;
+    for (const MaterialPrior::Material& m : materials_.materials) {
+      if (m.name != name) continue;
+      state->lobes.assign(m.parameters.data(),
+                          m.parameters.data() + m.parameters.size());
+    }
+    start_name_ = name;
+  }
+
+  // A constant map at the image's level; the light's priors are centred there.
+  void MatchLight(JointState* state) {
+    const double zero[3] = {0, 0, 0};
+    state->light = light_mean_ = light_->ConstantMap(zero);
+    const LevelObjective on = ObjectiveOn(coarse_.get());
+    on.objective->Evaluate(*state);
+    const std::vector<double>& E = on.objective->radiance();
+    const Observations& o = coarse_->observed;
+    double shift[3] = {0, 0, 0};
+    for (size_t i = 0; i < E.size(); ++i) {
+      if (!o.valid[i / 3]) continue;
+      shift[i % 3] +=
+          (std::log(o.radiance[i]) - std::log(std::max(E[i], 0.0) + 1e-30)) /
+          o.num_valid;
+    }
+    light_->ShiftChannels(shift, state->light.data());
+    light_mean_ = state->light;
+    light_priors_.push_back(std::make_unique<ProcessPrior>(
+        problem_.map_height, problem_.map_width, LightProcess(),
+        light_amplitude_, (shift[0] + shift[1] + shift[2]) / 3));
   }
 
   // Moves scale between the two unknowns; the image stays as it is.
-  void FixGauge(State* state) const {
+  void FixGauge(JointState* state) {
     if (!lobes_unknown() || !light_unknown()) return;
     std::vector<float> log_map(light_->num_outputs());
     light_->Forward(state->light.data(), log_map.data());
@@ -287,148 +355,142 @@ class Estimator {
       }
     }
     const std::vector<double> d =
-        GaugeShift(lobes(), prior_, state->lobes, mean, kLightChromaStd);
+        GaugeShift(*lobes_, lobe_prior_, state->lobes, mean, kLightChromaStd);
     double back[3];
     for (int c = 0; c < 3; ++c) {
       back[c] = -d[c];
-      for (int k = 0; k < lobes().num_lobes(); ++k) {
-        state->lobes[static_cast<size_t>(k) * lobes().lobe_size() +
-                     lobes().code_size() + c] += d[c];
+      for (int k = 0; k < lobes_->num_lobes(); ++k) {
+        state->lobes[static_cast<size_t>(k) * lobes_->lobe_size() +
+                     lobes_->code_size() + c] += d[c];
       }
     }
     light_->ShiftChannels(back, state->light.data());
-    light_->ShiftChannels(back, state->light_mean.data());
+    light_->ShiftChannels(back, light_mean_.data());
   }
 
-  // The state with a constant map (where unknown) at the image's level, or with
-  // the colours at the image's level where the light is known.
-  void MatchLevel(Level* level, State* state) {
-    if (light_unknown()) {
-      const double zero[3] = {0, 0, 0};
-      state->light = state->light_mean = light_->ConstantMap(zero);
+  JointMethod MethodFor(JointBlocks blocks) const {
+    switch (problem_.solver.method) {
+      case SolverMethod::kAuto:
+        return blocks == JointBlocks::kLight ? JointMethod::kGaussNewton
+                                             : JointMethod::kAlternating;
+      case SolverMethod::kAlternating:
+        return JointMethod::kAlternating;
+      case SolverMethod::kGaussNewton:
+        return JointMethod::kGaussNewton;
+      case SolverMethod::kLbfgs:
+        return JointMethod::kLbfgs;
+      case SolverMethod::kAdam:
+        return JointMethod::kAdam;
+      case SolverMethod::kTrustRegion:
+        return JointMethod::kTrustRegion;
     }
-    std::vector<double> E;
-    Evaluate("level", level, *state, &E);
-    const Observations& o = level->observed;
-    double shift[3] = {0, 0, 0};
-    for (size_t i = 0; i < E.size(); ++i) {
-      if (!o.valid[i / 3]) continue;
-      shift[i % 3] +=
-          (std::log(o.radiance[i]) - std::log(std::max(E[i], 0.0) + 1e-30)) /
-          o.num_valid;
-    }
-    if (light_unknown()) {
-      light_->ShiftChannels(shift, state->light.data());
-      state->light_mean = state->light;
-    } else if (lobes_unknown()) {
-      for (int k = 0; k < lobes().num_lobes(); ++k) {
-        for (int c = 0; c < 3; ++c) {
-          state->lobes[static_cast<size_t>(k) * lobes().lobe_size() +
-                       lobes().code_size() + c] += shift[c];
-        }
-      }
-    }
+    LOG(FATAL) << "no such method";
   }
 
-  // Lobe 0 begins as the material, the others as the most matte one, a
-  // fraction of its strength.
-  State StartFrom(const MaterialCode& material, const MaterialCode& matte) {
-    State state;
-    for (int k = 0; k < lobes().num_lobes(); ++k) {
-      const MaterialCode& m = k == 0 ? material : matte;
-      state.lobes.insert(state.lobes.end(), m.code.begin(), m.code.end());
-      const double a = m.log_colour - (k == 0 ? 0.0 : 1.0);
-      state.lobes.insert(state.lobes.end(), {a, a, a});
+  // Lowers the objective over the blocks, some steps at a scale, until a share
+  // of the time is spent or a round gains less than the tolerance.
+  void Rounds(const std::string& stage, Level* level, JointBlocks blocks,
+              double share, JointState* state) {
+    if (StopAfter(share)() || iterations_ >= problem_.solver.max_iterations) {
+      return;
     }
-    return state;
-  }
-
-  // The material whose peak stands out least from its reflectance at wide
-  // angles.
-  MaterialCode MostMatte() const {
-    const std::unique_ptr<BrdfFlow> flow =
-        BrdfFlow::Create(problem_.model.shape, problem_.model.weights);
-    const std::vector<MaterialCode> all = MaterialCodes(problem_.model);
-    double least = std::numeric_limits<double>::infinity();
-    MaterialCode best = all.front();
-    for (const MaterialCode& m : all) {
-      const std::vector<float> code(m.code.begin(), m.code.end());
-      // Two points [3][2]: theta_h = 0 and wide, theta_d = 18 degrees.
-      const float x[6] = {0.02f, 0.8f, 0.2f, 0.2f, 0.5f, 0.5f};
-      float value[2];
-      flow->LogDensity(x, 2, code.data(), 1, value, nullptr, nullptr);
-      if (value[0] - value[1] < least) {
-        least = value[0] - value[1];
-        best = m;
-      }
-    }
-    return best;
-  }
-
-  // Runs several starts cheaply and returns the one of least cost.
-  State ChooseStart() {
-    Level* level = coarse_.get();
-    if (!lobes_unknown()) {
-      State state;
-      MatchLevel(level, &state);
-      first_state_ = state;
-      Report(Evaluate("start", level, state));
-      return state;
-    }
-    const MaterialCode matte = MostMatte();
-    std::vector<MaterialCode> materials =
-        SpreadMaterials(problem_.model, kStarts);
-    State best;
-    double best_cost = std::numeric_limits<double>::infinity();
-    int tried = 0;
-    for (const MaterialCode& material : materials) {
-      const double share = kStartShare * ++tried / kStarts;
-      if (tried > 1 && StopAfter(kStartShare)()) break;
-      State state = StartFrom(material, matte);
-      MatchLevel(level, &state);
-      FixGauge(&state);
-      if (tried == 1) {
-        first_state_ = best = state;
-        start_name_ = material.name;
-        Report(Evaluate("start", level, state));
-      }
-      if (problem_.solver.max_iterations == 0) break;
-      LightStep(level, 2, 10, share, &state);
-      LobeStep(level, light_unknown() ? 4 : 6, share, &state);
-      LightStep(level, 2, 10, share, &state);
-      FixGauge(&state);
-      const TraceEntry entry = Evaluate("start " + material.name, level, state);
-      Report(entry);
-      if (entry.cost < best_cost) {
-        best_cost = entry.cost;
-        best = state;
-        start_name_ = material.name;
-      }
-    }
-    return best;
-  }
-
-  // Alternates the two blocks until a share of the time is spent or a round
-  // gains less than the tolerance.
-  void Rounds(const std::string& stage, Level* level, double share,
-              State* state) {
+    JointMethodOptions o;
+    o.max_iterations = 3;
+    o.max_cg_iterations = 15;
+    o.tolerance = problem_.solver.tolerance;
+    o.should_stop = StopAfter(share);
+    o.adam_rounds = 1;
     TraceEntry before = Evaluate(stage, level, *state);
     for (int round = 0; iterations_ < problem_.solver.max_iterations; ++round) {
       if (StopAfter(share)()) return;
       UpdateScale(before.misfit);
-      before = Evaluate(stage, level, *state);
-      State next = *state;
-      LightStep(level, 3, 15, share, &next);
-      LobeStep(level, 5, share, &next);
-      FixGauge(&next);
+      const LevelObjective on = ObjectiveOn(level);
+      if (lobes_unknown() && light_unknown()) on.objective->Free(blocks);
+      before = Entry(stage, *level, *state, on.objective->Evaluate(*state));
+      JointState next = *state;
+      MinimiseJoint(MethodFor(blocks), on.objective.get(), &next, o);
+      const std::vector<float> mean = light_mean_;
+      if (blocks == JointBlocks::kBoth) FixGauge(&next);
       const TraceEntry after =
           Evaluate(stage + " round " + std::to_string(round + 1), level, next);
       ++iterations_;
-      if (!(after.cost < before.cost)) return;
+      if (!(after.cost < before.cost)) {
+        light_mean_ = mean;
+        return;
+      }
       *state = next;
       Report(after);
       const double gain = before.cost - after.cost;
       const bool scale_settled = ScaleFor(after.misfit) == likelihood_.scale;
+      before = after;
+      if (scale_settled &&
+          gain < problem_.solver.tolerance * std::max(after.cost, 1.0)) {
+        return;
+      }
+    }
+  }
+
+  // The materials under the known light, the best few refined.
+  JointState StartUnderKnownLight() {
+    std::vector<ShadingPoint> few =
+        GroupByNormal(problem_.points, RadianceOf(problem_.points),
+                      kKnownLightCells)
+            .points;
+    few_ = MakeLevel(few.empty() ? problem_.points : std::move(few));
+    const std::vector<RankedMaterial> ranked = RankUnderKnownLight(
+        TransportOf(few_.get()), *lobes_, materials_, problem_.known_map->rgb,
+        few_->observed, likelihood_);
+    first_.lobes = ranked.front().parameters;
+    start_name_ = ranked.front().name;
+    JointState best = first_;
+    TraceEntry least = Evaluate("start " + start_name_, few_.get(), first_);
+    Report(least);
+    if (problem_.solver.max_iterations == 0) return best;
+    const int starts =
+        std::min<int>(kKnownLightStarts, static_cast<int>(ranked.size()));
+    for (int k = 0; k < starts; ++k) {
+      if (k > 0 && StopAfter(kSearchShare)()) break;
+      JointState state;
+      state.lobes = ranked[k].parameters;
+      LobeSteps(&state);
+      const TraceEntry entry =
+          Evaluate("start " + ranked[k].name, few_.get(), state);
+      Report(entry);
+      if (!(entry.cost < least.cost)) continue;
+      least = entry;
+      best = state;
+      start_name_ = ranked[k].name;
+    }
+    return best;
+  }
+
+  void LobeSteps(JointState* state) const {
+    ReflectanceStepOptions o;
+    o.likelihood = likelihood_;
+    o.materials = &materials_;
+    o.max_iterations = kKnownLightSteps;
+    o.tolerance = problem_.solver.tolerance;
+    o.should_stop = StopAfter(1.0);
+    SolveReflectance(*few_->transport, *lobes_, problem_.known_map->rgb,
+                     few_->observed, o, &state->lobes);
+  }
+
+  void KnownLightRounds(JointState* state) {
+    TraceEntry before = Evaluate("refine", few_.get(), *state);
+    for (int round = 0; iterations_ < problem_.solver.max_iterations; ++round) {
+      if (StopAfter(1.0)()) return;
+      UpdateScale(before.misfit);
+      before = Evaluate("refine", few_.get(), *state);
+      JointState next = *state;
+      LobeSteps(&next);
+      const TraceEntry after = Evaluate(
+          "refine round " + std::to_string(round + 1), few_.get(), next);
+      ++iterations_;
+      if (!(after.cost < before.cost)) return;
+      *state = next;
+      Report(after);
+      const bool scale_settled = ScaleFor(after.misfit) == likelihood_.scale;
+      const double gain = before.cost - after.cost;
       before = after;
       if (scale_settled &&
           gain < problem_.solver.tolerance * std::max(after.cost, 1.0)) {
@@ -447,15 +509,17 @@ class Estimator {
   }
   void UpdateScale(double misfit) { likelihood_.scale = ScaleFor(misfit); }
 
-  StatusOr<Estimate> Finish(const State& first, State best) {
+  StatusOr<Estimate> Finish(JointState best) {
     Estimate estimate;
-    std::vector<double> E;
-    std::vector<float> map;
-    const TraceEntry start = Evaluate("start", full_.get(), first);
-    TraceEntry end = Evaluate("end", full_.get(), best, &E, &map);
+    // The start with its own mean of the light's priors.
+    std::swap(light_mean_, first_mean_);
+    const TraceEntry start = Evaluate("start", full_.get(), first_);
+    std::swap(light_mean_, first_mean_);
+    const LevelObjective on = ObjectiveOn(full_.get());
+    TraceEntry end = Entry("end", *full_, best, on.objective->Evaluate(best));
     if (!(end.cost < start.cost)) {
-      best = first;
-      end = Evaluate("end", full_.get(), best, &E, &map);
+      best = first_;
+      end = Entry("end", *full_, best, on.objective->Evaluate(best));
       estimate.status = Status(StatusCode::kNoImprovement,
                                "the solver could not improve on its start");
     }
@@ -464,8 +528,9 @@ class Estimator {
                                "interrupted; the best iterate was kept");
     }
     Report(end);
+    const std::vector<double>& E = on.objective->radiance();
     estimate.map = Image(problem_.map_width, problem_.map_height);
-    estimate.map.rgb = map;
+    estimate.map.rgb = on.objective->map();
     estimate.render = Image(problem_.image.width, problem_.image.height);
     for (size_t i = 0; i < full_->points.size(); ++i) {
       float* rgb =
@@ -474,8 +539,12 @@ class Estimator {
     }
     if (lobes_unknown()) {
       estimate.lobe_parameters = best.lobes;
-      estimate.brdf = lobes().ToMerl(best.lobes.data());
+      estimate.brdf = lobes_->ToMerl(best.lobes.data());
+      estimate.lobe_covariance.assign(covariance_.data(),
+                                      covariance_.data() + covariance_.size());
+      AddAlternatives(&estimate);
     }
+    estimate.map_std = map_std_;
     estimate.scale = likelihood_.scale;
     estimate.epsilon = likelihood_.epsilon;
     estimate.misfit = end.misfit;
@@ -486,16 +555,40 @@ class Estimator {
     return estimate;
   }
 
+  void AddAlternatives(Estimate* estimate) const {
+    for (const TriedMaterial& tried : tried_) {
+      Alternative a;
+      a.start = tried.name;
+      a.cost = tried.cost - tried_.front().cost;
+      const StatusOr<BrdfMetrics> difference =
+          CompareBrdfs(lobes_->ToMerl(tried.parameters.data()), estimate->brdf);
+      if (!difference.ok()) continue;
+      a.brdf_log_difference = difference->log_rmse_aligned;
+      estimate->alternatives.push_back(a);
+    }
+  }
+
   const InverseProblem& problem_;
   const SolveProgress& progress_;
   const std::atomic<bool>* stop_;
   const double start_;
   RobustLogLikelihood likelihood_;
-  std::unique_ptr<Level> full_, coarse_, thin_;
-  LobePrior prior_;
-  std::unique_ptr<IlluminationModel> light_;
-  State first_state_;
+  // Every pixel; thinned; some of each normal (known light).
+  std::unique_ptr<Level> full_, coarse_, few_;
+  std::unique_ptr<LobeModel> lobes_;  // null: known
+  LobePrior lobe_prior_;
+  MaterialPrior materials_;
+  std::unique_ptr<IlluminationModel> light_;  // null: known
+  std::vector<std::unique_ptr<LightPrior>> light_priors_;
+  // Where the prior of the light's parameters is centred: a constant map at the
+  // image's level, whatever the image's unit.
+  std::vector<float> light_mean_, first_mean_;
+  double light_amplitude_ = 1.0;
+  JointState first_;
   std::string start_name_;
+  std::vector<TriedMaterial> tried_;
+  Eigen::MatrixXd covariance_;
+  Image map_std_;
   std::vector<TraceEntry> trace_;
   int iterations_ = 0;
 };

@@ -55,10 +55,25 @@ struct TraceEntry {
   double misfit = 0.0;  // mean |log E - log I|
 };
 
+// A reflectance that explains the image too: where it began, and how far it
+// lies from the estimate.
+struct Alternative {
+  std::string start;  // training material
+  double cost = 0.0;  // -log posterior, nats, above the best one's
+  double brdf_log_difference = 0.0;  // as ibrdf_eval's aligned log-RMSE
+};
+
 struct Estimate {
   std::vector<double> lobe_parameters;  // as LobeModel; empty if known
-  MerlTable brdf;                       // empty if known
-  Image map;                            // [H, W]; the known one if known
+  // Posterior covariance of those (Laplace, light integrated out), row-major;
+  // empty where it was not found.
+  std::vector<double> lobe_covariance;
+  std::vector<Alternative> alternatives;  // joint problems
+  // Standard deviation of log radiance given the reflectance, at the
+  // resolution of the search; joint problems with SolverEstimator::kMarginal.
+  Image map_std;
+  MerlTable brdf;      // empty if known
+  Image map;           // [H, W]; the known one if known
   Image render;        // radiance at the object's pixels, else 0
   double scale = 0.0;  // b used at the end
   double epsilon = 0.0;

@@ -18,7 +18,7 @@ namespace ibrdf {
 struct LightProcess {
   double luminance_variance = 1.6;
   double chroma_variance = 0.12;
-  double correlation_degrees = 45.0;
+  double correlation_degrees = 52.0;
   double level_variance = 4.0;
   double level_chroma_variance = 0.12;
 
