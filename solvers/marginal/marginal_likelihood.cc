@@ -19,9 +19,11 @@ constexpr double kSmallestStep = 1e-3;
 constexpr double kContraction = 0.3;
 constexpr double kLongestStep = 6.0;
 constexpr double kMaxLogRadiance = 80.0;
-constexpr double kSmallestRadiance = 1e-300;
-// Of the exact Hessian's inverse, as corrections of Gauss-Newton's.
-constexpr int kCurvatureCorrections = 4;
+constexpr double kSmallestRadiance = 1e-200;
+// Conjugate gradients for the motion of the mode: steps, and the square of the
+// error, relative, in the Hessian's norm.
+constexpr int kMaxHessianSteps = 30;
+constexpr double kHessianTolerance = 1e-8;
 // Rows of one task of a product.
 constexpr Eigen::Index kTileRows = 48;
 
@@ -220,7 +222,11 @@ MarginalValue MarginalLikelihood::Evaluate(
     mode->l = ApplyCovariance(amplitude, mode->dual);
   }
   Point point = At(matrices, mode->level, mode->l);
-  if (!point.residual.allFinite()) return value;
+  // Nothing but black: no light explains an image of it.
+  if (!point.residual.allFinite() ||
+      !(point.E.minCoeff() > kSmallestRadiance)) {
+    return value;
+  }
   double likelihood = likelihood_of(point);
   bool fresh = false;  // whether the linearisation was made here
   double last_step = std::numeric_limits<double>::infinity();
@@ -257,7 +263,8 @@ MarginalValue MarginalLikelihood::Evaluate(
       const Eigen::VectorXd l = mode->l + s * dl;
       Point trial = At(matrices, mode->level, l);
       const double trial_likelihood = likelihood_of(trial);
-      if (trial_likelihood + s * cross + 0.5 * s * s * square <= likelihood) {
+      if (trial.E.minCoeff() > kSmallestRadiance &&
+          trial_likelihood + s * cross + 0.5 * s * s * square <= likelihood) {
         taken = s;
         mode->dual += s * d_dual;
         mode->l = l;
@@ -324,19 +331,35 @@ void MarginalLikelihood::AddGradient(const Eigen::VectorXd& weight,
         G[c].cwiseProduct(linear.jacobian[c]).colwise().sum().transpose();
   }
 
-  // v = H^-1 q = K w. H = K^-1 + J^T D^-1 J + C with
-  // C = -sum_p r_p / D_p (diag(J_p) - J_p J_p^T), taken by corrections.
+  // v = H^-1 q = K w by conjugate gradients, preconditioned by Gauss-Newton's
+  // Hessian. H = K^-1 + J^T D^-1 J + C with
+  // C = -sum_p r_p / D_p (diag(J_p) - J_p J_p^T). Vectors come in pairs: x and,
+  // where x = K x', its dual x'.
   const Eigen::VectorXd weighted = weight.cwiseProduct(r);
   const Eigen::VectorXd curvature = ApplyJacobianTransposed(linear, weighted);
-  Eigen::VectorXd right = q, w, v, Jv;
-  for (int k = 0; k <= kCurvatureCorrections; ++k) {
-    w = SolveDual(linear, amplitude, right);
-    v = ApplyCovariance(amplitude, w);
-    Jv = ApplyJacobian(linear, v);
-    if (k == kCurvatureCorrections) break;
-    right = q + curvature.cwiseProduct(v) -
-            ApplyJacobianTransposed(linear, weighted.cwiseProduct(Jv));
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(3 * t), rest = q, p_dual, p;
+  double rho = 0.0, first_rho = 0.0;
+  for (int k = 0; k < kMaxHessianSteps; ++k) {
+    const Eigen::VectorXd z_dual = SolveDual(linear, amplitude, rest);
+    const Eigen::VectorXd z = ApplyCovariance(amplitude, z_dual);
+    const double next_rho = rest.dot(z);
+    if (k == 0) first_rho = next_rho;
+    if (!(next_rho > kHessianTolerance * first_rho)) break;
+    const double beta = k == 0 ? 0.0 : next_rho / rho;
+    p_dual = k == 0 ? z_dual : Eigen::VectorXd(z_dual + beta * p_dual);
+    p = k == 0 ? z : Eigen::VectorXd(z + beta * p);
+    rho = next_rho;
+    const Eigen::VectorXd Jp = ApplyJacobian(linear, p);
+    const Eigen::VectorXd Hp =
+        p_dual - curvature.cwiseProduct(p) +
+        ApplyJacobianTransposed(linear, (weight + weighted).cwiseProduct(Jp));
+    const double square = p.dot(Hp);
+    if (!(square > 0.0)) break;
+    w += rho / square * p_dual;
+    rest -= rho / square * Hp;
   }
+  const Eigen::VectorXd v = ApplyCovariance(amplitude, w);
+  const Eigen::VectorXd Jv = ApplyJacobian(linear, v);
 
   for (int c = 0; c < 3; ++c) {
     const auto L = point.L.segment(c * t, t);

@@ -48,7 +48,7 @@ class ModelFile : public ::testing::Test {
     const size_t at = header.find(from);
     ASSERT_NE(std::string::npos, at) << header;
     header.replace(at, from.size(), to);
-    std::string changed = "ibrdf-model 2\n" + std::to_string(header.size()) +
+    std::string changed = "ibrdf-model 3\n" + std::to_string(header.size()) +
                           "\n" + header + bytes.substr(begin + length);
     Seal(&changed);
     WriteBytes(path_, changed);
@@ -97,6 +97,23 @@ TEST_F(ModelFile, RoundTripKeepsEveryBit) {
   EXPECT_EQ(written.widths, shape.widths);
   EXPECT_EQ(written.marginal_widths, shape.marginal_widths);
   EXPECT_EQ(1, dir_.CountFiles());
+}
+
+TEST_F(ModelFile, LobeFitsRoundTrip) {
+  model_.fit_lobes = 2;
+  for (int i = 0; i < model_.num_materials() * 2 * 7; ++i) {
+    model_.lobe_fits.push_back(0.1f * static_cast<float>(i) - 3.0f);
+  }
+  ASSERT_TRUE(WriteModel(model_, path_).ok());
+  const StatusOr<NeuralBrdfModel> read = ReadModel(path_);
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_EQ(2, read->fit_lobes);
+  EXPECT_EQ(model_.lobe_fits, read->lobe_fits);
+  Rewrite("\"fit_lobes\":2", "\"fit_lobes\":1");
+  ExpectRefused("expected");
+  ASSERT_TRUE(WriteModel(model_, path_).ok());
+  Rewrite("\"fit_lobes\":2", "\"fit_lobes\":9");
+  ExpectRefused("fit_lobes");
 }
 
 TEST_F(ModelFile, CouplingStackRoundTrips) {
@@ -161,18 +178,18 @@ TEST_F(ModelFile, DamageUnderAValidChecksumNeverCrashes) {
 
 TEST_F(ModelFile, OtherVersionsAndFilesAreNamed) {
   const std::string bytes = ReadBytes(path_);
-  for (const char version : {'1', '3'}) {
+  for (const char version : {'1', '4'}) {
     std::string other = bytes;
     other[12] = version;
     Seal(&other);
     WriteBytes(path_, other);
-    ExpectRefused(std::string("version: expected 2, found ") + version);
+    ExpectRefused(std::string("version: expected 3, found ") + version);
   }
   WriteBytes(path_, "PNG or something");
   ExpectRefused("not a model file");
   WriteBytes(path_, "");
   ExpectRefused("");
-  WriteBytes(path_, "ibrdf-model 2\n99999999999999999999\n{}12345678");
+  WriteBytes(path_, "ibrdf-model 3\n99999999999999999999\n{}12345678");
   ExpectRefused("");
 }
 
@@ -259,6 +276,10 @@ TEST_F(ModelFile, NumbersOutsideTheirRangeAreNamed) {
   expect("codes: m0.green", [](NeuralBrdfModel* m) { m->codes[5] = 1.01f; });
   expect("log_colours", [&](NeuralBrdfModel* m) { m->log_colours[0] = nan; });
   expect("exponent", [](NeuralBrdfModel* m) { m->exponent = 0.0; });
+  expect("lobe_fits", [&](NeuralBrdfModel* m) {
+    m->fit_lobes = 1;
+    m->lobe_fits.assign(static_cast<size_t>(m->num_materials()) * 7, nan);
+  });
 }
 
 TEST_F(ModelFile, CodesOnTheUnitSphereAreAccepted) {

@@ -1,0 +1,332 @@
+#include "solvers/marginal/marginal_likelihood.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+
+#include "ibrdf/light/environment_map.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kHeight = 4, kWidth = 8, kTexels = kHeight * kWidth;
+constexpr int kPoints = 6;
+
+// Lobes of a width in radians about random directions, as matrices of three
+// like channels.
+std::array<RowMatrix, 3> Lobes(double width, int points = kPoints) {
+  std::mt19937_64 rng(7);
+  std::normal_distribution<double> g;
+  RowMatrix T(points, kTexels);
+  for (int p = 0; p < points; ++p) {
+    const Eigen::Vector3d axis =
+        Eigen::Vector3d(g(rng), g(rng), g(rng)).normalized();
+    for (int r = 0; r < kHeight; ++r) {
+      for (int c = 0; c < kWidth; ++c) {
+        const double x =
+            axis.dot(MapDirection(r + 0.5, c + 0.5, kHeight, kWidth));
+        T(p, r * kWidth + c) = TexelSolidAngle(r, kHeight, kWidth) *
+                               (std::exp((x - 1) / (width * width)) + 1e-4);
+      }
+    }
+  }
+  return {T, 0.7 * T, 1.3 * T};
+}
+
+Eigen::VectorXd DrawLight(const LightProcess& process, double amplitude,
+                          uint64_t seed) {
+  const RowMatrix C =
+      LightCorrelation(kHeight, kWidth, process.correlation_degrees);
+  Eigen::MatrixXd K(3 * kTexels, 3 * kTexels);
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d < 3; ++d) {
+      K.block(c * kTexels, d * kTexels, kTexels, kTexels) =
+          (amplitude * process.Local()(c, d) * C).array() +
+          process.Level()(c, d);
+    }
+  }
+  std::mt19937_64 rng(seed);
+  std::normal_distribution<double> g;
+  Eigen::VectorXd white(3 * kTexels);
+  for (double& w : white) w = g(rng);
+  return K.llt().matrixL() * white;
+}
+
+std::vector<double> LogRadiance(const std::array<RowMatrix, 3>& T,
+                                const Eigen::VectorXd& l) {
+  std::vector<double> y;
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd E =
+        T[c] * l.segment(c * kTexels, kTexels).array().exp().matrix();
+    for (const double e : E) y.push_back(std::log(e));
+  }
+  return y;
+}
+
+Eigen::VectorXd Noise(double sigma, int points = kPoints) {
+  return Eigen::VectorXd::Constant(3 * points, sigma * sigma);
+}
+
+// A level that the process itself holds, so that nothing is improper.
+LightProcess Proper() {
+  LightProcess process;
+  process.level_variance = 0.5;
+  return process;
+}
+
+MarginalLikelihood Likelihood(std::vector<double> y,
+                              const LightProcess& process) {
+  return MarginalLikelihood(std::move(y), process, kHeight, kWidth, 1);
+}
+
+constexpr double kTight = 1e-12;  // nats, of the mode
+
+TEST(MarginalLikelihood, GradientMatchesDifferences) {
+  for (const double width : {0.3, 1.0}) {
+    std::array<RowMatrix, 3> T = Lobes(width);
+    std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 2));
+    // Not what the model can render: the mode keeps residuals.
+    for (size_t i = 0; i < y.size(); ++i) y[i] += 0.2 * std::sin(5.0 * i);
+    const MarginalLikelihood likelihood = Likelihood(y, Proper());
+    const auto cost = [&](const std::array<RowMatrix, 3>& matrices,
+                          double log_amplitude, MarginalGradient* gradient) {
+      LightMode mode;
+      mode.l = mode.dual = Eigen::VectorXd::Zero(3 * kTexels);
+      const MarginalValue value = likelihood.Evaluate(
+          matrices, Noise(0.1), log_amplitude, kTight, &mode, gradient);
+      EXPECT_TRUE(value.ok);
+      return value.cost;
+    };
+    MarginalGradient gradient;
+    cost(T, 0.3, &gradient);
+    // The mode is known to 1e-6, which moves the log determinant by as much.
+    const double h = 2e-3;
+    EXPECT_NEAR(
+        (cost(T, 0.3 + h, nullptr) - cost(T, 0.3 - h, nullptr)) / (2 * h),
+        gradient.log_amplitude, 1e-3 * std::abs(gradient.log_amplitude) + 1e-3);
+    std::mt19937_64 rng(1);
+    std::normal_distribution<double> g;
+    for (int trial = 0; trial < 4; ++trial) {
+      std::array<RowMatrix, 3> up = T, down = T;
+      double expected = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        const RowMatrix direction =
+            T[c].unaryExpr([&](double t) { return t * g(rng); });
+        up[c] += h * direction;
+        down[c] -= h * direction;
+        expected += gradient.matrices[c].cwiseProduct(direction).sum();
+      }
+      EXPECT_NEAR((cost(up, 0.3, nullptr) - cost(down, 0.3, nullptr)) / (2 * h),
+                  expected, 2e-3 * std::abs(expected) + 2e-3)
+          << width;
+    }
+  }
+}
+
+TEST(MarginalLikelihood, ModeIsWhereThePosteriorIsFlat) {
+  const std::array<RowMatrix, 3> T = Lobes(0.5);
+  const MarginalLikelihood likelihood =
+      Likelihood(LogRadiance(T, DrawLight(Proper(), 1.0, 3)), Proper());
+  LightMode mode;
+  ASSERT_TRUE(
+      likelihood.Evaluate(T, Noise(0.05), 0.0, kTight, &mode, nullptr).ok);
+  // g = J^T D^-1 (y - log E), at the point itself.
+  const std::vector<double> at =
+      LogRadiance(T, (mode.l.array() + mode.level).matrix());
+  const std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 3));
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd L =
+        (mode.l.segment(c * kTexels, kTexels).array() + mode.level).exp();
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(kTexels);
+    for (int p = 0; p < kPoints; ++p) {
+      const int i = c * kPoints + p;
+      expected += (y[i] - at[i]) / (0.05 * 0.05 * std::exp(at[i])) *
+                  T[c].row(p).transpose().cwiseProduct(L);
+    }
+    EXPECT_LT((expected - mode.dual.segment(c * kTexels, kTexels)).norm(),
+              1e-4 * expected.norm());
+  }
+}
+
+// The integral itself, by drawing light from the prior.
+TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
+  const int points = 2;
+  const std::array<RowMatrix, 3> T = Lobes(0.8, points);
+  LightProcess process = Proper();
+  process.level_variance = 0.01;
+  process.level_chroma_variance = 0.002;
+  const double log_amplitude = std::log(0.02), sigma = 0.15;
+  const auto evidence = [&](const std::vector<double>& y) {
+    const MarginalLikelihood likelihood(y, process, kHeight, kWidth, 1);
+    LightMode mode;
+    mode.l = mode.dual = Eigen::VectorXd::Zero(3 * kTexels);
+    return -likelihood
+                .Evaluate(T, Noise(sigma, points), log_amplitude, kTight, &mode,
+                          nullptr)
+                .cost;
+  };
+  const auto draws = [&](const std::vector<double>& y) {
+    double sum = 0.0;
+    const int count = 20000;
+    for (int k = 0; k < count; ++k) {
+      const std::vector<double> at =
+          LogRadiance(T, DrawLight(process, 0.02, 100 + k));
+      double square = 0.0;
+      for (size_t i = 0; i < y.size(); ++i) {
+        square += (y[i] - at[i]) * (y[i] - at[i]) / (sigma * sigma);
+      }
+      sum += std::exp(-0.5 * square) / count;
+    }
+    return std::log(sum) - y.size() * std::log(sigma);
+  };
+  const std::vector<double> likely =
+      LogRadiance(T, DrawLight(process, 0.02, 5));
+  std::vector<double> unlikely = likely;
+  unlikely[0] += 0.3;
+  unlikely[3] -= 0.2;
+  // 20000 draws know the sum to some per cent; Laplace's error is of the order
+  // of the light's variance, 0.03.
+  EXPECT_NEAR(draws(likely), evidence(likely), 0.1);
+  EXPECT_NEAR(draws(unlikely), evidence(unlikely), 0.15);
+}
+
+// What the maximum over light and reflectance cannot do: an image made by wide
+// lobes is better explained by wide lobes than by narrow ones, which fit it as
+// well; and the other way round.
+TEST(MarginalLikelihood, TellsMatteFromMirror) {
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    const std::array<RowMatrix, 3> wide = Lobes(0.9, 24);
+    const std::array<RowMatrix, 3> narrow = Lobes(0.25, 24);
+    const Eigen::VectorXd light = DrawLight(LightProcess(), 1.0, seed);
+    const auto cost = [&](const std::array<RowMatrix, 3>& truth,
+                          const std::array<RowMatrix, 3>& guess) {
+      const MarginalLikelihood likelihood(LogRadiance(truth, light),
+                                          LightProcess(), kHeight, kWidth, 1);
+      LightMode mode;
+      const MarginalValue value = likelihood.Evaluate(
+          guess, Noise(0.05, 24), 0.0, 1e-3, &mode, nullptr);
+      EXPECT_TRUE(value.ok);
+      return value.cost;
+    };
+    EXPECT_LT(cost(wide, wide), cost(wide, narrow) - 3.0) << seed;
+    EXPECT_LT(cost(narrow, narrow), cost(narrow, wide) - 3.0) << seed;
+  }
+}
+
+TEST(MarginalLikelihood, StartOfTheModeDoesNotMatter) {
+  const std::array<RowMatrix, 3> T = Lobes(0.5);
+  const MarginalLikelihood likelihood =
+      Likelihood(LogRadiance(T, DrawLight(Proper(), 4.0, 3)), Proper());
+  LightMode cold, warm;
+  const double cost =
+      likelihood.Evaluate(T, Noise(0.05), 0.0, 1e-9, &cold, nullptr).cost;
+  const std::array<RowMatrix, 3> other = Lobes(0.9);
+  likelihood.Evaluate(other, Noise(0.05), 0.5, 1e-9, &warm, nullptr);
+  warm.level = cold.level;
+  EXPECT_NEAR(
+      cost, likelihood.Evaluate(T, Noise(0.05), 0.0, 1e-9, &warm, nullptr).cost,
+      1e-4);
+}
+
+TEST(MarginalLikelihood, ExtremesAreFiniteOrRefused) {
+  std::array<RowMatrix, 3> T = Lobes(0.3);
+  std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 3));
+  const auto evaluate = [&](const std::vector<double>& image,
+                            const std::array<RowMatrix, 3>& matrices) {
+    LightMode mode;
+    MarginalGradient gradient;
+    const MarginalValue value =
+        Likelihood(image, LightProcess())
+            .Evaluate(matrices, Noise(0.03), 0.0, 1e-3, &mode, &gradient);
+    if (!value.ok) return;
+    EXPECT_TRUE(std::isfinite(value.cost));
+    for (const RowMatrix& m : gradient.matrices) EXPECT_TRUE(m.allFinite());
+  };
+  std::vector<double> sun = y;
+  sun[2] += 14.0;  // a million times
+  evaluate(sun, T);
+  std::vector<double> dark = y;
+  for (double& v : dark) v -= 60.0;
+  evaluate(dark, T);
+  std::array<RowMatrix, 3> black = T;
+  black[1].setZero();
+  evaluate(y, black);
+  std::array<RowMatrix, 3> bad = T;
+  bad[0](1, 1) = std::nan("");
+  LightMode mode;
+  EXPECT_FALSE(Likelihood(y, LightProcess())
+                   .Evaluate(bad, Noise(0.03), 0.0, 1e-3, &mode, nullptr)
+                   .ok);
+}
+
+TEST(MarginalLikelihood, VarianceIsThePriorsWhereNothingIsSeen) {
+  std::array<RowMatrix, 3> T = Lobes(0.15);
+  // No point sees the first texel's neighbourhood.
+  for (RowMatrix& m : T) m.leftCols(kWidth).setZero();
+  const MarginalLikelihood likelihood =
+      Likelihood(LogRadiance(T, DrawLight(Proper(), 1.0, 3)), Proper());
+  LightMode mode;
+  likelihood.Evaluate(T, Noise(0.02), 0.0, 1e-6, &mode, nullptr);
+  const Eigen::VectorXd variance =
+      likelihood.LightVariance(T, Noise(0.02), 0.0, mode);
+  const double prior = Proper().Local()(0, 0) + Proper().Level()(0, 0);
+  EXPECT_LE(variance.maxCoeff(), prior + 1e-9);
+  EXPECT_GE(variance.minCoeff(), 0.0);
+  // A texel in the middle of a lobe is known better than one of the blind row.
+  EXPECT_LT(variance.segment(kWidth, 2 * kWidth).minCoeff(),
+            0.5 * variance.head(kWidth).minCoeff());
+}
+
+TEST(MarginalLikelihood, NoiseGrowsAsLobesShrink) {
+  double last = 0.0;
+  for (const double width : {1.5, 0.8, 0.4, 0.2}) {
+    const std::array<RowMatrix, 3> T = Lobes(width);
+    LightMode mode;
+    mode.l = Eigen::VectorXd::Zero(3 * kTexels);
+    const Eigen::VectorXd noise =
+        Likelihood(std::vector<double>(3 * kPoints, 0.0), LightProcess())
+            .NoiseVariance(T, 0.03, mode);
+    EXPECT_GE(noise.minCoeff(), 0.03 * 0.03);
+    EXPECT_GT(noise.mean(), last);
+    last = noise.mean();
+  }
+  EXPECT_LT(last, LightProcess().VarianceWithin(180.0 / kHeight) + 1e-3);
+}
+
+TEST(LightProcess, CovariancesArePositive) {
+  const LightProcess process;
+  const RowMatrix C = LightCorrelation(8, 16, process.correlation_degrees);
+  EXPECT_EQ(Eigen::Success, Eigen::LLT<Eigen::MatrixXd>(C).info());
+  EXPECT_EQ(Eigen::Success,
+            Eigen::LLT<Eigen::Matrix3d>(process.Local()).info());
+  EXPECT_DOUBLE_EQ(0.0, process.VarianceWithin(0.0));
+  EXPECT_LT(process.VarianceWithin(5.0), process.VarianceWithin(10.0));
+}
+
+TEST(DenseAlgebra, AgreesWithEigen) {
+  std::mt19937_64 rng(1);
+  std::normal_distribution<double> g;
+  RowMatrix A(5, 7), B(7, 4);
+  for (double& v : A.reshaped()) v = g(rng);
+  for (double& v : B.reshaped()) v = g(rng);
+  RowMatrix C;
+  Multiply(A, B, &C);
+  EXPECT_LT((C - A * B).norm(), 1e-12);
+  MultiplyTransposed(A, RowMatrix(B.transpose()), &C);
+  EXPECT_LT((C - A * B).norm(), 1e-12);
+  RowMatrix S = A * A.transpose() + RowMatrix::Identity(5, 5);
+  RowMatrix L = S;
+  ASSERT_TRUE(Factorise(&L));
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(5, -1, 2), solved = x;
+  SolveFactored(L, solved.data());
+  EXPECT_LT((S * solved - x).norm(), 1e-12);
+  InvertFactored(&L);
+  EXPECT_LT((L * S - RowMatrix::Identity(5, 5)).norm(), 1e-12);
+  S(0, 0) = -1.0;
+  EXPECT_FALSE(Factorise(&S));
+}
+
+}  // namespace
+}  // namespace ibrdf

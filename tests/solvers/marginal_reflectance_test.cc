@@ -1,0 +1,311 @@
+// Lobes, prior and search on top of the marginal likelihood.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "solvers/costs/material_prior_cost.h"
+#include "solvers/known_light_search.h"
+#include "solvers/marginal/marginal_objective.h"
+#include "solvers/marginal/reflectance_search.h"
+#include "solvers/trainer/material_lobes.h"
+#include "tests/solvers/solver_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+constexpr BrdfGridShape kGrid = {12, 8, 6};
+
+class MarginalReflectanceTest : public ::testing::Test {
+ protected:
+  MarginalReflectanceTest() {
+    resolution_.cells = {6, 3, 0.2};
+    resolution_.map_width = 16;
+    resolution_.map_height = 8;
+    resolution_.grid = kGrid;
+    const LobeModel lobes(model_, 2, kGrid, 1);
+    truth_ = {0.3,  -0.4, 0.2, 0.1,  4.0, 4.3, 3.8,
+              -0.5, 0.1,  0.3, -0.2, 3.0, 2.5, 3.3};
+    std::vector<float> fields;
+    lobes.Tabulate(truth_.data(), false, &fields);
+    TransportOptions options;
+    options.grid = kGrid;
+    options.num_threads = 1;
+    const Transport transport(points_, 8, 16, options);
+    radiance_.resize(3 * points_.size());
+    transport.Render(lobes.Combine(truth_.data(), fields, 1),
+                     SmoothMap(8, 16).rgb.data(), radiance_.data());
+  }
+
+  ReflectanceSearchOptions Options() const {
+    ReflectanceSearchOptions options;
+    options.screen = options.coarse = options.fine = resolution_;
+    options.kept = 3;
+    options.starts = 2;
+    options.coarse_iterations = options.fine_iterations = 4;
+    options.num_threads = 1;
+    return options;
+  }
+
+  const NeuralBrdfModel model_ = SmoothTinyModel(4);
+  const std::vector<ShadingPoint> points_ = SpherePoints(12);
+  MarginalResolution resolution_;
+  std::vector<double> truth_, radiance_;
+};
+
+TEST_F(MarginalReflectanceTest, GradientMatchesDifferences) {
+  const MarginalReflectance reflectance(model_, 2, points_, radiance_,
+                                        LightProcess(), resolution_, 1);
+  const Eigen::VectorXd noise =
+      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
+  // Away from the truth, and at it.
+  for (const double away : {0.2, 0.0}) {
+    std::vector<double> x = truth_;
+    for (size_t i = 0; i < x.size(); ++i) x[i] += away * std::cos(3.0 * i);
+    const auto evaluate = [&](const std::vector<double>& at, double amplitude,
+                              std::vector<double>* gradient) {
+      LightMode mode;
+      mode.l = mode.dual = Eigen::VectorXd::Zero(3 * 128);
+      const MarginalValue value = reflectance.Evaluate(
+          at.data(), noise, amplitude, 1e-12, &mode, gradient);
+      EXPECT_TRUE(value.ok);
+      return std::vector<double>{value.cost};
+    };
+    std::vector<double> gradient;
+    evaluate(x, 0.2, &gradient);
+    ASSERT_EQ(15u, gradient.size());
+    const double scale = Norm(gradient);
+    for (const size_t i : {0, 3, 4, 6, 8, 11, 14}) {
+      const double numeric = Differentiate(
+          [&](double t) {
+            std::vector<double> at = x;
+            if (i < 14) at[i] += t;
+            return evaluate(at, 0.2 + (i == 14 ? t : 0.0), nullptr);
+          },
+          0.05)[0];
+      // The lobes' tables are float.
+      EXPECT_NEAR(numeric, gradient[i], 5e-3 * scale) << i << " " << away;
+    }
+  }
+}
+
+TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
+  const MarginalReflectance reflectance(model_, 2, points_, radiance_,
+                                        LightProcess(), resolution_, 1);
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  LightMode mode;
+  const MarginalObjective objective(
+      &reflectance, &prior, 0.7,
+      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.01),
+      &mode);
+  ASSERT_EQ(15, objective.NumParameters());
+  const Eigen::VectorXd lobes =
+      Eigen::Map<const Eigen::VectorXd>(truth_.data(), 14);
+  std::vector<double> y = objective.Whitened(lobes, 0.4);
+  EXPECT_LT((objective.LobesOf(y.data()) - lobes).norm(), 1e-9);
+  EXPECT_NEAR(0.4, objective.LogAmplitudeOf(y.data()), 1e-12);
+  std::vector<double> gradient(15);
+  double cost = 0.0;
+  ASSERT_TRUE(objective.Evaluate(y.data(), &cost, gradient.data()));
+  ASSERT_TRUE(objective.Evaluate(y.data(), &cost, gradient.data()));
+  for (const int i : {0, 5, 9, 14}) {
+    const double h = 0.02;
+    double up = 0.0, down = 0.0;
+    y[i] += h;
+    ASSERT_TRUE(objective.Evaluate(y.data(), &up, nullptr));
+    y[i] -= 2 * h;
+    ASSERT_TRUE(objective.Evaluate(y.data(), &down, nullptr));
+    y[i] += h;
+    EXPECT_NEAR((up - down) / (2 * h), gradient[i], 0.02 * Norm(gradient)) << i;
+  }
+}
+
+TEST_F(MarginalReflectanceTest, SearchLowersTheCostWhateverTheThreads) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  ReflectanceSearchOptions options = Options();
+  const StatusOr<ReflectanceSearchResult> one =
+      SearchReflectance(model_, prior, points_, radiance_, options);
+  ASSERT_TRUE(one.ok()) << one.status().message();
+  ASSERT_EQ(14u, one->parameters.size());
+  ASSERT_EQ(4u, one->tried.size());
+  EXPECT_LT(one->tried[0].cost, one->tried[0].first_cost);
+  EXPECT_LE(one->tried[0].cost, one->tried[1].cost);
+  EXPECT_LT(one->misfit, 0.1);
+  for (const double s : one->log_radiance_std) {
+    EXPECT_TRUE(std::isfinite(s) && s >= 0.0);
+  }
+  if (one->covariance.size() > 0) {
+    EXPECT_EQ(14, one->covariance.rows());
+    EXPECT_GT(one->covariance.diagonal().minCoeff(), 0.0);
+  }
+  options.num_threads = 2;
+  const StatusOr<ReflectanceSearchResult> two =
+      SearchReflectance(model_, prior, points_, radiance_, options);
+  ASSERT_TRUE(two.ok());
+  EXPECT_EQ(one->parameters, two->parameters);
+  EXPECT_EQ(one->log_radiance, two->log_radiance);
+}
+
+TEST_F(MarginalReflectanceTest, StoppedSearchIsWhole) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  ReflectanceSearchOptions options = Options();
+  options.should_stop = [] { return true; };
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance(model_, prior, points_, radiance_, options);
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  EXPECT_EQ(14u, found->parameters.size());
+  EXPECT_EQ(0, found->covariance.size());
+}
+
+TEST_F(MarginalReflectanceTest, ImageWithoutAUsablePixelIsNamed) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  std::vector<double> bad = radiance_;
+  for (size_t i = 0; i < bad.size(); i += 3) {
+    bad[i] = i % 2 == 0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  }
+  const Status status =
+      SearchReflectance(model_, prior, points_, bad, Options()).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+  EXPECT_EQ(0u, status.message().find("image"));
+}
+
+TEST(ImageCells, RadianceIsTheMeanOfTheirPoints) {
+  const std::vector<ShadingPoint> points = SpherePoints(20);
+  std::vector<double> radiance;
+  for (size_t i = 0; i < 3 * points.size(); ++i) radiance.push_back(1.0 + i);
+  radiance[3 * 100 + 1] = -1.0;
+  const ImageCells cells = GroupByNormal(points, radiance, {5, 3, 0.2});
+  ASSERT_GT(cells.num_cells(), 10);
+  ASSERT_LE(cells.num_cells(), 25);
+  for (int i = 0; i < cells.num_cells(); ++i) {
+    const int begin = cells.first[i], end = cells.first[i + 1];
+    ASSERT_GT(end, begin);
+    ASSERT_LE(end - begin, 3);
+    double sum = 0.0;
+    for (int k = begin; k < end; ++k) {
+      EXPECT_NE(points[100].pixel, cells.points[k].pixel);
+      EXPECT_GE(cells.points[k].normal.dot(cells.points[k].wo), 0.2f);
+      const auto at = std::find_if(points.begin(), points.end(),
+                                   [&](const ShadingPoint& p) {
+                                     return p.pixel == cells.points[k].pixel;
+                                   });
+      sum += radiance[3 * (at - points.begin()) + 2];
+      // Like normals: within a cell's diagonal.
+      EXPECT_LT((cells.points[k].normal - cells.points[begin].normal)
+                    .head<2>()
+                    .norm(),
+                0.4f * std::sqrt(2.0f) + 1e-3f);
+    }
+    EXPECT_NEAR(std::log(sum / (end - begin)),
+                cells.log_radiance[2 * cells.num_cells() + i], 1e-12);
+  }
+}
+
+TEST(MaterialPrior, CostAndResidualsAgreeInsideAndBeyondTheBall) {
+  const NeuralBrdfModel model = TinyModel(8);
+  for (const MaterialPrior& prior :
+       {JointMaterialPrior(model, 2, 0.5), BallPrior(model, 2, 0.5)}) {
+    const MaterialPriorCost cost(&prior);
+    for (const double scale : {0.0, 0.3, 2.0, 1e3}) {
+      Eigen::VectorXd x = prior.mean;
+      for (Eigen::Index i = 0; i < x.size(); ++i) {
+        x[i] += scale * std::cos(2.0 * i);
+      }
+      std::vector<double> r(cost.num_residuals()), J(r.size() * x.size());
+      const double* block[] = {x.data()};
+      double* jacobian[] = {J.data()};
+      ASSERT_TRUE(cost.Evaluate(block, r.data(), jacobian));
+      Eigen::VectorXd gradient = Eigen::VectorXd::Zero(x.size());
+      const double value = prior.Cost(x, &gradient);
+      double half = 0.0;
+      Eigen::VectorXd by_residuals = Eigen::VectorXd::Zero(x.size());
+      for (size_t i = 0; i < r.size(); ++i) {
+        half += 0.5 * r[i] * r[i];
+        for (Eigen::Index j = 0; j < x.size(); ++j) {
+          by_residuals[j] += r[i] * J[i * x.size() + j];
+        }
+      }
+      EXPECT_NEAR(value, half, 1e-9 * (1 + half));
+      EXPECT_LT((gradient - by_residuals).norm(), 1e-9 * (1 + gradient.norm()));
+      for (const Eigen::Index i : {0, 6, 9}) {
+        const double h = 1e-5 * (1 + scale);
+        Eigen::VectorXd up = x, down = x;
+        up[i] += h;
+        down[i] -= h;
+        EXPECT_NEAR(
+            (prior.Cost(up, nullptr) - prior.Cost(down, nullptr)) / (2 * h),
+            gradient[i], 1e-5 * (1 + gradient.norm()));
+      }
+    }
+  }
+}
+
+TEST(MaterialPrior, KnowsHowLobesGoTogether) {
+  NeuralBrdfModel model = TinyModel(40);
+  model.fit_lobes = 2;
+  for (int m = 0; m < 40; ++m) {
+    for (int i = 0; i < 14; ++i) {
+      model.lobe_fits.push_back(0.3f * std::sin(static_cast<float>(m * i)));
+    }
+    // The second lobe's red follows the first one's.
+    model.lobe_fits[m * 14 + 11] = model.lobe_fits[m * 14 + 4];
+  }
+  const MaterialPrior prior = JointMaterialPrior(model, 2, 0.5);
+  Eigen::VectorXd together = Eigen::VectorXd::Zero(14), apart = together;
+  const double std = prior.factor.row(4).norm();
+  together[4] = together[11] = apart[4] = std;
+  apart[11] = -std;
+  EXPECT_LT(prior.Cost(prior.mean + together, nullptr),
+            0.5 * prior.Cost(prior.mean + apart, nullptr));
+  // A third lobe is its own.
+  const MaterialPrior three = JointMaterialPrior(model, 3, 0.5);
+  ASSERT_EQ(21, three.num_parameters());
+  EXPECT_EQ(0.0, three.factor.block(14, 0, 7, 14).norm());
+  for (const MaterialPrior::Material& m : three.materials) {
+    EXPECT_EQ(21, m.parameters.size());
+  }
+}
+
+TEST(MaterialLobes, AreSortedFiniteAndCloseToTheirMaterial) {
+  NeuralBrdfModel model = TinyModel(2);
+  ASSERT_TRUE(FitMaterialLobes(2, 2, &model).ok());
+  EXPECT_EQ(2, model.fit_lobes);
+  ASSERT_EQ(2u * 2 * 7, model.lobe_fits.size());
+  for (const float v : model.lobe_fits) EXPECT_TRUE(std::isfinite(v));
+  NeuralBrdfModel again = TinyModel(2);
+  ASSERT_TRUE(FitMaterialLobes(2, 1, &again).ok());
+  EXPECT_EQ(model.lobe_fits, again.lobe_fits);
+}
+
+TEST_F(MarginalReflectanceTest, KnownLightRanksTheMaterialThatMadeTheImage) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  const LobeModel lobes(model_, 2, kGrid, 1);
+  TransportOptions options;
+  options.grid = kGrid;
+  options.num_threads = 1;
+  const Transport transport(points_, 8, 16, options);
+  const std::vector<float> map = SmoothMap(8, 16).rgb;
+  for (size_t m = 0; m < prior.materials.size(); ++m) {
+    std::vector<double> E;
+    // Brighter than the material: the level is no part of the comparison.
+    Eigen::VectorXd x = prior.materials[m].parameters;
+    for (const int i : {4, 5, 6, 11, 12, 13}) x[i] += 1.5;
+    ASSERT_TRUE(
+        RenderLobeModel(transport, lobes, x.data(), map.data(), &E, nullptr));
+    RobustLogLikelihood likelihood;
+    likelihood.scale = 0.02;
+    const std::vector<RankedMaterial> ranked = RankUnderKnownLight(
+        transport, lobes, prior, map, MakeObservations(E), likelihood);
+    ASSERT_EQ(prior.materials.size(), ranked.size());
+    EXPECT_EQ(prior.materials[m].name, ranked[0].name);
+    EXPECT_NEAR(x[4], ranked[0].parameters[4], 1e-3);
+    for (size_t k = 1; k < ranked.size(); ++k) {
+      EXPECT_LE(ranked[k - 1].cost, ranked[k].cost);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ibrdf

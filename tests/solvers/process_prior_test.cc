@@ -1,0 +1,63 @@
+#include "solvers/joint/process_prior.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace ibrdf {
+namespace {
+
+std::vector<float> RandomLogMap(int height, int width, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<float> g;
+  std::vector<float> map(static_cast<size_t>(3) * height * width);
+  for (float& v : map) v = g(rng);
+  return map;
+}
+
+TEST(ProcessPrior, GradientAndProductMatchDifferences) {
+  // Blocks of one texel and of four.
+  for (const int width : {16, 64}) {
+    const int height = width / 2;
+    ProcessPrior prior(height, width, LightProcess(), 1.5, 0.3);
+    const std::vector<float> map = RandomLogMap(height, width, 1);
+    const std::vector<float> v = RandomLogMap(height, width, 2);
+    std::vector<float> gradient(map.size(), 0.0f), product(map.size(), 0.0f);
+    const double cost = prior.Evaluate(map.data(), gradient.data());
+    prior.AddProduct(v.data(), product.data());
+    EXPECT_GT(cost, 0.0);
+    const auto along = [&](float t) {
+      std::vector<float> at = map;
+      for (size_t i = 0; i < at.size(); ++i) at[i] += t * v[i];
+      return prior.Evaluate(at.data(), nullptr);
+    };
+    double slope = 0.0, curvature = 0.0;
+    for (size_t i = 0; i < map.size(); ++i) {
+      slope += static_cast<double>(gradient[i]) * v[i];
+      curvature += static_cast<double>(product[i]) * v[i];
+    }
+    // A quadratic: differences are exact but for the float map.
+    EXPECT_NEAR((along(0.5f) - along(-0.5f)), slope,
+                1e-4 * (std::abs(slope) + cost));
+    EXPECT_NEAR(4 * (along(0.5f) - 2 * cost + along(-0.5f)), curvature,
+                1e-3 * (curvature + cost));
+  }
+}
+
+TEST(ProcessPrior, ConstantMapAtTheLevelCostsNothing) {
+  ProcessPrior prior(32, 64, LightProcess(), 1.0, -0.7);
+  std::vector<float> map(3 * 32 * 64, -0.7f);
+  EXPECT_NEAR(0.0, prior.Evaluate(map.data(), nullptr), 1e-6);
+  // Another grey level costs little, a colour cast of the same size more.
+  std::vector<float> grey = map, red = map;
+  for (float& v : grey) v += 1.0f;
+  for (size_t i = 0; i < red.size(); ++i) {
+    red[i] += i < red.size() / 3 ? 1.0f : -0.5f;
+  }
+  EXPECT_LT(2 * prior.Evaluate(grey.data(), nullptr),
+            prior.Evaluate(red.data(), nullptr));
+}
+
+}  // namespace
+}  // namespace ibrdf
