@@ -78,6 +78,7 @@ class Estimator {
       MatchLight(&state);
       first_.light = state.light;
       first_mean_ = light_mean_;
+      Report("constant map", coarse_.get(), state);
       Rounds("coarse map", coarse_.get(), JointBlocks::kLight, kCoarseShare,
              &state);
       Rounds("map", full_.get(), JointBlocks::kLight, 1.0, &state);

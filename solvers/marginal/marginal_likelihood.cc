@@ -12,18 +12,19 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kMaxIterations = 200;
-constexpr double kSmallestStep = 1e-3;
-// A linearisation serves while each step is shorter than the last by this
-// factor.
-constexpr double kContraction = 0.3;
+constexpr int kMaxIterations = 60;
+constexpr double kSmallestStep = 1e-4;
 constexpr double kLongestStep = 6.0;
+// Of the gain that a step's quadratic model promises, what it must bring.
+constexpr double kSufficientGain = 0.1;
 constexpr double kMaxLogRadiance = 80.0;
 constexpr double kSmallestRadiance = 1e-200;
-// Conjugate gradients for the motion of the mode: steps, and the square of the
-// error, relative, in the Hessian's norm.
+// Conjugate gradients with the Hessian: steps, and the square of the error,
+// relative, in the Hessian's norm, for Newton's steps and for the motion of the
+// mode.
 constexpr int kMaxHessianSteps = 30;
-constexpr double kHessianTolerance = 1e-8;
+constexpr double kNewtonTolerance = 1e-3;
+constexpr double kMotionTolerance = 1e-10;
 // Rows of one task of a product.
 constexpr Eigen::Index kTileRows = 48;
 
@@ -203,11 +204,74 @@ Eigen::VectorXd MarginalLikelihood::SolveDual(const LightLinearisation& linear,
   return x - ApplyJacobianTransposed(linear, a);
 }
 
+Eigen::VectorXd MarginalLikelihood::JacobianTimes(
+    const std::array<RowMatrix, 3>& matrices, const Point& point,
+    const Eigen::VectorXd& v) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::VectorXd dL = point.L.cwiseProduct(v);
+  Eigen::VectorXd out(3 * P);
+  for (int c = 0; c < 3; ++c) {
+    out.segment(c * P, P).noalias() = matrices[c] * dL.segment(c * t, t);
+  }
+  return out.cwiseQuotient(point.E);
+}
+
+Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
+    const std::array<RowMatrix, 3>& matrices, const Point& point,
+    const Eigen::VectorXd& a) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::VectorXd dE = a.cwiseQuotient(point.E);
+  Eigen::VectorXd out(3 * t);
+  for (int c = 0; c < 3; ++c) {
+    out.segment(c * t, t).noalias() =
+        matrices[c].transpose() * dE.segment(c * P, P);
+  }
+  return out.cwiseProduct(point.L);
+}
+
+// H = K^-1 + J^T D^-1 J + C, C = -sum_p r_p / D_p (diag(J_p) - J_p J_p^T).
+// Vectors come in pairs: x and, where x = K x', its dual x'.
+Eigen::VectorXd MarginalLikelihood::SolveHessian(
+    const std::array<RowMatrix, 3>& matrices, const Point& point,
+    const LightLinearisation& linear, const Eigen::VectorXd& weight,
+    double amplitude, double tolerance, const Eigen::VectorXd& x) const {
+  const Eigen::VectorXd weighted = weight.cwiseProduct(point.residual);
+  const Eigen::VectorXd curvature =
+      JacobianTransposedTimes(matrices, point, weighted);
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(x.size()), rest = x, p_dual, p;
+  double rho = 0.0, first_rho = 0.0;
+  for (int k = 0; k < kMaxHessianSteps; ++k) {
+    const Eigen::VectorXd z_dual = SolveDual(linear, amplitude, rest);
+    const Eigen::VectorXd z = ApplyCovariance(amplitude, z_dual);
+    const double next_rho = rest.dot(z);
+    if (k == 0) first_rho = next_rho;
+    if (!(next_rho > tolerance * first_rho)) break;
+    const double beta = k == 0 ? 0.0 : next_rho / rho;
+    p_dual = k == 0 ? z_dual : Eigen::VectorXd(z_dual + beta * p_dual);
+    p = k == 0 ? z : Eigen::VectorXd(z + beta * p);
+    rho = next_rho;
+    const Eigen::VectorXd Jp = JacobianTimes(matrices, point, p);
+    const Eigen::VectorXd Hp =
+        p_dual - curvature.cwiseProduct(p) +
+        JacobianTransposedTimes(matrices, point,
+                                (weight + weighted).cwiseProduct(Jp));
+    const double square = p.dot(Hp);
+    if (!(square > 0.0)) {
+      // Not convex here: the preconditioner's direction descends all the same.
+      if (k == 0) w = z_dual;
+      break;
+    }
+    w += rho / square * p_dual;
+    rest -= rho / square * Hp;
+  }
+  return w;
+}
+
 MarginalValue MarginalLikelihood::Evaluate(
     const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
     double log_amplitude, double tolerance, LightMode* mode,
     MarginalGradient* gradient) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::Index t = num_texels();
   const double amplitude = std::exp(log_amplitude);
   const Eigen::VectorXd weight = noise.cwiseInverse();
   const auto likelihood_of = [&](const Point& at) {
@@ -228,43 +292,35 @@ MarginalValue MarginalLikelihood::Evaluate(
     return value;
   }
   double likelihood = likelihood_of(point);
-  bool fresh = false;  // whether the linearisation was made here
-  double last_step = std::numeric_limits<double>::infinity();
+  mode->linearisation = nullptr;
   while (value.iterations < kMaxIterations) {
     if (mode->linearisation == nullptr) {
       mode->linearisation = Linearise(matrices, noise, amplitude, point);
       if (mode->linearisation == nullptr) return value;
-      fresh = true;
-      last_step = std::numeric_limits<double>::infinity();
       ++value.linearisations;
     }
-    // Newton's step on Phi with the linearisation's Hessian.
-    Eigen::VectorXd slope(3 * t);
-    for (int c = 0; c < 3; ++c) {
-      const Eigen::VectorXd weighted =
-          point.residual.segment(c * P, P)
-              .cwiseProduct(weight.segment(c * P, P))
-              .cwiseQuotient(point.E.segment(c * P, P));
-      slope.segment(c * t, t) = mode->dual.segment(c * t, t) -
-                                point.L.segment(c * t, t).cwiseProduct(
-                                    matrices[c].transpose() * weighted);
-    }
+    ++value.iterations;
+    const Eigen::VectorXd slope =
+        mode->dual - JacobianTransposedTimes(
+                         matrices, point, weight.cwiseProduct(point.residual));
     const Eigen::VectorXd d_dual =
-        -SolveDual(*mode->linearisation, amplitude, slope);
+        -SolveHessian(matrices, point, *mode->linearisation, weight, amplitude,
+                      kNewtonTolerance, slope);
     const Eigen::VectorXd dl = ApplyCovariance(amplitude, d_dual);
     if (!dl.allFinite()) return value;
-    const double step = dl.lpNorm<Eigen::Infinity>();
-    ++value.iterations;
+    const double promise = -slope.dot(dl);  // twice the model's gain
     const double cross = mode->dual.dot(dl), square = d_dual.dot(dl);
     double taken = 0.0;
     // From a wide start the whole step may leave the range of exp.
-    for (double s = std::min(1.0, kLongestStep / step); s > kSmallestStep;
-         s *= 0.4) {
+    double s = std::min(1.0, kLongestStep / dl.lpNorm<Eigen::Infinity>());
+    while (promise > 0.0 && s > kSmallestStep) {
       const Eigen::VectorXd l = mode->l + s * dl;
       Point trial = At(matrices, mode->level, l);
       const double trial_likelihood = likelihood_of(trial);
+      const double gain =
+          likelihood - trial_likelihood - s * cross - 0.5 * s * s * square;
       if (trial.E.minCoeff() > kSmallestRadiance &&
-          trial_likelihood + s * cross + 0.5 * s * s * square <= likelihood) {
+          gain >= kSufficientGain * s * (1.0 - 0.5 * s) * promise) {
         taken = s;
         mode->dual += s * d_dual;
         mode->l = l;
@@ -272,16 +328,16 @@ MarginalValue MarginalLikelihood::Evaluate(
         likelihood = trial_likelihood;
         break;
       }
+      // The lowest point of the parabola through both ends.
+      const double lowest = std::isfinite(gain)
+                                ? 0.5 * s * s * promise / (s * promise - gain)
+                                : 0.0;
+      s = std::clamp(lowest, 0.1 * s, 0.5 * s);
     }
-    if (taken == 1.0 && -0.5 * slope.dot(dl) < tolerance) break;
-    // No decrease with a linearisation of this point: rounding, at the mode.
-    if (taken == 0.0 && fresh) break;
-    if (taken < 1.0 || step > kContraction * last_step) {
+    if (0.5 * promise < tolerance || taken == 0.0) break;
+    // Far from where it was made a linearisation is a poor preconditioner.
+    if (taken * dl.lpNorm<Eigen::Infinity>() > 1.0) {
       mode->linearisation = nullptr;
-      fresh = false;
-    } else {
-      last_step = step;
-      fresh = false;
     }
   }
   mode->linearisation = Linearise(matrices, noise, amplitude, point);
@@ -294,7 +350,7 @@ MarginalValue MarginalLikelihood::Evaluate(
   value.misfit = point.residual.cwiseAbs().mean();
   value.ok = std::isfinite(value.cost);
   if (gradient != nullptr && value.ok) {
-    AddGradient(weight, amplitude, *mode, point, gradient);
+    AddGradient(matrices, weight, amplitude, *mode, point, gradient);
   }
   return value;
 }
@@ -302,7 +358,8 @@ MarginalValue MarginalLikelihood::Evaluate(
 // With F the cost, Phi its first two terms, l* the mode: dF = (partial of F at
 // fixed l) - v . d(grad_l Phi), v = H^-1 q, H the Hessian of Phi and q the
 // gradient of the log determinant in l.
-void MarginalLikelihood::AddGradient(const Eigen::VectorXd& weight,
+void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
+                                     const Eigen::VectorXd& weight,
                                      double amplitude, const LightMode& mode,
                                      const Point& point,
                                      MarginalGradient* gradient) const {
@@ -331,33 +388,9 @@ void MarginalLikelihood::AddGradient(const Eigen::VectorXd& weight,
         G[c].cwiseProduct(linear.jacobian[c]).colwise().sum().transpose();
   }
 
-  // v = H^-1 q = K w by conjugate gradients, preconditioned by Gauss-Newton's
-  // Hessian. H = K^-1 + J^T D^-1 J + C with
-  // C = -sum_p r_p / D_p (diag(J_p) - J_p J_p^T). Vectors come in pairs: x and,
-  // where x = K x', its dual x'.
   const Eigen::VectorXd weighted = weight.cwiseProduct(r);
-  const Eigen::VectorXd curvature = ApplyJacobianTransposed(linear, weighted);
-  Eigen::VectorXd w = Eigen::VectorXd::Zero(3 * t), rest = q, p_dual, p;
-  double rho = 0.0, first_rho = 0.0;
-  for (int k = 0; k < kMaxHessianSteps; ++k) {
-    const Eigen::VectorXd z_dual = SolveDual(linear, amplitude, rest);
-    const Eigen::VectorXd z = ApplyCovariance(amplitude, z_dual);
-    const double next_rho = rest.dot(z);
-    if (k == 0) first_rho = next_rho;
-    if (!(next_rho > kHessianTolerance * first_rho)) break;
-    const double beta = k == 0 ? 0.0 : next_rho / rho;
-    p_dual = k == 0 ? z_dual : Eigen::VectorXd(z_dual + beta * p_dual);
-    p = k == 0 ? z : Eigen::VectorXd(z + beta * p);
-    rho = next_rho;
-    const Eigen::VectorXd Jp = ApplyJacobian(linear, p);
-    const Eigen::VectorXd Hp =
-        p_dual - curvature.cwiseProduct(p) +
-        ApplyJacobianTransposed(linear, (weight + weighted).cwiseProduct(Jp));
-    const double square = p.dot(Hp);
-    if (!(square > 0.0)) break;
-    w += rho / square * p_dual;
-    rest -= rho / square * Hp;
-  }
+  const Eigen::VectorXd w = SolveHessian(matrices, point, linear, weight,
+                                         amplitude, kMotionTolerance, q);
   const Eigen::VectorXd v = ApplyCovariance(amplitude, w);
   const Eigen::VectorXd Jv = ApplyJacobian(linear, v);
 

@@ -31,7 +31,7 @@ struct LightMode {
   double level = 0.0;    // m, of all three channels
   Eigen::VectorXd l;     // [3 * texels], channel by channel; empty: none yet
   Eigen::VectorXd dual;  // [3 * texels]
-  // At some l near the mode: the next search begins with it.
+  // At the mode.
   std::shared_ptr<const LightLinearisation> linearisation;
 };
 
@@ -115,10 +115,26 @@ class MarginalLikelihood {
                                 const Eigen::VectorXd& l) const;
   Eigen::VectorXd ApplyJacobianTransposed(const LightLinearisation& linear,
                                           const Eigen::VectorXd& a) const;
+  // J v and J^T a at a point, without its linearisation.
+  Eigen::VectorXd JacobianTimes(const std::array<RowMatrix, 3>& matrices,
+                                const Point& point,
+                                const Eigen::VectorXd& v) const;
+  Eigen::VectorXd JacobianTransposedTimes(
+      const std::array<RowMatrix, 3>& matrices, const Point& point,
+      const Eigen::VectorXd& a) const;
+  // w with K w = H^-1 x, H the Hessian of the first two terms at the point, by
+  // conjugate gradients preconditioned with a linearisation near it.
+  Eigen::VectorXd SolveHessian(const std::array<RowMatrix, 3>& matrices,
+                               const Point& point,
+                               const LightLinearisation& linear,
+                               const Eigen::VectorXd& weight, double amplitude,
+                               double tolerance,
+                               const Eigen::VectorXd& x) const;
   // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T D^-1 J)^-1 x.
   Eigen::VectorXd SolveDual(const LightLinearisation& linear, double amplitude,
                             const Eigen::VectorXd& x) const;
-  void AddGradient(const Eigen::VectorXd& weight, double amplitude,
+  void AddGradient(const std::array<RowMatrix, 3>& matrices,
+                   const Eigen::VectorXd& weight, double amplitude,
                    const LightMode& mode, const Point& point,
                    MarginalGradient* gradient) const;
 

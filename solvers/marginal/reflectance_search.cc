@@ -62,13 +62,13 @@ class Level {
   }
 
   // -log posterior at amplitude 1; infinite where it has none.
-  double Rank(const Eigen::VectorXd& lobes) const {
+  double Rank(const Eigen::VectorXd& lobes, double* misfit) const {
     LightMode mode;
     const Eigen::VectorXd noise = NoiseOf(lobes, 0.0, &mode);
-    mode.linearisation = nullptr;
     const MarginalValue value = reflectance_.Evaluate(
         lobes.data(), noise, 0.0, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
+    *misfit = value.misfit;
     return value.cost + prior_.Cost(lobes, nullptr);
   }
 
@@ -84,7 +84,6 @@ class Level {
              int iterations) const {
     End end;
     end.noise = NoiseOf(lobes, log_amplitude, &end.mode);
-    end.mode.linearisation = nullptr;
     // Owned by the problem, which must not outlive the mode.
     auto* objective =
         new MarginalObjective(&reflectance_, &prior_,
@@ -173,7 +172,7 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
   const auto count = static_cast<int64_t>(prior.materials.size());
   for (const MaterialPrior::Material& m : prior.materials) {
     result.tried.push_back({m.name, std::numeric_limits<double>::infinity(),
-                            std::numeric_limits<double>::infinity(),
+                            0.0, std::numeric_limits<double>::infinity(),
                             ToVector(m.parameters)});
   }
   // Whole materials in parallel: what each does inside then runs in its thread.
@@ -181,9 +180,11 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
     ParallelFor(first_count, options.num_threads, [&](int64_t i, int) {
       TriedMaterial& tried = result.tried[i];
       if (i > 0 && stopped()) return;
-      tried.first_cost = level.Rank(Eigen::Map<const Eigen::VectorXd>(
-          tried.parameters.data(),
-          static_cast<Eigen::Index>(tried.parameters.size())));
+      tried.first_cost =
+          level.Rank(Eigen::Map<const Eigen::VectorXd>(
+                         tried.parameters.data(),
+                         static_cast<Eigen::Index>(tried.parameters.size())),
+                     &tried.first_misfit);
     });
     std::stable_sort(result.tried.begin(), result.tried.begin() + first_count,
                      [](const TriedMaterial& a, const TriedMaterial& b) {
@@ -199,7 +200,7 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
   }
   rank(coarse, kept);
   report("rank " + std::to_string(count) + " materials",
-         result.tried.front().first_cost, 0.0);
+         result.tried.front().first_cost, result.tried.front().first_misfit);
   Level::End best;
   std::string best_name = result.tried.front().name;
   for (int k = 0; k < options.starts && k < kept; ++k) {

@@ -43,6 +43,7 @@ struct ReflectanceSearchOptions {
 struct TriedMaterial {
   std::string name;
   double first_cost = 0.0;
+  double first_misfit = 0.0;  // mean |log E - log I| over cells
   double cost = 0.0;
   std::vector<double> parameters;  // at the end
 };
