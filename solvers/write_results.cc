@@ -116,6 +116,39 @@ Json LobesJson(const InverseProblem& inverse, const Estimate& estimate) {
   return lobes;
 }
 
+// How well the reflectance is known: standard deviations of what LobesJson
+// writes, log colours, and other materials' ends.
+Json PosteriorJson(const InverseProblem& inverse, const Estimate& estimate) {
+  Json out = Json::object();
+  if (!estimate.lobe_covariance.empty()) {
+    const int codes = inverse.model.shape.code_size(), size = codes + 3;
+    const size_t n = estimate.lobe_parameters.size();
+    Json lobes = Json::array();
+    for (int k = 0; k < inverse.lobes; ++k) {
+      std::vector<double> std;
+      for (int i = 0; i < size; ++i) {
+        const size_t at = static_cast<size_t>(k) * size + i;
+        std.push_back(std::sqrt(estimate.lobe_covariance[at * n + at]));
+      }
+      lobes.push_back(
+          {{"code_std", std::vector<double>(std.begin(), std.begin() + codes)},
+           {"log_colour_std",
+            std::vector<double>(std.begin() + codes, std.end())}});
+    }
+    out["lobes"] = lobes;
+    out["covariance"] = estimate.lobe_covariance;
+  }
+  Json alternatives = Json::array();
+  for (const Alternative& a : estimate.alternatives) {
+    alternatives.push_back(
+        {{"start", a.start},
+         {"cost_above_best", Metric(a.cost)},
+         {"brdf_log_difference", Metric(a.brdf_log_difference)}});
+  }
+  out["alternatives"] = alternatives;
+  return out;
+}
+
 const char* StatusName(const Status& status) {
   switch (status.code()) {
     case StatusCode::kOk:
@@ -188,6 +221,10 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
         WriteFileAtomically(path("brdf.json"), brdf.dump(2) + "\n"));
   }
   IBRDF_RETURN_IF_ERROR(WriteExr(estimate.map, path("illumination.exr")));
+  if (!estimate.map_std.rgb.empty()) {
+    IBRDF_RETURN_IF_ERROR(
+        WriteExr(estimate.map_std, path("illumination_log_std.exr")));
+  }
   IBRDF_RETURN_IF_ERROR(WriteExr(estimate.render, path("render.exr")));
   IBRDF_RETURN_IF_ERROR(
       WriteExr(Residual(inverse, estimate), path("residual.exr")));
@@ -214,6 +251,7 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
        "scale per channel between reflectance and light: least prior cost of "
        "log colours (training materials) and of the light's mean chroma"},
       {"start", estimate.start},
+      {"posterior", PosteriorJson(inverse, estimate)},
       {"seed", inverse.seed},
       {"pixels_used", estimate.pixels_used},
       {"likelihood",

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Statistics of log radiance of environment maps, from which the illumination prior takes its scales.
 
-usage: light_statistics.py MAPS_DIR [--leave-out city,studio,forest] [--width 64]
+usage: light_statistics.py MAPS_DIR [--leave-out A,B,...] [--width 64]
 For every Radiance .hdr map (averaged to WIDTH x WIDTH/2): the mean over texels, weighted by solid angle, of
 |l_i - l_j| / sqrt(angle) for neighbours along a row; the root mean square of the same; the mean log radiance of
-red and blue less that of green; the standard deviation of log radiance. needs numpy
+red and blue less that of green; the standard deviation of log radiance. Then the semivariograms of grey log radiance and
+of chroma (half the mean square of differences; chroma per dimension of its plane) over angles, at 32x16. needs numpy
 """
 import argparse
 import pathlib
@@ -52,10 +53,33 @@ def statistics(radiance, width):
             np.sqrt((((log - mean) ** 2) * weight).mean()))
 
 
+ANGLES = np.array([8, 14, 20, 30, 45, 60, 80, 100, 130, 180.01])
+
+
+def semivariograms(radiance):
+    """Of grey (mean of channels) and of chroma, per bin of ANGLES, degrees."""
+    height, width = 16, 32
+    factor = radiance.shape[1] // width
+    m = radiance.reshape(height, factor, width, factor, 3).mean((1, 3)).reshape(-1, 3)
+    log = np.log(m + 1e-6 * m.max())
+    theta = np.pi * (np.arange(height) + 0.5) / height
+    phi = 2 * np.pi * (np.arange(width) + 0.5) / width
+    t, p = np.meshgrid(theta, phi, indexing="ij")
+    d = np.stack([np.sin(t) * np.sin(p), np.cos(t), np.sin(t) * np.cos(p)], -1).reshape(-1, 3)
+    angle = np.degrees(np.arccos(np.clip(d @ d.T, -1, 1)))
+    weight = np.outer(d[:, 0] ** 2 + d[:, 2] ** 2, d[:, 0] ** 2 + d[:, 2] ** 2) ** 0.5
+    grey = log.mean(1)
+    chroma = log - grey[:, None]
+    squares = [(grey[:, None] - grey) ** 2 / 2, sum((chroma[:, None, c] - chroma[None, :, c]) ** 2 for c in range(3)) / 4]
+    bins = [(angle >= a) & (angle < b) for a, b in zip(ANGLES, ANGLES[1:])]
+    return np.array([[(s * weight)[k].sum() / weight[k].sum() for k in bins] for s in squares])
+
+
 def main():
     ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     ap.add_argument("maps", type=pathlib.Path)
-    ap.add_argument("--leave-out", default="city,studio,forest")
+    ap.add_argument("--leave-out", default="city,studio,forest,night,lobby",
+                    help="maps that experiments test on")
     ap.add_argument("--width", type=int, default=64)
     args = ap.parse_args()
     left_out = set(args.leave_out.split(","))
@@ -69,6 +93,13 @@ def main():
     r = np.array(rows)
     print(f"{'mean (chroma: rms)':28s} {r[:, 0].mean():12.2f} {r[:, 1].mean():9.2f} {np.sqrt((r[:, 2] ** 2).mean()):10.2f} "
           f"{np.sqrt((r[:, 3] ** 2).mean()):11.2f} {r[:, 4].mean():6.2f}")
+    mean = np.mean([semivariograms(read_rgbe(p)) for p in sorted(args.maps.glob("*.hdr")) if p.stem not in left_out], 0)
+    middle = (ANGLES[:-1] + ANGLES[1:]) / 2
+    print("angle, degrees         " + "".join(f"{a:7.0f}" for a in middle))
+    print("grey                   " + "".join(f"{v:7.2f}" for v in mean[0]))
+    print("1.6 (1 - e^(-angle/52))" + "".join(f"{1.6 * (1 - np.exp(-a / 52)):7.2f}" for a in middle))
+    print("chroma                 " + "".join(f"{v:7.3f}" for v in mean[1]))
+    print("0.12 (the same)        " + "".join(f"{0.12 * (1 - np.exp(-a / 52)):7.3f}" for a in middle))
 
 
 if __name__ == "__main__":

@@ -13,8 +13,8 @@ namespace ibrdf {
 // solid angle of the texel relative to one at the equator; columns wrap. Log
 // radiance of natural light differs over an angle by about its root, with the
 // heavy tails of lamps, horizons and windows: the mean of
-// |l_i - l_j| / sqrt(angle) per channel is 0.25 to 1.8, 0.68 on average, over
-// nine outdoor and indoor maps at 64x32 (experiments/light_statistics).
+// |l_i - l_j| / sqrt(angle) per channel is 0.25 to 1.8, 0.70 on average, over
+// seven outdoor and indoor maps at 64x32 (experiments/light_statistics).
 class EdgePrior final : public LightPrior {
  public:
   // scale, delta > 0; scale in log radiance over the root of a radian.
