@@ -113,21 +113,23 @@ class Level {
   Eigen::MatrixXd Covariance(const End& end) const {
     const auto n = static_cast<Eigen::Index>(end.y.size());
     Eigen::MatrixXd hessian(n, n);
-    LightMode mode = end.mode;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (options_.should_stop && options_.should_stop()) return {};
+    std::vector<char> done(n, 0);
+    ParallelFor(n, options_.num_threads, [&](int64_t i, int) {
+      if (options_.should_stop && options_.should_stop()) return;
       Eigen::VectorXd side[2];
       for (int s = 0; s < 2; ++s) {
         std::vector<double> y = end.y;
         y[i] += s == 0 ? kHessianStep : -kHessianStep;
-        LightMode at = mode;
-        MarginalObjective objective = Objective(end.noise, &at);
+        LightMode at = end.mode;
+        const MarginalObjective objective = Objective(end.noise, &at);
         double cost = 0.0;
         side[s].resize(n);
-        if (!objective.Evaluate(y.data(), &cost, side[s].data())) return {};
+        if (!objective.Evaluate(y.data(), &cost, side[s].data())) return;
       }
       hessian.col(i) = (side[0] - side[1]) / (2 * kHessianStep);
-    }
+      done[i] = 1;
+    });
+    if (std::find(done.begin(), done.end(), 0) != done.end()) return {};
     const Eigen::MatrixXd symmetric = 0.5 * (hessian + hessian.transpose());
     const Eigen::LLT<Eigen::MatrixXd> llt(symmetric);
     if (llt.info() != Eigen::Success) return {};
