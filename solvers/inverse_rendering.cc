@@ -28,6 +28,8 @@ namespace {
 // thinned pixels, are over.
 constexpr double kSearchShare = 0.5;
 constexpr double kCoarseShare = 0.8;
+// What follows the last round, its last steps included, takes the rest.
+constexpr double kMapShare = 0.93;
 // More points than this are thinned to every other row and column first.
 constexpr size_t kCoarsePoints = 4000;
 constexpr double kFirstScale = 0.2;      // b at first: tolerant
@@ -81,7 +83,7 @@ class Estimator {
       Report("constant map", coarse_.get(), state);
       Rounds("coarse map", coarse_.get(), JointBlocks::kLight, kCoarseShare,
              &state);
-      Rounds("map", full_.get(), JointBlocks::kLight, 1.0, &state);
+      Rounds("map", full_.get(), JointBlocks::kLight, kMapShare, &state);
     } else {
       if (lobes_unknown()) StartAtMeanMaterial(&state);
       MatchLight(&state);
@@ -92,7 +94,7 @@ class Estimator {
           lobes_unknown() ? JointBlocks::kBoth : JointBlocks::kLight;
       Report("start", coarse_.get(), state);
       Rounds("coarse", coarse_.get(), blocks, kCoarseShare, &state);
-      Rounds("full", full_.get(), blocks, 1.0, &state);
+      Rounds("full", full_.get(), blocks, kMapShare, &state);
     }
     return Finish(state);
   }
