@@ -5,6 +5,8 @@
 #   --no-slurm: only snakemake, for this machine's cores or a cluster's own Slurm
 # Calls apt, as root or through sudo, only when something is missing.
 set -euo pipefail
+# shellcheck source=scripts/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 packages=(snakemake slurm-wlm munge)
 for option in "$@"; do
@@ -14,34 +16,4 @@ for option in "$@"; do
   esac
 done
 
-is_installed() {
-  dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null | grep -qx installed
-}
-
-if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-  echo "install_workflow.sh: no apt on this system; install what these" \
-       "Debian packages hold yourself: ${packages[*]}" >&2
-  exit 1
-fi
-missing=()
-for package in "${packages[@]}"; do
-  is_installed "${package}" || missing+=("${package}")
-done
-if [ "${#missing[@]}" -eq 0 ]; then
-  echo "all ${#packages[@]} packages are installed"
-  exit 0
-fi
-
-as_root=()
-if [ "$(id -u)" -ne 0 ]; then
-  if ! command -v sudo >/dev/null; then
-    echo "install_workflow.sh: neither root nor sudo; as root, run:" \
-         "apt-get install --no-install-recommends ${missing[*]}" >&2
-    exit 1
-  fi
-  as_root=(sudo)
-fi
-apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get)
-echo "installing ${missing[*]}"
-"${apt[@]}" update -q
-"${apt[@]}" install -q -y --no-install-recommends "${missing[@]}"
+install_packages "${packages[@]}"

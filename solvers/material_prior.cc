@@ -49,36 +49,6 @@ std::vector<MaterialPrior::Material> FittedMaterials(
   return materials;
 }
 
-MaterialPrior Independent(const NeuralBrdfModel& model, int lobes,
-                          double code_sigma) {
-  const LobePrior embedding = EmbeddingPrior(model, code_sigma);
-  const int size = model.shape.code_size(), lobe_size = size + 3;
-  MaterialPrior prior;
-  prior.code_size = size;
-  prior.mean =
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lobes) * lobe_size);
-  Eigen::VectorXd std =
-      Eigen::VectorXd::Constant(prior.mean.size(), code_sigma);
-  for (int k = 0; k < lobes; ++k) {
-    for (int c = 0; c < 3; ++c) {
-      prior.mean[k * lobe_size + size + c] = embedding.colour_mean[c];
-      std[k * lobe_size + size + c] = embedding.colour_sigma;
-    }
-  }
-  prior.factor = std.asDiagonal();
-  prior.materials = FittedMaterials(model, lobes);
-  for (MaterialPrior::Material& m : prior.materials) {
-    while (m.parameters.size() < prior.mean.size()) {
-      const Eigen::Index n = m.parameters.size();
-      m.parameters.conservativeResize(n + lobe_size);
-      m.parameters.tail(lobe_size) =
-          m.parameters.segment(n - lobe_size, lobe_size);
-      m.parameters.tail(3).array() += kExtraLobe;
-    }
-  }
-  return prior;
-}
-
 }  // namespace
 
 double MaterialPrior::WallCost(const Eigen::VectorXd& x,
@@ -107,12 +77,37 @@ double MaterialPrior::Cost(const Eigen::VectorXd& x,
 
 MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,
                         double code_sigma) {
-  return Independent(model, lobes, code_sigma);
+  const LobePrior embedding = EmbeddingPrior(model, code_sigma);
+  const int size = model.shape.code_size(), lobe_size = size + 3;
+  MaterialPrior prior;
+  prior.code_size = size;
+  prior.mean =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lobes) * lobe_size);
+  Eigen::VectorXd std =
+      Eigen::VectorXd::Constant(prior.mean.size(), code_sigma);
+  for (int k = 0; k < lobes; ++k) {
+    for (int c = 0; c < 3; ++c) {
+      prior.mean[k * lobe_size + size + c] = embedding.colour_mean[c];
+      std[k * lobe_size + size + c] = embedding.colour_sigma;
+    }
+  }
+  prior.factor = std.asDiagonal();
+  prior.materials = FittedMaterials(model, lobes);
+  for (MaterialPrior::Material& m : prior.materials) {
+    while (m.parameters.size() < prior.mean.size()) {
+      const Eigen::Index n = m.parameters.size();
+      m.parameters.conservativeResize(n + lobe_size);
+      m.parameters.tail(lobe_size) =
+          m.parameters.segment(n - lobe_size, lobe_size);
+      m.parameters.tail(3).array() += kExtraLobe;
+    }
+  }
+  return prior;
 }
 
 MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
                                  double code_sigma) {
-  MaterialPrior prior = Independent(model, lobes, code_sigma);
+  MaterialPrior prior = BallPrior(model, lobes, code_sigma);
   const std::vector<MaterialPrior::Material> materials =
       FittedMaterials(model, lobes);
   if (materials.size() < 3) return prior;

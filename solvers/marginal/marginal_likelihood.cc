@@ -147,11 +147,12 @@ MarginalLikelihood::Point MarginalLikelihood::At(
   return point;
 }
 
-std::shared_ptr<const LightLinearisation> MarginalLikelihood::Linearise(
-    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
-    double amplitude, const Point& point) const {
+std::unique_ptr<const MarginalLikelihood::Linearisation>
+MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
+                              const Eigen::VectorXd& noise, double amplitude,
+                              const Point& point) const {
   const Eigen::Index t = num_texels(), P = num_points_;
-  auto linear = std::make_shared<LightLinearisation>();
+  auto linear = std::make_unique<Linearisation>();
   for (int c = 0; c < 3; ++c) {
     linear->jacobian[c] =
         point.E.segment(c * P, P).cwiseInverse().asDiagonal() * matrices[c] *
@@ -176,7 +177,7 @@ std::shared_ptr<const LightLinearisation> MarginalLikelihood::Linearise(
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyJacobian(
-    const LightLinearisation& linear, const Eigen::VectorXd& l) const {
+    const Linearisation& linear, const Eigen::VectorXd& l) const {
   const Eigen::Index t = num_texels(), P = num_points_;
   Eigen::VectorXd out(3 * P);
   for (int c = 0; c < 3; ++c) {
@@ -186,7 +187,7 @@ Eigen::VectorXd MarginalLikelihood::ApplyJacobian(
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyJacobianTransposed(
-    const LightLinearisation& linear, const Eigen::VectorXd& a) const {
+    const Linearisation& linear, const Eigen::VectorXd& a) const {
   const Eigen::Index t = num_texels(), P = num_points_;
   Eigen::VectorXd out(3 * t);
   for (int c = 0; c < 3; ++c) {
@@ -196,7 +197,7 @@ Eigen::VectorXd MarginalLikelihood::ApplyJacobianTransposed(
   return out;
 }
 
-Eigen::VectorXd MarginalLikelihood::SolveDual(const LightLinearisation& linear,
+Eigen::VectorXd MarginalLikelihood::SolveDual(const Linearisation& linear,
                                               double amplitude,
                                               const Eigen::VectorXd& x) const {
   Eigen::VectorXd a = ApplyJacobian(linear, ApplyCovariance(amplitude, x));
@@ -233,7 +234,7 @@ Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
 // Vectors come in pairs: x and, where x = K x', its dual x'.
 Eigen::VectorXd MarginalLikelihood::SolveHessian(
     const std::array<RowMatrix, 3>& matrices, const Point& point,
-    const LightLinearisation& linear, const Eigen::VectorXd& weight,
+    const Linearisation& linear, const Eigen::VectorXd& weight,
     double amplitude, double tolerance, const Eigen::VectorXd& x) const {
   const Eigen::VectorXd weighted = weight.cwiseProduct(point.residual);
   const Eigen::VectorXd curvature =
@@ -292,20 +293,17 @@ MarginalValue MarginalLikelihood::Evaluate(
     return value;
   }
   double likelihood = likelihood_of(point);
-  mode->linearisation = nullptr;
-  while (value.iterations < kMaxIterations) {
-    if (mode->linearisation == nullptr) {
-      mode->linearisation = Linearise(matrices, noise, amplitude, point);
-      if (mode->linearisation == nullptr) return value;
-      ++value.linearisations;
+  std::unique_ptr<const Linearisation> linear;
+  for (int k = 0; k < kMaxIterations; ++k) {
+    if (linear == nullptr) {
+      linear = Linearise(matrices, noise, amplitude, point);
+      if (linear == nullptr) return value;
     }
-    ++value.iterations;
     const Eigen::VectorXd slope =
         mode->dual - JacobianTransposedTimes(
                          matrices, point, weight.cwiseProduct(point.residual));
-    const Eigen::VectorXd d_dual =
-        -SolveHessian(matrices, point, *mode->linearisation, weight, amplitude,
-                      kNewtonTolerance, slope);
+    const Eigen::VectorXd d_dual = -SolveHessian(
+        matrices, point, *linear, weight, amplitude, kNewtonTolerance, slope);
     const Eigen::VectorXd dl = ApplyCovariance(amplitude, d_dual);
     if (!dl.allFinite()) return value;
     const double promise = -slope.dot(dl);  // twice the model's gain
@@ -337,20 +335,19 @@ MarginalValue MarginalLikelihood::Evaluate(
     if (0.5 * promise < tolerance || taken == 0.0) break;
     // Far from where it was made a linearisation is a poor preconditioner.
     if (taken * dl.lpNorm<Eigen::Infinity>() > 1.0) {
-      mode->linearisation = nullptr;
+      linear = nullptr;
     }
   }
-  mode->linearisation = Linearise(matrices, noise, amplitude, point);
-  if (mode->linearisation == nullptr) return value;
-  ++value.linearisations;
-  value.log_determinant =
-      2.0 * mode->linearisation->factor.diagonal().array().log().sum();
+  linear = Linearise(matrices, noise, amplitude, point);
+  if (linear == nullptr) return value;
+  const double log_determinant =
+      2.0 * linear->factor.diagonal().array().log().sum();
   value.cost =
-      likelihood + 0.5 * mode->dual.dot(mode->l) + 0.5 * value.log_determinant;
+      likelihood + 0.5 * mode->dual.dot(mode->l) + 0.5 * log_determinant;
   value.misfit = point.residual.cwiseAbs().mean();
   value.ok = std::isfinite(value.cost);
   if (gradient != nullptr && value.ok) {
-    AddGradient(matrices, weight, amplitude, *mode, point, gradient);
+    AddGradient(matrices, weight, amplitude, *mode, point, *linear, gradient);
   }
   return value;
 }
@@ -362,9 +359,9 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
                                      const Eigen::VectorXd& weight,
                                      double amplitude, const LightMode& mode,
                                      const Point& point,
+                                     const Linearisation& linear,
                                      MarginalGradient* gradient) const {
   const Eigen::Index t = num_texels(), P = num_points_;
-  const LightLinearisation& linear = *mode.linearisation;
   const Eigen::VectorXd& r = point.residual;
   RowMatrix inverse = linear.factor;
   InvertFactored(&inverse);

@@ -18,21 +18,11 @@
 
 namespace ibrdf {
 
-// A linearisation of log E in l, d log E = J dl, with what its normal equations
-// need.
-struct LightLinearisation {
-  std::array<RowMatrix, 3> jacobian;  // [points][texels] of a channel
-  std::array<RowMatrix, 3> JC;        // jacobian * correlation
-  RowMatrix factor;                   // of D + J K J^T
-};
-
 // The most probable log radiance of the light, m + l, and l = K dual.
 struct LightMode {
   double level = 0.0;    // m, of all three channels
   Eigen::VectorXd l;     // [3 * texels], channel by channel; empty: none yet
   Eigen::VectorXd dual;  // [3 * texels]
-  // At the mode.
-  std::shared_ptr<const LightLinearisation> linearisation;
 };
 
 struct MarginalGradient {
@@ -44,9 +34,6 @@ struct MarginalValue {
   bool ok = false;      // false: not finite, or no mode was found
   double cost = 0.0;    // -log p(image | reflectance), nats, up to a constant
   double misfit = 0.0;  // mean |log E - log I| at the mode
-  double log_determinant = 0.0;  // of D + J K J^T
-  int iterations = 0;            // to the mode
-  int linearisations = 0;
 };
 
 // Laplace's approximation of -log of
@@ -99,11 +86,17 @@ class MarginalLikelihood {
 
  private:
   struct Point;
+  // Of log E in l, d log E = J dl, with what its normal equations need.
+  struct Linearisation {
+    std::array<RowMatrix, 3> jacobian;  // [points][texels] of a channel
+    std::array<RowMatrix, 3> JC;        // jacobian * correlation
+    RowMatrix factor;                   // of D + J K J^T
+  };
   // Radiance and residuals at l.
   Point At(const std::array<RowMatrix, 3>& matrices, double level,
            const Eigen::VectorXd& l) const;
   // Null where the normal equations are not positive definite.
-  std::shared_ptr<const LightLinearisation> Linearise(
+  std::unique_ptr<const Linearisation> Linearise(
       const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
       double amplitude, const Point& point) const;
   // K g.
@@ -111,9 +104,9 @@ class MarginalLikelihood {
                                   const Eigen::VectorXd& g) const;
   // K1 g, the part that the amplitude scales, at amplitude 1.
   Eigen::VectorXd ApplyLocal(const Eigen::VectorXd& g) const;
-  Eigen::VectorXd ApplyJacobian(const LightLinearisation& linear,
+  Eigen::VectorXd ApplyJacobian(const Linearisation& linear,
                                 const Eigen::VectorXd& l) const;
-  Eigen::VectorXd ApplyJacobianTransposed(const LightLinearisation& linear,
+  Eigen::VectorXd ApplyJacobianTransposed(const Linearisation& linear,
                                           const Eigen::VectorXd& a) const;
   // J v and J^T a at a point, without its linearisation.
   Eigen::VectorXd JacobianTimes(const std::array<RowMatrix, 3>& matrices,
@@ -125,17 +118,17 @@ class MarginalLikelihood {
   // w with K w = H^-1 x, H the Hessian of the first two terms at the point, by
   // conjugate gradients preconditioned with a linearisation near it.
   Eigen::VectorXd SolveHessian(const std::array<RowMatrix, 3>& matrices,
-                               const Point& point,
-                               const LightLinearisation& linear,
+                               const Point& point, const Linearisation& linear,
                                const Eigen::VectorXd& weight, double amplitude,
                                double tolerance,
                                const Eigen::VectorXd& x) const;
   // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T D^-1 J)^-1 x.
-  Eigen::VectorXd SolveDual(const LightLinearisation& linear, double amplitude,
+  Eigen::VectorXd SolveDual(const Linearisation& linear, double amplitude,
                             const Eigen::VectorXd& x) const;
   void AddGradient(const std::array<RowMatrix, 3>& matrices,
                    const Eigen::VectorXd& weight, double amplitude,
                    const LightMode& mode, const Point& point,
+                   const Linearisation& linear,
                    MarginalGradient* gradient) const;
 
   int num_points_;

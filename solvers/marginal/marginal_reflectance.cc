@@ -60,20 +60,36 @@ void MarginalReflectance::CellMatrixGradient(const FloatMatrix& adjoint,
   transport_->LightMatrixGradient(by_point.data(), gradient);
 }
 
+std::vector<MarginalReflectance::FloatMatrix>
+MarginalReflectance::ShapeMatrices(const std::vector<float>& fields,
+                                   int stride) const {
+  const size_t nodes = lobes_->grid_shape().num_nodes();
+  std::vector<FloatMatrix> shapes;
+  for (int k = 0; k < lobes_->num_lobes(); ++k) {
+    shapes.push_back(CellMatrix(&fields[k * stride * nodes]));
+  }
+  return shapes;
+}
+
+std::array<RowMatrix, 3> MarginalReflectance::Coloured(
+    const double* parameters, const std::vector<FloatMatrix>& shapes) const {
+  std::array<RowMatrix, 3> matrices;
+  for (int c = 0; c < 3; ++c) {
+    matrices[c].setZero(shapes[0].rows(), shapes[0].cols());
+    for (size_t k = 0; k < shapes.size(); ++k) {
+      const double* lobe = parameters + k * lobes_->lobe_size();
+      matrices[c] +=
+          Colour(lobe[lobes_->code_size() + c], c) * shapes[k].cast<double>();
+    }
+  }
+  return matrices;
+}
+
 std::array<RowMatrix, 3> MarginalReflectance::Matrices(
     const double* parameters) const {
   std::vector<float> fields;
   lobes_->Tabulate(parameters, false, &fields);
-  return Matrices(lobes_->Combine(parameters, fields, 1));
-}
-
-std::array<RowMatrix, 3> MarginalReflectance::Matrices(
-    const BrdfGrid& grid) const {
-  std::array<RowMatrix, 3> matrices;
-  for (int c = 0; c < 3; ++c) {
-    matrices[c] = CellMatrix(grid.Channel(c)).cast<double>();
-  }
-  return matrices;
+  return Coloured(parameters, ShapeMatrices(fields, 1));
 }
 
 MarginalValue MarginalReflectance::Evaluate(
@@ -85,25 +101,11 @@ MarginalValue MarginalReflectance::Evaluate(
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<float> fields;
   lobes_->Tabulate(parameters, gradient != nullptr, &fields);
-  std::vector<FloatMatrix> shapes;
-  std::array<RowMatrix, 3> matrices;
-  for (int k = 0; k < num_lobes; ++k) {
-    shapes.push_back(CellMatrix(&fields[k * stride * nodes]));
-    const double* lobe = parameters + k * lobes_->lobe_size();
-    for (int c = 0; c < 3; ++c) {
-      const RowMatrix part =
-          Colour(lobe[size + c], c) * shapes[k].cast<double>();
-      if (k == 0) {
-        matrices[c] = part;
-      } else {
-        matrices[c] += part;
-      }
-    }
-  }
+  const std::vector<FloatMatrix> shapes = ShapeMatrices(fields, stride);
   MarginalGradient by_matrix;
-  const MarginalValue value =
-      likelihood_->Evaluate(matrices, noise, log_amplitude, tolerance, mode,
-                            gradient != nullptr ? &by_matrix : nullptr);
+  const MarginalValue value = likelihood_->Evaluate(
+      Coloured(parameters, shapes), noise, log_amplitude, tolerance, mode,
+      gradient != nullptr ? &by_matrix : nullptr);
   if (gradient == nullptr || !value.ok) return value;
   gradient->assign(lobes_->num_parameters() + 1, 0.0);
   std::vector<float> by_node(nodes);

@@ -40,12 +40,16 @@ class MarginalReflectance {
 
   // The matrices T_c of a reflectance.
   std::array<RowMatrix, 3> Matrices(const double* parameters) const;
-  // Of one on the grid.
-  std::array<RowMatrix, 3> Matrices(const BrdfGrid& grid) const;
 
  private:
   using FloatMatrix =
       Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  // Of each lobe's shape, the first of its `stride` fields.
+  std::vector<FloatMatrix> ShapeMatrices(const std::vector<float>& fields,
+                                         int stride) const;
+  // T_c of lobes of those shapes and the parameters' colours.
+  std::array<RowMatrix, 3> Coloured(
+      const double* parameters, const std::vector<FloatMatrix>& shapes) const;
   // [cells][texels] of a scalar field, and its transpose.
   FloatMatrix CellMatrix(const float* field) const;
   void CellMatrixGradient(const FloatMatrix& adjoint, float* gradient) const;

@@ -41,11 +41,9 @@ class Level {
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
 
-  // The noise of a reflectance's mode; `mode` receives that mode.
-  Eigen::VectorXd NoiseOf(const Eigen::VectorXd& lobes, double log_amplitude,
-                          LightMode* mode) const {
-    const std::array<RowMatrix, 3> matrices =
-        reflectance_.Matrices(lobes.data());
+  // The noise at the mode of a reflectance's matrices; `mode` receives it.
+  Eigen::VectorXd NoiseOf(const std::array<RowMatrix, 3>& matrices,
+                          double log_amplitude, LightMode* mode) const {
     const MarginalLikelihood& likelihood = reflectance_.likelihood();
     const Eigen::Index n =
         3 * static_cast<Eigen::Index>(reflectance_.cells().num_cells());
@@ -64,9 +62,11 @@ class Level {
   // -log posterior at amplitude 1; infinite where it has none.
   double Rank(const Eigen::VectorXd& lobes, double* misfit) const {
     LightMode mode;
-    const Eigen::VectorXd noise = NoiseOf(lobes, 0.0, &mode);
-    const MarginalValue value = reflectance_.Evaluate(
-        lobes.data(), noise, 0.0, kRankingTolerance, &mode, nullptr);
+    const std::array<RowMatrix, 3> matrices =
+        reflectance_.Matrices(lobes.data());
+    const Eigen::VectorXd noise = NoiseOf(matrices, 0.0, &mode);
+    const MarginalValue value = reflectance_.likelihood().Evaluate(
+        matrices, noise, 0.0, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
     *misfit = value.misfit;
     return value.cost + prior_.Cost(lobes, nullptr);
@@ -83,7 +83,8 @@ class Level {
   End Refine(const Eigen::VectorXd& lobes, double log_amplitude,
              int iterations) const {
     End end;
-    end.noise = NoiseOf(lobes, log_amplitude, &end.mode);
+    end.noise =
+        NoiseOf(reflectance_.Matrices(lobes.data()), log_amplitude, &end.mode);
     // Owned by the problem, which must not outlive the mode.
     auto* objective =
         new MarginalObjective(&reflectance_, &prior_,
