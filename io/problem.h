@@ -44,7 +44,7 @@ struct ReflectanceSpec {
   bool known() const { return !known_file.empty() || analytic.has_value(); }
 };
 
-enum class IlluminationPrior { kUNet, kNone };
+enum class IlluminationPrior { kUNet, kProcess, kNone };
 
 struct IlluminationSpec {
   int width = 128;  // of the estimate, or of the map that a sky is made into

@@ -213,7 +213,7 @@ void ReadIllumination(ConfigContext* context, const ConfigNode* node,
   if (illumination->width % 2 != 0) {
     reader.FailExpected("width", "an even number");
   }
-  ReadChoice(&reader, "prior", {"unet", "none"}, &illumination->prior);
+  ReadChoice(&reader, "prior", {"unet", "process", "none"}, &illumination->prior);
   const ConfigNode* known = reader.Find("known");
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {

@@ -90,8 +90,17 @@ json IlluminationJson(const IlluminationSpec& illumination) {
                            {"ground_albedo", sky.ground_albedo}};
     return out;
   }
-  out["prior"] =
-      illumination.prior == IlluminationPrior::kUNet ? "unet" : "none";
+  switch (illumination.prior) {
+    case IlluminationPrior::kUNet:
+      out["prior"] = "unet";
+      break;
+    case IlluminationPrior::kProcess:
+      out["prior"] = "process";
+      break;
+    case IlluminationPrior::kNone:
+      out["prior"] = "none";
+      break;
+  }
   return out;
 }
 

@@ -14,37 +14,42 @@
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "solvers/embedding_prior.h"
 #include "solvers/illumination_model.h"
-#include "solvers/joint/edge_prior.h"
 #include "solvers/joint/joint_method.h"
 #include "solvers/joint/process_prior.h"
 #include "solvers/known_light_search.h"
+#include "solvers/log_map_fit.h"
 #include "solvers/marginal/reflectance_search.h"
+#include "solvers/mean_cells.h"
+#include "solvers/process_illumination.h"
 #include "solvers/reflectance_solver.h"
 
 namespace ibrdf {
 namespace {
 
-// Of the time, at most: until the search for the reflectance, then the map on
-// thinned pixels, are over.
+// Of the time, at most: until the search for the reflectance, then the map as
+// a draw of the light's process, then the last round, are over.
 constexpr double kSearchShare = 0.5;
-constexpr double kCoarseShare = 0.8;
+constexpr double kProcessShare = 0.75;
 // What follows the last round, its last steps included, takes the rest.
-constexpr double kMapShare = 0.93;
-// More points than this are thinned to every other row and column first.
-constexpr size_t kCoarsePoints = 4000;
-constexpr double kFirstScale = 0.2;      // b at first: tolerant
+constexpr double kMapShare = 0.9;
+constexpr double kFirstScale = 0.1;  // b at first: tolerant
+constexpr double kScaleStep = 3.0;   // b falls by no more in a round
+// Rounds end where b falls by no more than to this share, and the cost by this
+// many times the tolerance of a step.
+constexpr double kSettledScale = 0.9;
+constexpr double kRoundTolerance = 300.0;
 constexpr double kSmallestScale = 3e-3;  // below any real image's noise
 // Standard deviation of log (red / green) and log (blue / green) of a map's
 // mean log radiance (experiments/light_statistics).
 constexpr double kLightChromaStd = 0.35;
 constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
-// EdgePrior: log radiance over the root of a radian, and where it turns from
-// square to magnitude (experiments/light_statistics).
-constexpr double kEdgeScale = 1.0;
-constexpr double kEdgeDelta = 0.3;
-// Under known light: pixels of about this many normals across the object say
-// all that a few dozen parameters can learn.
-constexpr ImageCellOptions kKnownLightCells = {26, 1, 0.1};
+// Of the disc of normals: what a map's estimate is made from, and what a few
+// dozen parameters under known light can learn from.
+constexpr int kMapCells = 64;
+constexpr int kKnownLightCells = 26;
+constexpr double kMinCosine = 0.1;
+// Maps are first found at this size or below.
+constexpr int kProcessWidth = 128;
 constexpr int kKnownLightStarts = 4;
 constexpr int kKnownLightSteps = 6;  // of the trust region, each time
 
@@ -54,7 +59,7 @@ double Now() {
       .count();
 }
 
-// A set of points with its observations, and the lobes on its BRDF grid.
+// A set of points with its observations and transport.
 struct Level {
   std::vector<ShadingPoint> points;
   Observations observed;
@@ -77,24 +82,18 @@ class Estimator {
     } else if (lobes_unknown() &&
                problem_.solver.estimator == SolverEstimator::kMarginal) {
       IBRDF_RETURN_IF_ERROR(SearchMarginal(&state));
-      MatchLight(&state);
-      first_.light = state.light;
-      first_mean_ = light_mean_;
-      Report("constant map", coarse_.get(), state);
-      Rounds("coarse map", coarse_.get(), JointBlocks::kLight, kCoarseShare,
-             &state);
-      Rounds("map", full_.get(), JointBlocks::kLight, kMapShare, &state);
-    } else {
-      if (lobes_unknown()) StartAtMeanMaterial(&state);
+      EstimateLight(&state);
+    } else if (lobes_unknown()) {
+      StartAtMeanMaterial(&state);
+      SetLight(MakeLight(), true);
       MatchLight(&state);
       FixGauge(&state);
       first_ = state;
       first_mean_ = light_mean_;
-      const JointBlocks blocks =
-          lobes_unknown() ? JointBlocks::kBoth : JointBlocks::kLight;
-      Report("start", coarse_.get(), state);
-      Rounds("coarse", coarse_.get(), blocks, kCoarseShare, &state);
-      Rounds("full", full_.get(), blocks, kMapShare, &state);
+      Report("start", cells_.get(), state);
+      Rounds("maximum", JointBlocks::kBoth, kMapShare, &state);
+    } else {
+      EstimateLight(&state);
     }
     return Finish(state);
   }
@@ -111,25 +110,13 @@ class Estimator {
   }
 
   Status Prepare() {
-    full_ = MakeLevel(problem_.points);
+    full_ = MakeLevel(problem_.points, RadianceOf(problem_.points));
     if (full_->observed.num_valid == 0) {
       return InvalidInput("image",
                           "no pixel of the object is finite and positive in "
                           "all three channels");
     }
-    std::vector<ShadingPoint> thin;
-    for (const ShadingPoint& p : problem_.points) {
-      const int x = p.pixel % problem_.image.width;
-      const int y = p.pixel / problem_.image.width;
-      if (problem_.points.size() <= kCoarsePoints ||
-          (x % 2 == 0 && y % 2 == 0)) {
-        thin.push_back(p);
-      }
-    }
-    coarse_ = MakeLevel(std::move(thin));
-    if (coarse_->observed.num_valid == 0) {
-      coarse_ = MakeLevel(problem_.points);
-    }
+    if (light_unknown()) cells_ = MakeCellLevel(kMapCells);
     double mean = 0.0;
     for (size_t i = 0; i < full_->observed.radiance.size(); ++i) {
       if (full_->observed.valid[i / 3]) mean += full_->observed.radiance[i];
@@ -145,28 +132,23 @@ class Estimator {
       materials_ = JointMaterialPrior(problem_.model, problem_.lobes,
                                       problem_.prior_sigma);
     }
-    if (light_unknown()) {
-      if (problem_.illumination_prior == IlluminationPrior::kUNet) {
-        IlluminationUnetOptions unet;
-        unet.width = problem_.map_width;
-        unet.height = problem_.map_height;
-        unet.seed = problem_.seed;
-        unet.num_threads = problem_.num_threads;
-        light_ = MakeUnetIllumination(unet);
-      } else {
-        light_ = MakeFreeIllumination(problem_.map_width, problem_.map_height);
-      }
-      light_priors_.push_back(std::make_unique<EdgePrior>(
-          problem_.map_height, problem_.map_width, kEdgeScale, kEdgeDelta));
-    }
     return OkStatus();
   }
 
-  std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points) const {
+  static std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points,
+                                          const std::vector<double>& radiance) {
     auto level = std::make_unique<Level>();
-    level->observed = MakeObservations(RadianceOf(points));
+    level->observed = MakeObservations(radiance);
     level->points = std::move(points);
     return level;
+  }
+  // All pixels where the image has too few away from the limb.
+  std::unique_ptr<Level> MakeCellLevel(int cells_across) const {
+    const std::vector<double> radiance = RadianceOf(problem_.points);
+    MeanCells cells =
+        JoinLikePoints(problem_.points, radiance, cells_across, kMinCosine);
+    if (cells.points.empty()) return MakeLevel(problem_.points, radiance);
+    return MakeLevel(std::move(cells.points), cells.radiance);
   }
 
   std::vector<double> RadianceOf(
@@ -179,13 +161,17 @@ class Estimator {
     return radiance;
   }
 
-  // Built at first use: a level that is never reached costs nothing.
+  // Built at first use, for the present map's size.
   const Transport& TransportOf(Level* level) const {
-    if (level->transport == nullptr) {
+    const int height = light_ ? light_->height() : problem_.map_height;
+    const int width = light_ ? light_->width() : problem_.map_width;
+    if (level->transport == nullptr ||
+        level->transport->map_height() != height ||
+        level->transport->map_width() != width) {
       TransportOptions options = problem_.transport;
       options.num_threads = problem_.num_threads;
-      level->transport = std::make_unique<Transport>(
-          level->points, problem_.map_height, problem_.map_width, options);
+      level->transport =
+          std::make_unique<Transport>(level->points, height, width, options);
     }
     return *level->transport;
   }
@@ -298,11 +284,12 @@ class Estimator {
     first_.lobes.assign(start->parameters.data(),
                         start->parameters.data() + start->parameters.size());
     covariance_ = found->covariance;
-    map_std_ = Image(found->map_width, found->map_height);
+    mode_ = map_std_ = Image(found->map_width, found->map_height);
     const size_t texels = map_std_.num_pixels();
     for (size_t i = 0; i < 3 * texels; ++i) {
-      map_std_.rgb[i] =
-          static_cast<float>(found->log_radiance_std[i % 3 * texels + i / 3]);
+      const size_t from = i % 3 * texels + i / 3;
+      mode_.rgb[i] = static_cast<float>(found->log_radiance[from]);
+      map_std_.rgb[i] = static_cast<float>(found->log_radiance_std[from]);
     }
     for (const TriedMaterial& tried : found->tried) {
       if (std::isfinite(tried.cost)) tried_.push_back(tried);
@@ -320,26 +307,120 @@ class Estimator {
     start_name_ = name;
   }
 
+  std::unique_ptr<IlluminationModel> MakeLight() const {
+    if (problem_.illumination_prior == IlluminationPrior::kNone) {
+      return MakeFreeIllumination(problem_.map_width, problem_.map_height);
+    }
+    IlluminationUnetOptions unet;
+    unet.width = problem_.map_width;
+    unet.height = problem_.map_height;
+    unet.seed = problem_.seed;
+    unet.num_threads = problem_.num_threads;
+    return MakeUnetIllumination(unet);
+  }
+  // process_prior: it is no part of the model itself.
+  void SetLight(std::unique_ptr<IlluminationModel> light, bool process_prior) {
+    light_ = std::move(light);
+    has_process_prior_ = process_prior;
+    light_priors_.clear();
+  }
+
   // A constant map at the image's level; the light's priors are centred there.
   void MatchLight(JointState* state) {
     const double zero[3] = {0, 0, 0};
     state->light = light_mean_ = light_->ConstantMap(zero);
-    const LevelObjective on = ObjectiveOn(coarse_.get());
+    const LevelObjective on = ObjectiveOn(cells_.get());
     on.objective->Evaluate(*state);
     const std::vector<double>& E = on.objective->radiance();
-    const Observations& o = coarse_->observed;
-    double shift[3] = {0, 0, 0};
+    const Observations& o = cells_->observed;
+    std::fill(level_, level_ + 3, 0.0);
     for (size_t i = 0; i < E.size(); ++i) {
       if (!o.valid[i / 3]) continue;
-      shift[i % 3] +=
+      level_[i % 3] +=
           (std::log(o.radiance[i]) - std::log(std::max(E[i], 0.0) + 1e-30)) /
           o.num_valid;
     }
-    light_->ShiftChannels(shift, state->light.data());
-    light_mean_ = state->light;
+    StartAtLevel(state);
+  }
+  void StartAtLevel(JointState* state) {
+    state->light = light_mean_ = light_->ConstantMap(level_);
+    if (!has_process_prior_) return;
+    light_priors_.clear();
     light_priors_.push_back(std::make_unique<ProcessPrior>(
-        problem_.map_height, problem_.map_width, LightProcess(),
-        light_amplitude_, (shift[0] + shift[1] + shift[2]) / 3));
+        light_->height(), light_->width(), LightProcess(), light_amplitude_,
+        (level_[0] + level_[1] + level_[2]) / 3));
+  }
+
+  // The map given the reflectance: as a draw of the light's process first,
+  // whose parameters are as good as whitened and take a tenth of the time of
+  // a network's; then as the network's output, from its fit to that draw.
+  void EstimateLight(JointState* state) {
+    const bool none = problem_.illumination_prior == IlluminationPrior::kNone;
+    if (none || problem_.solver.max_iterations == 0) {
+      SetLight(MakeLight(), !none);
+      MatchLight(state);
+      first_.light = state->light;
+      first_mean_ = light_mean_;
+      Report("constant map", cells_.get(), *state);
+      Rounds("map", JointBlocks::kLight, kMapShare, state);
+      return;
+    }
+    const bool network =
+        problem_.illumination_prior == IlluminationPrior::kUNet;
+    int width = problem_.map_width, height = problem_.map_height;
+    while (network && width > kProcessWidth && width % 4 == 0 &&
+           height % 2 == 0) {
+      width /= 2;
+      height /= 2;
+    }
+    SetLight(MakeProcessIllumination(width, height, LightProcess(),
+                                     light_amplitude_),
+             false);
+    MatchLight(state);
+    first_.light = state->light;
+    first_mean_ = light_mean_;
+    Report("constant map", cells_.get(), *state);
+    if (mode_.num_pixels() > 0) {
+      LogMapFitOptions o;
+      o.should_stop = StopAfter(kProcessShare);
+      FitLogMap(Planar(mode_, height, width), o, light_.get(), &state->light);
+    }
+    Rounds("map", JointBlocks::kLight, network ? kProcessShare : kMapShare,
+           state);
+    if (!network) return;
+    Image log_map(width, height);
+    std::vector<float> planar(light_->num_outputs());
+    light_->Forward(state->light.data(), planar.data());
+    const size_t texels = log_map.num_pixels();
+    for (size_t i = 0; i < 3 * texels; ++i) {
+      log_map.rgb[i] = planar[i % 3 * texels + i / 3];
+    }
+    SetLight(MakeLight(), true);
+    StartAtLevel(state);
+    first_.light = state->light;
+    first_mean_ = light_mean_;
+    LogMapFitOptions o;
+    o.should_stop = StopAfter(kMapShare);
+    FitLogMap(Planar(log_map, problem_.map_height, problem_.map_width), o,
+              light_.get(), &state->light);
+    Report("network", cells_.get(), *state);
+    Rounds("network", JointBlocks::kLight, kMapShare, state);
+  }
+
+  // [3][height][width] of an image [H, W, 3], between its centres bilinearly.
+  static std::vector<float> Planar(const Image& map, int height, int width) {
+    const size_t texels = static_cast<size_t>(height) * width;
+    std::vector<float> out(3 * texels);
+    for (size_t t = 0; t < texels; ++t) {
+      const Eigen::Array3d value =
+          LookUpMap(map, MapDirection(static_cast<double>(t / width) + 0.5,
+                                      static_cast<double>(t % width) + 0.5,
+                                      height, width));
+      for (size_t c = 0; c < 3; ++c) {
+        out[c * texels + t] = static_cast<float>(value[c]);
+      }
+    }
+    return out;
   }
 
   // Moves scale between the two unknowns; the image stays as it is.
@@ -348,7 +429,7 @@ class Estimator {
     std::vector<float> log_map(light_->num_outputs());
     light_->Forward(state->light.data(), log_map.data());
     double mean[3] = {0, 0, 0};
-    const int W = problem_.map_width, H = problem_.map_height;
+    const int W = light_->width(), H = light_->height();
     for (int c = 0; c < 3; ++c) {
       for (int r = 0; r < H; ++r) {
         const double w = TexelSolidAngle(r, H, W) / (4 * M_PI);
@@ -374,8 +455,7 @@ class Estimator {
   JointMethod MethodFor(JointBlocks blocks) const {
     switch (problem_.solver.method) {
       case SolverMethod::kAuto:
-        return blocks == JointBlocks::kLight ? JointMethod::kGaussNewton
-                                             : JointMethod::kAlternating;
+        break;
       case SolverMethod::kAlternating:
         return JointMethod::kAlternating;
       case SolverMethod::kGaussNewton:
@@ -387,19 +467,22 @@ class Estimator {
       case SolverMethod::kTrustRegion:
         return JointMethod::kTrustRegion;
     }
-    LOG(FATAL) << "no such method";
+    return blocks == JointBlocks::kLight ? JointMethod::kGaussNewton
+                                         : JointMethod::kAlternating;
   }
 
   // Lowers the objective over the blocks, some steps at a scale, until a share
   // of the time is spent or a round gains less than the tolerance.
-  void Rounds(const std::string& stage, Level* level, JointBlocks blocks,
-              double share, JointState* state) {
+  void Rounds(const std::string& stage, JointBlocks blocks, double share,
+              JointState* state) {
+    Level* const level = cells_.get();
     if (StopAfter(share)() || iterations_ >= problem_.solver.max_iterations) {
       return;
     }
     JointMethodOptions o;
-    o.max_iterations = 3;
-    o.max_cg_iterations = 15;
+    // The network's products cost more, and its fit leaves less to do.
+    o.max_iterations = has_process_prior_ ? 3 : 4;
+    o.max_cg_iterations = has_process_prior_ ? 20 : 40;
     o.tolerance = problem_.solver.tolerance;
     o.should_stop = StopAfter(share);
     o.adam_rounds = 1;
@@ -424,10 +507,11 @@ class Estimator {
       *state = next;
       Report(after);
       const double gain = before.cost - after.cost;
-      const bool scale_settled = ScaleFor(after.misfit) == likelihood_.scale;
+      const bool scale_settled =
+          ScaleFor(after.misfit) > kSettledScale * likelihood_.scale;
       before = after;
-      if (scale_settled &&
-          gain < problem_.solver.tolerance * std::max(after.cost, 1.0)) {
+      if (scale_settled && gain < kRoundTolerance * problem_.solver.tolerance *
+                                      std::max(after.cost, 1.0)) {
         return;
       }
     }
@@ -435,11 +519,7 @@ class Estimator {
 
   // The materials under the known light, the best few refined.
   JointState StartUnderKnownLight() {
-    std::vector<ShadingPoint> few =
-        GroupByNormal(problem_.points, RadianceOf(problem_.points),
-                      kKnownLightCells)
-            .points;
-    few_ = MakeLevel(few.empty() ? problem_.points : std::move(few));
+    few_ = MakeCellLevel(kKnownLightCells);
     const std::vector<RankedMaterial> ranked = RankUnderKnownLight(
         TransportOf(few_.get()), *lobes_, materials_, problem_.known_map->rgb,
         few_->observed, likelihood_);
@@ -503,12 +583,13 @@ class Estimator {
   }
 
   // The Laplacian's maximum-likelihood scale is the mean magnitude of the
-  // residuals. It only falls, at most by half a round: with a small scale too
-  // early the robust loss holds on to wrong pixels.
+  // residuals. It only falls, and not at once: with a small scale too early the
+  // robust loss holds on to wrong pixels.
   double ScaleFor(double misfit) const {
     if (problem_.scale.has_value()) return *problem_.scale;
-    return std::min(likelihood_.scale,
-                    std::max({misfit, likelihood_.scale / 2, kSmallestScale}));
+    return std::min(
+        likelihood_.scale,
+        std::max({misfit, likelihood_.scale / kScaleStep, kSmallestScale}));
   }
   void UpdateScale(double misfit) { likelihood_.scale = ScaleFor(misfit); }
 
@@ -576,13 +657,16 @@ class Estimator {
   const std::atomic<bool>* stop_;
   const double start_;
   RobustLogLikelihood likelihood_;
-  // Every pixel; thinned; some of each normal (known light).
-  std::unique_ptr<Level> full_, coarse_, few_;
+  // Every pixel; pixels of like normals joined, for the light and, fewer, under
+  // known light.
+  std::unique_ptr<Level> full_, cells_, few_;
   std::unique_ptr<LobeModel> lobes_;  // null: known
   LobePrior lobe_prior_;
   MaterialPrior materials_;
   std::unique_ptr<IlluminationModel> light_;  // null: known
+  bool has_process_prior_ = false;
   std::vector<std::unique_ptr<LightPrior>> light_priors_;
+  double level_[3] = {0.0, 0.0, 0.0};  // log radiance of a constant map
   // Where the prior of the light's parameters is centred: a constant map at the
   // image's level, whatever the image's unit.
   std::vector<float> light_mean_, first_mean_;
@@ -591,7 +675,7 @@ class Estimator {
   std::string start_name_;
   std::vector<TriedMaterial> tried_;
   Eigen::MatrixXd covariance_;
-  Image map_std_;
+  Image mode_, map_std_;  // of log radiance, at the search's resolution
   std::vector<TraceEntry> trace_;
   int iterations_ = 0;
 };

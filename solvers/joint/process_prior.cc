@@ -11,15 +11,6 @@ namespace {
 
 constexpr int kColumns = 32;
 
-// Rows: grey, then two axes of chroma; orthonormal.
-Eigen::Matrix3d ColourAxes() {
-  Eigen::Matrix3d axes;
-  axes << 1 / std::sqrt(3.0), 1 / std::sqrt(3.0), 1 / std::sqrt(3.0),  //
-      1 / std::sqrt(2.0), -1 / std::sqrt(2.0), 0.0,                    //
-      1 / std::sqrt(6.0), 1 / std::sqrt(6.0), -2 / std::sqrt(6.0);
-  return axes;
-}
-
 int BlockSide(int height, int width) {
   int block = 1;
   while (width / (2 * block) >= kColumns && width % (2 * block) == 0 &&

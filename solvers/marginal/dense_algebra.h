@@ -9,8 +9,16 @@ using RowMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // C = A B and C = A B^T; C is resized.
-void Multiply(const RowMatrix& A, const RowMatrix& B, RowMatrix* C);
-void MultiplyTransposed(const RowMatrix& A, const RowMatrix& B, RowMatrix* C);
+void Multiply(const Eigen::Ref<const RowMatrix>& A,
+              const Eigen::Ref<const RowMatrix>& B, RowMatrix* C);
+void MultiplyTransposed(const Eigen::Ref<const RowMatrix>& A,
+                        const Eigen::Ref<const RowMatrix>& B, RowMatrix* C);
+
+// A x and A^T x.
+Eigen::VectorXd MultiplyVector(const RowMatrix& A,
+                               const Eigen::Ref<const Eigen::VectorXd>& x);
+Eigen::VectorXd MultiplyTransposedVector(
+    const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>& x);
 
 // Lower Cholesky factor in place of a symmetric matrix's lower triangle. False
 // where it is not positive definite.

@@ -31,6 +31,14 @@ Eigen::Matrix3d LightProcess::Level() const {
   return GreyAndChroma(level_variance, level_chroma_variance);
 }
 
+Eigen::Matrix3d ColourAxes() {
+  Eigen::Matrix3d axes;
+  axes << 1 / std::sqrt(3.0), 1 / std::sqrt(3.0), 1 / std::sqrt(3.0),  //
+      1 / std::sqrt(2.0), -1 / std::sqrt(2.0), 0.0,                    //
+      1 / std::sqrt(6.0), 1 / std::sqrt(6.0), -2 / std::sqrt(6.0);
+  return axes;
+}
+
 RowMatrix LightCorrelation(int map_height, int map_width,
                            double correlation_degrees) {
   std::vector<Eigen::Vector3d> directions;

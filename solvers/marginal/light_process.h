@@ -30,6 +30,10 @@ struct LightProcess {
   Eigen::Matrix3d Level() const;  // B
 };
 
+// Rows: grey, then two axes of chroma; orthonormal. They diagonalise Local()
+// and Level().
+Eigen::Matrix3d ColourAxes();
+
 // exp(-angle / correlation) between the texels of a map, [H W][H W].
 RowMatrix LightCorrelation(int map_height, int map_width,
                            double correlation_degrees);

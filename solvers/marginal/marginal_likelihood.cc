@@ -59,8 +59,7 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
           log_radiance.data(), static_cast<Eigen::Index>(log_radiance.size()))),
       local_(process.Local()),
       level_(process.Level()),
-      correlation_(
-          LightCorrelation(map_height, map_width, process.correlation_degrees)),
+      spectrum_(map_height, map_width, process.correlation_degrees),
       map_height_(map_height),
       map_width_(map_width),
       texel_variance_(process.VarianceWithin(180.0 / map_height)),
@@ -112,11 +111,11 @@ Eigen::VectorXd MarginalLikelihood::NoiseVariance(
 
 Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Eigen::VectorXd& g) const {
   const Eigen::Index t = num_texels();
-  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3>> by_channel(
-      g.data(), t, 3);
+  const Eigen::Map<const RowMatrix> by_channel(g.data(), 3, t);
+  RowMatrix correlated;
+  spectrum_.Multiply(by_channel, &correlated);
   Eigen::VectorXd out(g.size());
-  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 3>> result(out.data(), t, 3);
-  result.noalias() = (correlation_ * by_channel) * local_;
+  Eigen::Map<RowMatrix>(out.data(), 3, t).noalias() = local_ * correlated;
   return out;
 }
 
@@ -139,8 +138,8 @@ MarginalLikelihood::Point MarginalLikelihood::At(
   point.L = (l.array() + level).min(kMaxLogRadiance).exp();
   point.E.resize(3 * P);
   for (int c = 0; c < 3; ++c) {
-    point.E.segment(c * P, P).noalias() =
-        matrices[c] * point.L.segment(c * t, t);
+    point.E.segment(c * P, P) =
+        MultiplyVector(matrices[c], point.L.segment(c * t, t));
   }
   point.E = point.E.cwiseMax(kSmallestRadiance);
   point.residual = y_ - point.E.array().log().matrix();
@@ -153,13 +152,12 @@ MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
                               const Point& point) const {
   const Eigen::Index t = num_texels(), P = num_points_;
   auto linear = std::make_unique<Linearisation>();
-  for (int c = 0; c < 3; ++c) {
+  ParallelFor(3, num_threads_, [&](int64_t c, int) {
     linear->jacobian[c] =
         point.E.segment(c * P, P).cwiseInverse().asDiagonal() * matrices[c] *
         point.L.segment(c * t, t).asDiagonal();
-    MultiplyInTiles(linear->jacobian[c], correlation_, num_threads_,
-                    &linear->JC[c]);
-  }
+    spectrum_.Multiply(linear->jacobian[c], &linear->JC[c]);
+  });
   RowMatrix& A = linear->factor;
   A.setZero(3 * P, 3 * P);
   constexpr int kPairs[6][2] = {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}};
@@ -181,7 +179,8 @@ Eigen::VectorXd MarginalLikelihood::ApplyJacobian(
   const Eigen::Index t = num_texels(), P = num_points_;
   Eigen::VectorXd out(3 * P);
   for (int c = 0; c < 3; ++c) {
-    out.segment(c * P, P).noalias() = linear.jacobian[c] * l.segment(c * t, t);
+    out.segment(c * P, P) =
+        MultiplyVector(linear.jacobian[c], l.segment(c * t, t));
   }
   return out;
 }
@@ -191,8 +190,8 @@ Eigen::VectorXd MarginalLikelihood::ApplyJacobianTransposed(
   const Eigen::Index t = num_texels(), P = num_points_;
   Eigen::VectorXd out(3 * t);
   for (int c = 0; c < 3; ++c) {
-    out.segment(c * t, t).noalias() =
-        linear.jacobian[c].transpose() * a.segment(c * P, P);
+    out.segment(c * t, t) =
+        MultiplyTransposedVector(linear.jacobian[c], a.segment(c * P, P));
   }
   return out;
 }
@@ -212,7 +211,7 @@ Eigen::VectorXd MarginalLikelihood::JacobianTimes(
   const Eigen::VectorXd dL = point.L.cwiseProduct(v);
   Eigen::VectorXd out(3 * P);
   for (int c = 0; c < 3; ++c) {
-    out.segment(c * P, P).noalias() = matrices[c] * dL.segment(c * t, t);
+    out.segment(c * P, P) = MultiplyVector(matrices[c], dL.segment(c * t, t));
   }
   return out.cwiseQuotient(point.E);
 }
@@ -224,8 +223,8 @@ Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
   const Eigen::VectorXd dE = a.cwiseQuotient(point.E);
   Eigen::VectorXd out(3 * t);
   for (int c = 0; c < 3; ++c) {
-    out.segment(c * t, t).noalias() =
-        matrices[c].transpose() * dE.segment(c * P, P);
+    out.segment(c * t, t) =
+        MultiplyTransposedVector(matrices[c], dE.segment(c * P, P));
   }
   return out.cwiseProduct(point.L);
 }

@@ -15,6 +15,7 @@
 
 #include "solvers/marginal/dense_algebra.h"
 #include "solvers/marginal/light_process.h"
+#include "solvers/marginal/light_spectrum.h"
 
 namespace ibrdf {
 
@@ -52,7 +53,7 @@ class MarginalLikelihood {
                      int num_threads);
 
   int num_points() const { return num_points_; }
-  int num_texels() const { return static_cast<int>(correlation_.rows()); }
+  int num_texels() const { return map_height_ * map_width_; }
 
   // matrices: T_c [points][texels], >= 0, of the reflectance in channel c;
   // noise: the diagonal of D [3 * points], > 0; the process' variances are
@@ -134,7 +135,7 @@ class MarginalLikelihood {
   int num_points_;
   Eigen::VectorXd y_;  // [3 * points]
   Eigen::Matrix3d local_, level_;
-  RowMatrix correlation_;
+  LightSpectrum spectrum_;
   int map_height_, map_width_;
   double texel_variance_;  // v_texel
   int num_threads_;

@@ -14,6 +14,8 @@ struct MarginalResolution {
   ImageCellOptions cells;
   int map_width = 32, map_height = 16;
   BrdfGridShape grid = {48, 20, 12};
+  // Of QuadratureOptions: coarser than a render's, as the texels are.
+  int near_rings = 12, near_ring_samples = 32;
 };
 
 // Lobe parameters as LobeModel's. Immutable but for what its callers keep; may

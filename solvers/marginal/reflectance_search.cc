@@ -22,7 +22,8 @@ constexpr double kRankingTolerance = 0.5;
 // Standard deviation of log radiance with which a first mode is sought, from
 // which the noise of the coarse map follows.
 constexpr double kFirstSigma = 0.15;
-constexpr double kFunctionTolerance = 1e-6;
+// Of a refinement, relative: a twentieth of a nat in a thousand.
+constexpr double kFunctionTolerance = 5e-5;
 // Step of the differences of gradients, in prior standard deviations.
 constexpr double kHessianStep = 0.02;
 
@@ -206,16 +207,22 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
          result.tried.front().first_cost, result.tried.front().first_misfit);
   Level::End best;
   std::string best_name = result.tried.front().name;
-  for (int k = 0; k < options.starts && k < kept; ++k) {
-    if (k > 0 && stopped()) break;
-    TriedMaterial& tried = result.tried[k];
-    if (!std::isfinite(tried.first_cost)) break;
-    Level::End end =
+  // Whole refinements in parallel, as the rankings; joined in order.
+  const int starts = std::min<int>(options.starts, static_cast<int>(kept));
+  std::vector<Level::End> ends(starts);
+  ParallelFor(starts, options.num_threads, [&](int64_t k, int) {
+    const TriedMaterial& tried = result.tried[k];
+    if ((k > 0 && stopped()) || !std::isfinite(tried.first_cost)) return;
+    ends[k] =
         coarse.Refine(Eigen::Map<const Eigen::VectorXd>(
                           tried.parameters.data(),
                           static_cast<Eigen::Index>(tried.parameters.size())),
                       0.0, options.coarse_iterations);
+  });
+  for (int k = 0; k < starts; ++k) {
+    Level::End& end = ends[k];
     if (!end.ok) continue;
+    TriedMaterial& tried = result.tried[k];
     LightMode unused;
     tried.cost = end.cost;
     tried.parameters =

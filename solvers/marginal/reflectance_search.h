@@ -19,9 +19,9 @@ struct ReflectanceSearchOptions {
   // second, where some are refined; the end is found at the third.
   MarginalResolution screen = {{8, 4, 0.2}, 16, 8, {48, 20, 12}};
   MarginalResolution coarse = {{12, 4, 0.2}, 24, 12, {48, 20, 12}};
-  MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}};
+  MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}, 20, 56};
   int kept = 20;
-  int starts = 3;              // that are refined at the coarse resolution
+  int starts = 4;              // that are refined at the coarse resolution
   int coarse_iterations = 20;  // of BFGS, each start
   int fine_iterations = 30;
   // Standard deviation of log radiance between model and image, of a cell. Not
@@ -32,7 +32,8 @@ struct ReflectanceSearchOptions {
   double log_amplitude_std = 0.7;  // of the light process
   bool covariance = true;
   int num_threads = 0;
-  // Checked between steps; true ends early with the best so far.
+  // Checked between steps, by several threads; true ends early with the best so
+  // far.
   std::function<bool()> should_stop;
   // After each material refined and the end; may be empty.
   std::function<void(const std::string& stage, double cost, double misfit)>

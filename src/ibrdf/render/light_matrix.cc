@@ -6,6 +6,7 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/render/map_sources.h"
 #include "ibrdf/render/transport.h"
 #include "ibrdf/render/transport_taps.h"
 
@@ -14,19 +15,6 @@ namespace ibrdf {
 using namespace taps;  // NOLINT
 
 namespace {
-
-// The texel that each entry of a padded map holds (see Transport::PadMap).
-std::vector<int> PaddedTexels(int height, int width) {
-  std::vector<int> texel;
-  for (int y = -1; y <= height; ++y) {
-    const bool across = y < 0 || y == height;
-    const int r = y < 0 ? 0 : (y == height ? height - 1 : y);
-    for (int x = 0; x <= width; ++x) {
-      texel.push_back(r * width + (x + (across ? width / 2 : 0)) % width);
-    }
-  }
-  return texel;
-}
 
 std::vector<float> SolidAngles(int height, int width) {
   std::vector<float> solid_angle;

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <cstdint>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/render/map_sources.h"
 #include "ibrdf/render/transport.h"
 #include "ibrdf/render/transport_taps.h"
 
@@ -11,54 +14,110 @@ using namespace taps;  // NOLINT
 LightOperator Transport::ByLight(const BrdfGrid& grid) const {
   const std::vector<float> f = PadGrid(grid);
   const Corners corners(options_.grid);
-  LightOperator op(this);
-  op.far_.resize(chunks_.size());
-  op.near_.resize(chunks_.size());
-  const auto fill = [&](const auto& pairs, std::vector<float>* values) {
-    values->assign(3 * pairs.size() + 1, 0.0f);
-    float* out = values->data();
-    for (const auto& pair : pairs) {
-      const Float4 v = pair.weight * Interpolate(pair, corners, f.data());
-      for (int c = 0; c < 3; ++c) *out++ = v[c];
-    }
+  const std::vector<int> texel = PaddedTexels(map_height_, map_width_);
+  const int row = map_width_ + 1;
+  const size_t num_sources = static_cast<size_t>(num_blocks_) +
+                             static_cast<size_t>(map_height_) * map_width_;
+  LightOperator op;
+  op.map_height_ = map_height_;
+  op.map_width_ = map_width_;
+  op.block_ = block_;
+  op.num_blocks_ = num_blocks_;
+  op.num_threads_ = options_.num_threads;
+  op.chunks_.resize(chunks_.size());
+  // Per worker: a point's sums by source, all zero between points, and which
+  // sources it has touched, in order of first touch.
+  struct Scratch {
+    std::vector<float> sums;
+    std::vector<uint8_t> touched;
+    std::vector<uint32_t> sources;
   };
-  ParallelFor(static_cast<int64_t>(chunks_.size()), options_.num_threads,
-              [&](int64_t index, int) {
-                fill(chunks_[index].far, &op.far_[index]);
-                fill(chunks_[index].near, &op.near_[index]);
-              });
+  std::vector<Scratch> scratch(options_.num_threads > 0 ? options_.num_threads
+                                                        : HardwareThreads());
+  ParallelFor(
+      static_cast<int64_t>(chunks_.size()), options_.num_threads,
+      [&](int64_t index, int worker) {
+        Scratch& w = scratch[worker];
+        w.sums.resize(4 * num_sources, 0.0f);
+        w.touched.resize(num_sources, 0);
+        const auto add = [&](size_t source, Float4 v) {
+          if (w.touched[source] == 0) {
+            w.touched[source] = 1;
+            w.sources.push_back(static_cast<uint32_t>(source));
+          }
+          Add4(&w.sums[4 * source], v);
+        };
+        const Chunk& chunk = chunks_[index];
+        LightOperator::Chunk& out = op.chunks_[index];
+        out.begin = chunk.begin;
+        out.end = chunk.end;
+        size_t far = 0, near = 0;
+        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
+          w.sources.clear();
+          for (; far < chunk.far_end[i]; ++far) {
+            const FarPair& pair = chunk.far[far];
+            add(pair.block, pair.weight * Interpolate(pair, corners, f.data()));
+          }
+          for (; near < chunk.near_end[i]; ++near) {
+            const NearPair& pair = chunk.near[near];
+            const Float4 v = pair.weight * Interpolate(pair, corners, f.data());
+            float weight[4];
+            BilinearWeights(pair, weight);
+            const int* const to = &texel[pair.texel];
+            add(num_blocks_ + to[0], weight[0] * v);
+            add(num_blocks_ + to[1], weight[1] * v);
+            add(num_blocks_ + to[row], weight[2] * v);
+            add(num_blocks_ + to[row + 1], weight[3] * v);
+          }
+          for (const uint32_t source : w.sources) {
+            const float* const sum = &w.sums[size_t{4} * source];
+            out.source.push_back(source);
+            out.value.insert(out.value.end(), sum, sum + 3);
+            std::fill_n(&w.sums[size_t{4} * source], 4, 0.0f);
+            w.touched[source] = 0;
+          }
+          out.entry_end.push_back(out.source.size());
+        }
+        out.value.push_back(0.0f);
+        out.source.shrink_to_fit();
+        out.value.shrink_to_fit();
+      });
   return op;
 }
 
 size_t LightOperator::MemoryBytes() const {
-  size_t floats = 0;
-  for (size_t i = 0; i < far_.size(); ++i) {
-    floats += far_[i].capacity() + near_[i].capacity();
+  size_t bytes = 0;
+  for (const Chunk& chunk : chunks_) {
+    bytes += chunk.source.capacity() * sizeof(uint32_t) +
+             chunk.value.capacity() * sizeof(float) +
+             chunk.entry_end.capacity() * sizeof(size_t);
   }
-  return floats * sizeof(float);
+  return bytes;
+}
+
+std::vector<float> LightOperator::Sources(const float* map) const {
+  std::vector<float> sources = SumBlocks(map, map_height_, map_width_, block_);
+  const size_t texels = static_cast<size_t>(map_height_) * map_width_;
+  sources.resize(sources.size() + 4 * texels, 0.0f);
+  float* out = &sources[size_t{4} * num_blocks_];
+  for (size_t t = 0; t < texels; ++t) std::copy_n(map + 3 * t, 3, out + 4 * t);
+  return sources;
 }
 
 void LightOperator::Apply(const float* map, double* E) const {
-  const Transport& t = *transport_;
-  const std::vector<float> texels = t.PadMap(map), blocks = t.SumBlocks(map);
-  const int row = t.map_width_ + 1;
-  ParallelFor(static_cast<int64_t>(t.chunks_.size()), t.options_.num_threads,
+  const std::vector<float> sources = Sources(map);
+  ParallelFor(static_cast<int64_t>(chunks_.size()), num_threads_,
               [&](int64_t index, int) {
-                const Transport::Chunk& chunk = t.chunks_[index];
-                const float* far_value = far_[index].data();
-                const float* near_value = near_[index].data();
-                size_t far = 0, near = 0;
+                const Chunk& chunk = chunks_[index];
+                size_t entry = 0;
                 for (int i = 0; i < chunk.end - chunk.begin; ++i) {
-                  // Lane 3 of a value belongs to the next pair; the map's is 0.
+                  // Lane 3 of a value belongs to the next entry; the map's is
+                  // 0.
                   Double4 sum = {};
-                  for (; far < chunk.far_end[i]; ++far, far_value += 3) {
+                  for (; entry < chunk.entry_end[i]; ++entry) {
                     sum +=
-                        Widen(Load4(far_value) *
-                              Load4(&blocks[size_t{4} * chunk.far[far].block]));
-                  }
-                  for (; near < chunk.near_end[i]; ++near, near_value += 3) {
-                    sum += Widen(Load4(near_value) *
-                                 LookUp(chunk.near[near], row, texels.data()));
+                        Widen(Load4(&chunk.value[3 * entry]) *
+                              Load4(&sources[size_t{4} * chunk.source[entry]]));
                   }
                   for (int c = 0; c < 3; ++c) {
                     E[3 * static_cast<size_t>(chunk.begin + i) + c] = sum[c];
@@ -69,51 +128,44 @@ void LightOperator::Apply(const float* map, double* E) const {
 
 void LightOperator::ApplyTranspose(const double* adjoint,
                                    float* gradient) const {
-  const Transport& t = *transport_;
-  const int row = t.map_width_ + 1;
-  const size_t num_texels = size_t{4} * row * (t.map_height_ + 2);
-  const size_t num_blocks = size_t{4} * t.num_blocks_;
-  struct Partial {
-    std::vector<float> texels, blocks;
-  };
-  std::vector<Partial> partial(t.chunks_.size());
+  const size_t texels = static_cast<size_t>(map_height_) * map_width_;
+  const size_t size = 4 * (num_blocks_ + texels);
+  std::vector<std::vector<float>> partial(chunks_.size());
   ParallelFor(
-      static_cast<int64_t>(t.chunks_.size()), t.options_.num_threads,
+      static_cast<int64_t>(chunks_.size()), num_threads_,
       [&](int64_t index, int) {
-        const Transport::Chunk& chunk = t.chunks_[index];
-        Partial& g = partial[index];
-        g.texels.assign(num_texels, 0.0f);
-        g.blocks.assign(num_blocks, 0.0f);
-        const float* far_value = far_[index].data();
-        const float* near_value = near_[index].data();
-        size_t far = 0, near = 0;
+        const Chunk& chunk = chunks_[index];
+        std::vector<float>& g = partial[index];
+        g.assign(size, 0.0f);
+        size_t entry = 0;
         for (int i = 0; i < chunk.end - chunk.begin; ++i) {
           const double* a = adjoint + 3 * static_cast<size_t>(chunk.begin + i);
           const Float4 a4 = {static_cast<float>(a[0]), static_cast<float>(a[1]),
                              static_cast<float>(a[2]), 0.0f};
-          for (; far < chunk.far_end[i]; ++far, far_value += 3) {
-            Add4(&g.blocks[size_t{4} * chunk.far[far].block],
-                 a4 * Load4(far_value));
-          }
-          for (; near < chunk.near_end[i]; ++near, near_value += 3) {
-            const Transport::NearPair& pair = chunk.near[near];
-            float weight[4];
-            BilinearWeights(pair, weight);
-            const Float4 v = a4 * Load4(near_value);
-            float* base = &g.texels[size_t{4} * pair.texel];
-            Add4(base, weight[0] * v);
-            Add4(base + 4, weight[1] * v);
-            Add4(base + 4 * row, weight[2] * v);
-            Add4(base + 4 * row + 4, weight[3] * v);
+          for (; entry < chunk.entry_end[i]; ++entry) {
+            Add4(&g[size_t{4} * chunk.source[entry]],
+                 a4 * Load4(&chunk.value[3 * entry]));
           }
         }
       });
-  std::vector<double> texels(num_texels, 0.0), blocks(num_blocks, 0.0);
-  for (const Partial& g : partial) {
-    for (size_t i = 0; i < num_texels; ++i) texels[i] += g.texels[i];
-    for (size_t i = 0; i < num_blocks; ++i) blocks[i] += g.blocks[i];
+  std::vector<double> sums(size, 0.0);
+  for (const std::vector<float>& g : partial) {
+    for (size_t i = 0; i < size; ++i) sums[i] += g[i];
   }
-  t.UnpadMapGradient(texels, blocks, gradient);
+  const int columns = map_width_ / block_;
+  for (int y = 0; y < map_height_; ++y) {
+    const double solid_angle = TexelSolidAngle(y, map_height_, map_width_);
+    for (int x = 0; x < map_width_; ++x) {
+      const size_t to = static_cast<size_t>(y) * map_width_ + x;
+      const size_t block =
+          static_cast<size_t>(y / block_) * columns + x / block_;
+      for (int c = 0; c < 3; ++c) {
+        gradient[3 * to + c] =
+            static_cast<float>(sums[4 * (num_blocks_ + to) + c] +
+                               solid_angle * sums[4 * block + c]);
+      }
+    }
+  }
 }
 
 }  // namespace ibrdf

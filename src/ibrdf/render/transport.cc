@@ -8,6 +8,7 @@
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/lobe_contraction.h"
+#include "ibrdf/render/map_sources.h"
 #include "ibrdf/render/transport_taps.h"
 
 namespace ibrdf {
@@ -105,40 +106,11 @@ size_t Transport::MemoryBytes() const {
   return bytes;
 }
 
-// The padded map has a row before the first and one after the last (the row
-// itself, half a turn on: across the pole) and the first column once more.
 std::vector<float> Transport::PadMap(const float* map) const {
-  const int row = map_width_ + 1;
-  std::vector<float> out(size_t{4} * row * (map_height_ + 2), 0.0f);
-  for (int y = -1; y <= map_height_; ++y) {
-    const bool across = y < 0 || y == map_height_;
-    const int r = std::clamp(y, 0, map_height_ - 1);
-    for (int x = 0; x < row; ++x) {
-      const int c = (x + (across ? map_width_ / 2 : 0)) % map_width_;
-      const float* from = map + 3 * (static_cast<size_t>(r) * map_width_ + c);
-      std::copy_n(from, 3, &out[4 * (static_cast<size_t>(y + 1) * row + x)]);
-    }
-  }
-  return out;
-}
-
-std::vector<float> Transport::SumBlocks(const float* map) const {
-  const int columns = map_width_ / block_;
-  std::vector<double> sums(size_t{3} * num_blocks_, 0.0);
-  for (int y = 0; y < map_height_; ++y) {
-    const double solid_angle = TexelSolidAngle(y, map_height_, map_width_);
-    for (int x = 0; x < map_width_; ++x) {
-      const float* from = map + 3 * (static_cast<size_t>(y) * map_width_ + x);
-      const size_t block =
-          static_cast<size_t>(y / block_) * columns + x / block_;
-      for (int c = 0; c < 3; ++c) sums[3 * block + c] += solid_angle * from[c];
-    }
-  }
-  std::vector<float> out(size_t{4} * num_blocks_, 0.0f);
-  for (int b = 0; b < num_blocks_; ++b) {
-    for (int c = 0; c < 3; ++c) {
-      out[4 * b + c] = static_cast<float>(sums[3 * b + c]);
-    }
+  const std::vector<int> texel = PaddedTexels(map_height_, map_width_);
+  std::vector<float> out(4 * texel.size(), 0.0f);
+  for (size_t i = 0; i < texel.size(); ++i) {
+    std::copy_n(map + size_t{3} * texel[i], 3, &out[4 * i]);
   }
   return out;
 }
@@ -158,41 +130,12 @@ std::vector<float> Transport::PadGrid(const BrdfGrid& grid) const {
   return out;
 }
 
-void Transport::UnpadMapGradient(const std::vector<double>& texels,
-                                 const std::vector<double>& blocks,
-                                 float* gradient) const {
-  const int row = map_width_ + 1, columns = map_width_ / block_;
-  std::vector<double> sums(size_t{3} * map_height_ * map_width_, 0.0);
-  for (int y = -1; y <= map_height_; ++y) {
-    const bool across = y < 0 || y == map_height_;
-    const int r = std::clamp(y, 0, map_height_ - 1);
-    for (int x = 0; x < row; ++x) {
-      const int to = (x + (across ? map_width_ / 2 : 0)) % map_width_;
-      const size_t from = 4 * (static_cast<size_t>(y + 1) * row + x);
-      for (int c = 0; c < 3; ++c) {
-        sums[3 * (static_cast<size_t>(r) * map_width_ + to) + c] +=
-            texels[from + c];
-      }
-    }
-  }
-  for (int y = 0; y < map_height_; ++y) {
-    const double solid_angle = TexelSolidAngle(y, map_height_, map_width_);
-    for (int x = 0; x < map_width_; ++x) {
-      const size_t block =
-          static_cast<size_t>(y / block_) * columns + x / block_;
-      const size_t to = 3 * (static_cast<size_t>(y) * map_width_ + x);
-      for (int c = 0; c < 3; ++c) {
-        gradient[to + c] = static_cast<float>(
-            sums[to + c] + solid_angle * blocks[4 * block + c]);
-      }
-    }
-  }
-}
-
 void Transport::Render(const BrdfGrid& grid, const float* map,
                        double* E) const {
   const std::vector<float> f = PadGrid(grid);
-  const std::vector<float> texels = PadMap(map), blocks = SumBlocks(map);
+  const std::vector<float> texels = PadMap(map),
+                           blocks =
+                               SumBlocks(map, map_height_, map_width_, block_);
   const Corners corners(options_.grid);
   const int row = map_width_ + 1;
   ParallelFor(
@@ -238,7 +181,9 @@ void Transport::RenderLobes(const float* const* fields, int num_fields,
     }
   });
 
-  const std::vector<float> texels = PadMap(map), blocks = SumBlocks(map);
+  const std::vector<float> texels = PadMap(map),
+                           blocks =
+                               SumBlocks(map, map_height_, map_width_, block_);
   const Corners corners(s);
   const int row = map_width_ + 1;
   const ContractLobesFunction contract = ContractLobes();
@@ -300,7 +245,9 @@ void Transport::RenderLobes(const float* const* fields, int num_fields,
 void Transport::GridGradient(const float* map, const double* adjoint,
                              float* gradient) const {
   const BrdfGridShape& s = options_.grid;
-  const std::vector<float> texels = PadMap(map), blocks = SumBlocks(map);
+  const std::vector<float> texels = PadMap(map),
+                           blocks =
+                               SumBlocks(map, map_height_, map_width_, block_);
   const Corners corners(s);
   const int row = map_width_ + 1;
   std::vector<std::vector<float>> partial(chunks_.size());

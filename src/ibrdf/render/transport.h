@@ -43,7 +43,7 @@ class Transport {
 
   void Render(const BrdfGrid& grid, const float* map, double* E) const;
 
-  // The linear map from L to E for a fixed BRDF. Must not outlive *this.
+  // The linear map from L to E for a fixed BRDF.
   LightOperator ByLight(const BrdfGrid& grid) const;
 
   // For scalar fields s_k on the grid, fields[k] = [nodes]: out
@@ -64,8 +64,6 @@ class Transport {
   void LightMatrixGradient(const float* adjoint, float* gradient) const;
 
  private:
-  friend class LightOperator;
-
   // Trilinear fractions are in units of 1/65535.
   struct FarPair {
     uint32_t node;  // lowest node of the cell, in the padded grid
@@ -91,13 +89,9 @@ class Transport {
 
   void BuildChunk(const std::vector<ShadingPoint>& points,
                   const PointQuadrature& quadrature, Chunk* chunk) const;
-  // Four floats per entry, the last one 0.
+  // See PaddedTexels; four floats per entry, the last one 0.
   std::vector<float> PadMap(const float* map) const;
-  std::vector<float> SumBlocks(const float* map) const;
   std::vector<float> PadGrid(const BrdfGrid& grid) const;
-  void UnpadMapGradient(const std::vector<double>& texels,
-                        const std::vector<double>& blocks,
-                        float* gradient) const;
   int PaddedNodes() const {
     return options_.grid.h * options_.grid.d * (options_.grid.p + 1);
   }
@@ -111,6 +105,7 @@ class Transport {
   std::vector<Chunk> chunks_;
 };
 
+// Holds what it needs: it may outlive its transport. Thread rules as above.
 class LightOperator {
  public:
   // E [points, 3] from map [H, W, 3].
@@ -122,11 +117,23 @@ class LightOperator {
 
  private:
   friend class Transport;
-  explicit LightOperator(const Transport* transport) : transport_(transport) {}
+  LightOperator() = default;
 
-  const Transport* transport_;
-  // weight f_c of every pair, [chunk][pair * 3 + c], one spare entry.
-  std::vector<std::vector<float>> far_, near_;
+  // Radiance of consecutive points: one entry for every block of texels and
+  // every texel that a point sees by itself, its pairs summed.
+  struct Chunk {
+    int begin = 0, end = 0;
+    std::vector<size_t> entry_end;  // [end - begin]
+    std::vector<uint32_t> source;   // a block, or num_blocks_ + texel
+    std::vector<float> value;       // [entry * 3 + channel], one spare entry
+  };
+
+  // Blocks, then texels; four floats each, the last one 0.
+  std::vector<float> Sources(const float* map) const;
+
+  int map_height_ = 0, map_width_ = 0, block_ = 1, num_blocks_ = 0;
+  int num_threads_ = 0;
+  std::vector<Chunk> chunks_;
 };
 
 }  // namespace ibrdf

@@ -1,0 +1,78 @@
+#include "solvers/marginal/light_spectrum.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ibrdf/light/environment_map.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+}  // namespace
+
+LightSpectrum::LightSpectrum(int height, int width, double correlation_degrees)
+    : height_(height), width_(width), basis_(width, width) {
+  CHECK(height > 0 && width > 0 && width % 2 == 0);
+  for (int c = 0; c < width; ++c) {
+    for (int j = 0; j < width; ++j) {
+      const int k = FrequencyOf(j);
+      const double angle = 2 * kPi * k * c / width;
+      const double norm = k == 0 || 2 * k == width ? 1.0 : 2.0;
+      basis_(c, j) = std::sqrt(norm / width) *
+                     (j % 2 == 1 || j == 0 ? std::cos(angle) : std::sin(angle));
+    }
+  }
+  const double scale = 180.0 / (kPi * correlation_degrees);
+  blocks_.assign(num_frequencies(), RowMatrix(height, height));
+  RowMatrix cosines(num_frequencies(), width);
+  for (int k = 0; k < num_frequencies(); ++k) {
+    for (int c = 0; c < width; ++c) {
+      cosines(k, c) = std::cos(2 * kPi * k * c / width);
+    }
+  }
+  Eigen::VectorXd row(width);
+  for (int a = 0; a < height; ++a) {
+    const Eigen::Vector3d from = MapDirection(a + 0.5, 0.5, height, width);
+    for (int b = 0; b <= a; ++b) {
+      for (int c = 0; c < width; ++c) {
+        const double cosine =
+            from.dot(MapDirection(b + 0.5, c + 0.5, height, width));
+        row[c] = std::exp(-std::acos(std::clamp(cosine, -1.0, 1.0)) * scale);
+      }
+      if (a == b) row[0] = 1.0;
+      const Eigen::VectorXd by_frequency = cosines * row;
+      for (int k = 0; k < num_frequencies(); ++k) {
+        blocks_[k](a, b) = blocks_[k](b, a) = by_frequency[k];
+      }
+    }
+  }
+}
+
+void LightSpectrum::Multiply(const RowMatrix& X, RowMatrix* out) const {
+  const Eigen::Index n = X.rows(), H = height_, W = width_;
+  CHECK_EQ(X.cols(), H * W);
+  // A row of X is H rows of W values: one product takes all to coefficients.
+  using Rows = Eigen::Map<const RowMatrix>;
+  RowMatrix coefficients;
+  ibrdf::Multiply(Rows(X.data(), n * H, W), basis_, &coefficients);
+  // Coefficient by coefficient: [n][H] times S_k.
+  RowMatrix gathered(n, H), weighted;
+  for (int j = 0; j < width_; ++j) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      gathered.row(i) = coefficients.col(j).segment(i * H, H).transpose();
+    }
+    ibrdf::Multiply(gathered, blocks_[FrequencyOf(j)], &weighted);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      coefficients.col(j).segment(i * H, H) = weighted.row(i).transpose();
+    }
+  }
+  RowMatrix back;
+  MultiplyTransposed(coefficients, basis_, &back);
+  *out = Rows(back.data(), n, H * W);
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,22 @@
+// The unknown map as a draw of the light's Gaussian process.
+#pragma once
+#include <memory>
+
+#include "solvers/illumination_model.h"
+#include "solvers/marginal/light_process.h"
+
+namespace ibrdf {
+
+// log L = level + S w with S S^T the process's covariance between the texels'
+// centres: under a standard normal prior of w [3 H W] the map has the
+// process's, and a least-squares step from one has no steep directions but the
+// data's.
+//
+// The covariance is the same at every longitude, so that a Fourier transform
+// along the rows leaves a Cholesky factor [H][H] for each frequency. Costs
+// O(W H (W + H)) a product and O(W H^3) to build: maps of up to 256x128.
+// width even; amplitude > 0 as in LightProcess.
+std::unique_ptr<IlluminationModel> MakeProcessIllumination(
+    int width, int height, const LightProcess& process, double amplitude);
+
+}  // namespace ibrdf
