@@ -65,7 +65,8 @@ def settings(rows):
 
 def draw(points, num_cases, out):
     pyplot = open_pyplot()
-    figure, panels = pyplot.subplots(1, 3, figsize=(15, 5.2))
+    figure, panels = pyplot.subplots(1, 3, figsize=(16, 7))
+    to_label = []
     for axes, (column, title) in zip(panels, PANELS):
         shown = [(name, (v["seconds"], v[column])) for name, v in points
                  if v[column] is not None]
@@ -101,11 +102,13 @@ def draw(points, num_cases, out):
         axes.set_xlabel("seconds, wall clock (median)")
         axes.set_title(title)
         legend = axes.legend(loc="upper right")
-        place_labels(axes, xy, names, avoid=[legend])
+        to_label.append((axes, xy, names, [legend]))
     figure.suptitle(f"Medians over {num_cases} case"
                     f"{'s' if num_cases != 1 else ''} that every setting "
                     "solved")
     figure.tight_layout()
+    for axes, xy, names, avoid in to_label:
+        place_labels(axes, xy, names, avoid)
     figure.savefig(out)
 
 

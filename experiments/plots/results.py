@@ -4,6 +4,8 @@ import math
 
 # What the sweeps write where the solver left an estimate.
 SOLVED = ("ok", "no_improvement")
+# Of labels, over lines.
+BACKGROUND = dict(boxstyle="square,pad=0.1", fc="white", ec="none", alpha=0.7)
 
 
 def read_rows(path, columns):
@@ -57,7 +59,7 @@ def front(points):
 def place_labels(axes, points, texts, avoid=(), size=7):
     """Writes the texts near their points (data coordinates) where there is
     room: off each other, off the points and off the boxes of `avoid`
-    (artists). Call last, with the limits set."""
+    (artists). Call last, with limits and layout set."""
     from matplotlib.text import Text
     figure = axes.figure
     figure.canvas.draw()
@@ -67,18 +69,19 @@ def place_labels(axes, points, texts, avoid=(), size=7):
     frame = axes.get_window_extent(renderer)
     for text, point in zip(texts, points):
         best = None
-        for reach in (6, 14, 24, 36, 50, 66):
-            for angle in (0, 180, 90, 270, 45, 315, 135, 225):
+        for reach in (6, 14, 24, 36, 50, 66, 85, 105):
+            for angle in (0, 180, 30, 330, 150, 210, 60, 300, 90, 270):
                 dx = reach * math.cos(math.radians(angle))
                 dy = reach * math.sin(math.radians(angle))
                 label = axes.annotate(
                     text, point, (dx, dy), textcoords="offset points",
-                    fontsize=size,
+                    fontsize=size, bbox=BACKGROUND,
                     ha="left" if dx > 1 else "right" if dx < -1 else "center",
                     va="bottom" if dy > 1 else "top" if dy < -1 else "center",
                     arrowprops=None if reach < 10 else dict(
                         arrowstyle="-", lw=0.4, color="0.5", shrinkB=3))
                 # Of the text alone: with its line it would hit its own point.
+                label.update_positions(renderer)
                 box = Text.get_window_extent(label, renderer)
                 clear = (frame.x0 <= box.x0 and box.x1 <= frame.x1 and
                          frame.y0 <= box.y0 and box.y1 <= frame.y1 and
@@ -96,7 +99,7 @@ def place_labels(axes, points, texts, avoid=(), size=7):
             taken.append(best)
         else:  # no room: on the point's right, over what is there
             axes.annotate(text, point, (6, 0), textcoords="offset points",
-                          fontsize=size, va="center")
+                          fontsize=size, va="center", bbox=BACKGROUND)
 
 
 def open_pyplot():

@@ -214,23 +214,15 @@ TEST_F(CookTorranceFitTest, ManyPointsAreThinnedEvenlyOverTheNormals) {
       FitCookTorrance(points, image, map_, options).value();
   EXPECT_LT(thin.misfit, 1e-3);
   EXPECT_NEAR(1.0, thin.brdf.roughness[0] / brdf.roughness[0], 0.02);
-  // Points twice over change nothing: a normal counts once.
-  std::vector<ShadingPoint> upper_twice = points;
-  for (const ShadingPoint& point : points) {
-    if (point.normal.y() > 0.0f) upper_twice.push_back(point);
-  }
+  // Twice the red in the upper half, which no surface explains: the points kept
+  // show it only if they are of both halves. Of red one half is off by log 2 /
+  // 2 and more, were it not for what the lobes can take on.
   for (const ShadingPoint& point : points) {
     if (point.normal.y() > 0.0f) {
       image.rgb[size_t{3} * point.pixel] *= 2.0f;
     }
   }
-  // Red in the upper half is off: the median of two halves of equal weight is
-  // not drawn to the one that has more points.
-  const double even =
-      FitCookTorrance(points, image, map_, options).value().misfit;
-  const double uneven =
-      FitCookTorrance(upper_twice, image, map_, options).value().misfit;
-  EXPECT_NEAR(even, uneven, 0.02 * even);
+  EXPECT_LT(0.05, FitCookTorrance(points, image, map_, options).value().misfit);
 }
 
 TEST_F(CookTorranceFitTest, OutliersDoNotMoveTheFit) {
