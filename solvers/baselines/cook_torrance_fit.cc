@@ -11,7 +11,6 @@
 
 #include "ibrdf/light/environment_map.h"
 #include "solvers/baselines/cook_torrance_cost.h"
-#include "solvers/marginal/image_cells.h"
 
 namespace ibrdf {
 namespace {
@@ -97,22 +96,25 @@ CookTorranceVector Start(const CookTorranceCost& cost,
   return p;
 }
 
-// Evenly over the normals, where there are more points than cells of them.
+// Evenly over the image.
 std::vector<ShadingPoint> Thin(const std::vector<ShadingPoint>& points,
-                               const Image& image, int normals_across) {
-  ImageCellOptions cells;
-  cells.cells_across = normals_across;
-  cells.points_per_cell = 1;
-  cells.min_cosine = 0.0;
-  if (points.size() <= static_cast<size_t>(normals_across) * normals_across) {
-    return points;
-  }
-  std::vector<double> radiance;
+                               int width, size_t max_points) {
+  const double share = static_cast<double>(points.size()) / max_points;
+  if (share <= 1.0) return points;
+  const int n = std::max(static_cast<int>(std::sqrt(share)), 1);
+  std::vector<ShadingPoint> kept;
   for (const ShadingPoint& point : points) {
-    const float* rgb = image.rgb.data() + size_t{3} * point.pixel;
-    radiance.insert(radiance.end(), rgb, rgb + 3);
+    if (point.pixel % width % n == n / 2 && point.pixel / width % n == n / 2) {
+      kept.push_back(point);
+    }
   }
-  return GroupByNormal(points, radiance, cells).points;
+  // Something thin may lie between those rows or columns.
+  if (kept.size() >= max_points / 2) return kept;
+  kept.clear();
+  for (size_t i = 0; i < max_points; ++i) {
+    kept.push_back(points[static_cast<size_t>((i + 0.5) * share)]);
+  }
+  return kept;
 }
 
 // Lowers the cost over all parameters, or over the colours at the same
@@ -151,10 +153,10 @@ StatusOr<CookTorranceFit> FitCookTorrance(
     const std::vector<ShadingPoint>& points, const Image& image,
     const Image& map, const CookTorranceFitOptions& options) {
   CHECK(!options.start_roughness.empty() && !options.start_f0.empty());
-  CHECK_GT(options.refined_starts, 0);
+  CHECK(options.refined_starts > 0 && options.max_points > 0);
   std::vector<ShadingPoint> used;
   const StatusOr<LogObservations> observed =
-      Observe(image, Thin(points, image, options.normals_across), &used);
+      Observe(image, Thin(points, image.width, options.max_points), &used);
   if (!observed.ok()) return observed.status();
   TransportOptions transport_options;
   transport_options.num_threads = options.num_threads;

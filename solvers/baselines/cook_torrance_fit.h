@@ -11,9 +11,9 @@
 namespace ibrdf {
 
 struct CookTorranceFitOptions {
-  // Of more points one is kept for each cell of a grid of so many normals
-  // across the object.
-  int normals_across = 26;
+  // Of more points about so many are kept, those of every n-th row and column:
+  // the limb keeps the share that it has in the image.
+  int max_points = 512;
   // Starts: each of these with each of those, its colours fitted first, which
   // needs one render. The best few then take a few steps in all parameters, and
   // the best of them goes on.

@@ -25,8 +25,9 @@ const std::vector<std::string>& ParetoColumns();
 // For RunSolverSweep; runs by material, map, then setting. The setting
 // `default` is what options say (size, method, seconds, lobes); one that would
 // be the same is left out beside it. `adam` is the reference: both unknowns by
-// the whole schedule of Chen et al. 2020, however long it takes; results.md
-// says how long the default takes to its misfit. A case's folder also receives
+// the schedule of Chen et al. 2020, however long it takes; the column rounds
+// says how much of its ten rounds the solver took. results.md says how long the
+// default takes to its misfit. A case's folder also receives
 // pareto_SETTING.yaml and pareto_SETTING_.../; another size of image is a case
 // of its own (CaseOfSize). Fails on a material, map, model or setting that is
 // not there.
