@@ -5,9 +5,9 @@
 #include "ibrdf/light/environment_map.h"
 #include "io/image_file.h"
 #include "io/mesh.h"
-#include "io/model_file.h"
 #include "io/png.h"
 #include "io/problem_file.h"
+#include "solvers/open_model.h"
 #include "solvers/render_scene.h"
 #include "solvers/solve_problem.h"
 
@@ -82,16 +82,11 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
     if (!table.ok()) return table.status();
     inverse.known_brdf = BrdfGrid::FromMerl(*table, inverse.transport.grid);
   } else {
-    const StatusOr<std::string> path = FindModel(
-        problem.reflectance.model.empty() ? "default"
-                                          : problem.reflectance.model);
-    if (!path.ok()) return path.status();
-    StatusOr<NeuralBrdfModel> model = ReadModel(*path);
+    StatusOr<OpenedModel> model = OpenModel(problem.reflectance.model.empty()
+                                                ? "default"
+                                                : problem.reflectance.model);
     if (!model.ok()) return model.status();
-    if (model->num_codes() < 3) {
-      return InvalidInput(*path, "expected the codes of at least one material");
-    }
-    inverse.model = std::move(model).value();
+    inverse.model = std::move(model->model);
   }
   if (problem.illumination.known()) {
     const StatusOr<Image> map = LoadKnownIllumination(problem.illumination);

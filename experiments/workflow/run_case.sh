@@ -1,38 +1,38 @@
 #!/usr/bin/env bash
 # One case of a sweep, from its start to its row:
-#   run_case.sh ROW WORK SETTINGS TABLE MAP COMMAND...
-# COMMAND is ibrdf_bench without --out, which becomes WORK. ROW, the table of
-# this case alone, appears at once and whole. WORK keeps the row as well: when
+#   run_case.sh ROW PART SETTINGS TABLE MAP COMMAND...
+# COMMAND is ibrdf_bench without --out, which becomes PART. ROW, the table of
+# this case alone, appears at once and whole. PART keeps the row as well: when
 # the workflow lost track of a case that finished, it is taken from there,
 # unless SETTINGS changed or TABLE or MAP are newer.
-# WORK/attempts.log says when each attempt began, where, and how it ended.
+# PART/attempts.log says when each attempt began, where, and how it ended.
 set -euo pipefail
 
 if [ "$#" -lt 6 ]; then
-  echo "usage: $0 ROW WORK SETTINGS TABLE MAP COMMAND..." >&2
+  echo "usage: $0 ROW PART SETTINGS TABLE MAP COMMAND..." >&2
   exit 2
 fi
-row="$1" work="$2" settings="$3" table="$4" map="$5"
+row="$1" part="$2" settings="$3" table="$4" map="$5"
 shift 5
-mkdir -p "${work}" "$(dirname "${row}")"
+mkdir -p "${part}" "$(dirname "${row}")"
 
 # A job that a dead workflow left behind may still compute this case: wait for
 # it. The lock passes on to the programs below and is free when all have ended.
-exec 9>"${work}/lock"
+exec 9>"${part}/lock"
 flock 9
 
 note() {
   echo "$(date -u +%FT%TZ) $(uname -n) job=${SLURM_JOB_ID:-local} pid=$$ $*" \
-    >>"${work}/attempts.log"
+    >>"${part}/attempts.log"
 }
 
-results="${work}/results.csv"
-if [ "$(cat "${work}/settings" 2>/dev/null)" != "${settings}" ] ||
+results="${part}/results.csv"
+if [ "$(cat "${part}/settings" 2>/dev/null)" != "${settings}" ] ||
    [ "${table}" -nt "${results}" ] || [ "${map}" -nt "${results}" ]; then
   rm -f "${results}"
 fi
 # Not before the old row is gone, lest it pass for one of these settings.
-printf '%s\n' "${settings}" >"${work}/settings"
+printf '%s\n' "${settings}" >"${part}/settings"
 
 # The cell of a table's only row, by name of its column.
 cell() {
@@ -47,7 +47,7 @@ if [ -f "${results}" ]; then
 else
   note begin
   code=0
-  "$@" --out "${work}" || code=$?
+  "$@" --out "${part}" || code=$?
   if [ "${code}" -ne 0 ]; then
     note "failed with status ${code}"
     exit "${code}"

@@ -42,7 +42,8 @@ done
 for m in ${materials//,/ }; do
   for k in ${maps//,/ }; do
     if [ "${dry}" -eq 1 ]; then
-      printf '%s\t%s\t%s\n' "${m}_${k}" "${data}/${m}.binary" "${folder}/${k}.hdr"
+      printf '%s\t%s\t%s\testimate\n' "${m}_${k}" "${data}/${m}.binary" \
+        "${folder}/${k}.hdr"
       continue
     fi
     [ ! -f "${out}/results.csv" ] || continue
@@ -65,7 +66,7 @@ calls() { grep -c . "${CALLS}" || true; }
 run_case() {  # run_case MATERIAL SEED
   local settings="joint --materials $1 --map-names dusk --seed $2" words
   read -ra words <<<"${settings}"
-  "${here}/run_case.sh" "one/$1.csv" "one/work/$1" "${settings}" \
+  "${here}/run_case.sh" "one/$1.csv" "one/parts/$1" "${settings}" \
     "data/$1.binary" maps/dusk.hdr bin/ibrdf_bench "${words[@]}" \
     --data data --maps maps --threads 1
 }

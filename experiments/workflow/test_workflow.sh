@@ -116,7 +116,7 @@ finished() {  # the cases that have a row, as MATERIAL/MAP
 }
 count_finished() { finished | grep -c . || true; }
 attempts() {  # attempts CASE WORD: lines of its log that say WORD
-  grep -cw -- "$2" "${sweep}/work/$1/attempts.log" 2>/dev/null || true
+  grep -cw -- "$2" "${sweep}/parts/$1/attempts.log" 2>/dev/null || true
 }
 all_cases() {
   local material map
@@ -128,7 +128,7 @@ all_cases() {
 running_solver() {
   local case pid
   for case in $(all_cases); do
-    pid="$(pgrep -f -- "ibrdf_solve .*${sweep}/work/${case}/" | head -n 1)" ||
+    pid="$(pgrep -f -- "ibrdf_solve .*${sweep}/parts/${case}/" | head -n 1)" ||
       continue
     # Not its parent between fork and exec.
     [ "$(cat "/proc/${pid}/comm" 2>/dev/null)" = ibrdf_solve ] || continue
@@ -143,10 +143,10 @@ running_case() {
   local case last job
   for case in $(all_cases); do
     [ "${case}" != "$1" ] || continue
-    last="$(tail -n 1 "${sweep}/work/${case}/attempts.log" 2>/dev/null)" ||
+    last="$(tail -n 1 "${sweep}/parts/${case}/attempts.log" 2>/dev/null)" ||
       continue
     [[ "${last}" == *" begin" ]] || continue
-    [ "${2:-}" != new ] || [ -z "$(find "${sweep}/work/${case}" \
+    [ "${2:-}" != new ] || [ -z "$(find "${sweep}/parts/${case}" \
       -name solver.log 2>/dev/null)" ] || continue
     job="${last#*job=}"
     job="${job%% *}"

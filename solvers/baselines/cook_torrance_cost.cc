@@ -46,12 +46,11 @@ CookTorranceCost::CookTorranceCost(const Transport& transport, const Image& map,
 }
 
 std::vector<float> CookTorranceCost::RenderFields(double log_roughness,
-                                                  double logit_f0,
-                                                  int num_fields) const {
+                                                  double logit_f0) const {
   const size_t nodes = node_angles_.size();
-  std::array<std::vector<float>, 4> fields;
-  std::array<const float*, 4> pointers{};
-  for (int k = 0; k < num_fields; ++k) {
+  std::array<std::vector<float>, kFields> fields;
+  std::array<const float*, kFields> pointers{};
+  for (int k = 0; k < kFields; ++k) {
     fields[k].assign(nodes, static_cast<float>(1.0 / kPi));
     pointers[k] = fields[k].data();
   }
@@ -64,33 +63,38 @@ std::vector<float> CookTorranceCost::RenderFields(double log_roughness,
       Eigen::Vector4d gradient;
       fields[1][i] = static_cast<float>(
           EvaluateCookTorrance(lobe, a[0], a[1], a[2], &gradient));
-      for (int k = 2; k < num_fields; ++k) {
+      for (int k = 2; k < kFields; ++k) {
         fields[k][i] = static_cast<float>(gradient[k]);
       }
     }
   });
-  std::vector<float> radiance(size_t{3} * num_fields * transport_.num_points());
-  transport_.RenderLobes(pointers.data(), num_fields, map_.rgb.data(),
+  std::vector<float> radiance(size_t{3} * kFields * transport_.num_points());
+  transport_.RenderLobes(pointers.data(), kFields, map_.rgb.data(),
                          radiance.data());
   return radiance;
 }
 
-std::vector<float> CookTorranceCost::UnitRadiance(double log_roughness,
-                                                  double logit_f0) const {
-  return RenderFields(log_roughness, logit_f0, 2);
+const std::vector<float>& CookTorranceCost::UnitRadiance(
+    double log_roughness, double logit_f0) const {
+  if (last_radiance_.empty() || last_roughness_ != log_roughness ||
+      last_f0_ != logit_f0) {
+    last_radiance_ = RenderFields(log_roughness, logit_f0);
+    last_roughness_ = log_roughness;
+    last_f0_ = logit_f0;
+  }
+  return last_radiance_;
 }
 
 bool CookTorranceCost::Evaluate(double const* const* parameters,
                                 double* residuals, double** jacobians) const {
   const Eigen::Map<const CookTorranceVector> p(parameters[0]);
   const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
-  const int num_fields = with_jacobian ? 4 : 2;
-  const std::vector<float> radiance = RenderFields(p[6], p[7], num_fields);
+  const std::vector<float>& radiance = UnitRadiance(p[6], p[7]);
   const double s = smoothing_;
   for (int i = 0; i < transport_.num_points(); ++i) {
     for (int c = 0; c < 3; ++c) {
       const auto field = [&](int k) -> double {
-        return radiance[(static_cast<size_t>(i) * num_fields + k) * 3 + c];
+        return radiance[(static_cast<size_t>(i) * kFields + k) * 3 + c];
       };
       const double diffuse = std::exp(p[c]) * field(0);
       const double specular_colour = std::exp(p[3 + c]);
@@ -117,12 +121,12 @@ bool CookTorranceCost::Evaluate(double const* const* parameters,
 }
 
 double CookTorranceCost::Misfit(const CookTorranceVector& parameters) const {
-  const std::vector<float> radiance =
+  const std::vector<float>& radiance =
       UnitRadiance(parameters[6], parameters[7]);
   double sum = 0.0;
   for (int i = 0; i < transport_.num_points(); ++i) {
     for (int c = 0; c < 3; ++c) {
-      const size_t at = static_cast<size_t>(i) * 6 + c;
+      const size_t at = static_cast<size_t>(i) * 3 * kFields + c;
       const double E = std::exp(parameters[c]) * radiance[at] +
                        std::exp(parameters[3 + c]) * radiance[at + 3];
       sum +=

@@ -29,7 +29,8 @@ struct LogObservations {
 // 2 is rho:
 //   r = d sqrt(2 / (sqrt(d^2 + s^2) + s)).
 // E is linear in colours and lobe fields, so that the Jacobian is exact for the
-// BRDF grid of `transport`, not only in the limit of a fine one.
+// BRDF grid of `transport`, not only in the limit of a fine one. Its functions
+// may be called from one thread at a time.
 class CookTorranceCost final : public ceres::CostFunction {
  public:
   // map: of the transport's size. smoothing: s, natural log, > 0. num_threads
@@ -45,15 +46,15 @@ class CookTorranceCost final : public ceres::CostFunction {
   // Mean |d| over points and channels.
   double Misfit(const CookTorranceVector& parameters) const;
 
-  // Radiance [points, 2, 3] of a Lambertian of albedo 1 and of the lobe at
-  // specular colour 1.
-  std::vector<float> UnitRadiance(double log_roughness, double logit_f0) const;
+  // Radiance [points, kFields, 3] of a Lambertian of albedo 1, of the lobe at
+  // specular colour 1, and of that lobe's derivatives in log roughness and
+  // logit f0. Valid until the next call of any function with others of these.
+  static constexpr int kFields = 4;
+  const std::vector<float>& UnitRadiance(double log_roughness,
+                                         double logit_f0) const;
 
  private:
-  // As UnitRadiance with `num_fields` in {2, 4}: then also the lobe's
-  // derivatives in log roughness and logit f0.
-  std::vector<float> RenderFields(double log_roughness, double logit_f0,
-                                  int num_fields) const;
+  std::vector<float> RenderFields(double log_roughness, double logit_f0) const;
 
   const Transport& transport_;
   const Image& map_;
@@ -61,6 +62,9 @@ class CookTorranceCost final : public ceres::CostFunction {
   double smoothing_;
   int num_threads_;
   std::vector<Eigen::Vector3d> node_angles_;
+  // The last render: steps of the colours alone need no other.
+  mutable double last_roughness_ = 0.0, last_f0_ = 0.0;
+  mutable std::vector<float> last_radiance_;  // empty: none
 };
 
 }  // namespace ibrdf

@@ -12,10 +12,10 @@
 #include "ibrdf/metrics/albedo.h"
 #include "io/atomic_file.h"
 #include "io/merl.h"
-#include "io/model_file.h"
 #include "solvers/bench/model_materials.h"
 #include "solvers/bench/results_table.h"
 #include "solvers/bench/sweep_files.h"
+#include "solvers/open_model.h"
 
 namespace ibrdf {
 namespace {
@@ -202,11 +202,11 @@ const std::vector<std::string>& AlbedoColumns() {
 }
 
 Status RunAlbedoSweep(const AlbedoSweepOptions& options) {
-  const StatusOr<std::string> path = FindModel(options.model);
-  if (!path.ok()) return path.status();
-  const StatusOr<NeuralBrdfModel> model = ReadModel(*path);
-  if (!model.ok()) return model.status();
-  const auto materials = ListModelMaterials(*model, *path, options.materials);
+  const StatusOr<OpenedModel> opened = OpenModel(options.model);
+  if (!opened.ok()) return opened.status();
+  const NeuralBrdfModel& model = opened->model;
+  const auto materials =
+      ListModelMaterials(model, opened->path, options.materials);
   if (!materials.ok()) return materials.status();
   std::error_code error;
   fs::create_directories(options.out, error);
@@ -229,7 +229,7 @@ Status RunAlbedoSweep(const AlbedoSweepOptions& options) {
     NamedRow row = KeyOf(options, m.name, "model");
     if (!HoldsCase(*present, row.cells(), kAlbedoKeyColumns)) {
       const BrdfBatch brdf =
-          FlowBrdf(*model, MaterialLobes(*model, m.first_code).data(), 3,
+          FlowBrdf(model, MaterialLobes(model, m.first_code).data(), 3,
                    options.num_threads)
               .Batch();
       SetFigures(rules.Measure(brdf), &row);

@@ -1,6 +1,5 @@
 #include "solvers/bench/baseline_fitters.h"
 
-#include <chrono>
 #include <functional>
 #include <utility>
 
@@ -8,6 +7,7 @@
 #include "solvers/baselines/dsbrdf_fit.h"
 #include "solvers/baselines/table_fit.h"
 #include "solvers/baselines/table_samples.h"
+#include "solvers/bench/stopwatch.h"
 
 namespace ibrdf {
 namespace {
@@ -31,13 +31,11 @@ class BaselineFitter final : public TableFitter {
   // Takes seconds: not stopped.
   StatusOr<FittedTable> Fit(const MerlTable& table,
                             const TableFitContext& context) const override {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const StatusOr<BrdfFunction> brdf = fit_(table, context.seed);
     if (!brdf.ok()) return brdf.status();
-    const std::chrono::duration<double> seconds =
-        std::chrono::steady_clock::now() - start;
-    return FittedTable{SampleBrdf(*brdf, depends_on_phi_d_, table),
-                       seconds.count()};
+    const double seconds = watch.Seconds();
+    return FittedTable{SampleBrdf(*brdf, depends_on_phi_d_, table), seconds};
   }
 
  private:

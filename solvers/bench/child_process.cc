@@ -13,6 +13,8 @@
 #include <fstream>
 #include <thread>
 
+#include "solvers/bench/stopwatch.h"
+
 namespace ibrdf {
 namespace {
 
@@ -45,7 +47,7 @@ StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
   arguments.push_back(nullptr);
   rusage own{};
   ::getrusage(RUSAGE_SELF, &own);
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const pid_t child = ::fork();
   if (child == 0) {
     ::dup2(output, STDOUT_FILENO);
@@ -77,9 +79,7 @@ StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
     std::this_thread::sleep_for(kPoll);
   }
   ChildResult result;
-  result.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin)
-          .count();
+  result.seconds = watch.Seconds();
   // ru_maxrss counts the copy of this process before exec too, and is the
   // child's own peak only above our size.
   const long peak = sampled == 0 || usage.ru_maxrss > own.ru_maxrss

@@ -11,7 +11,6 @@
 #include "ibrdf/brdf/lobe_model.h"
 #include "io/atomic_file.h"
 #include "io/merl.h"
-#include "io/model_file.h"
 #include "io/png.h"
 #include "solvers/bench/embedding_map.h"
 #include "solvers/bench/embedding_pages.h"
@@ -19,6 +18,7 @@
 #include "solvers/bench/results_table.h"
 #include "solvers/bench/sphere_studio.h"
 #include "solvers/bench/sweep_files.h"
+#include "solvers/open_model.h"
 
 namespace ibrdf {
 namespace {
@@ -207,14 +207,13 @@ StatusOr<int> FindMaterial(const std::vector<ModelMaterial>& materials,
 }  // namespace
 
 Status DrawEmbedding(const EmbeddingOptions& options) {
-  const StatusOr<std::string> path = FindModel(options.model);
-  if (!path.ok()) return path.status();
-  StatusOr<NeuralBrdfModel> model = ReadModel(*path);
-  if (!model.ok()) return model.status();
-  const auto materials = ListModelMaterials(*model, *path);
+  StatusOr<OpenedModel> opened = OpenModel(options.model);
+  if (!opened.ok()) return opened.status();
+  const auto materials = ListModelMaterials(opened->model, opened->path);
   if (!materials.ok()) return materials.status();
   if (materials->size() < 2) {
-    return InvalidInput(*path + ": names", "expected two materials or more");
+    return InvalidInput(opened->path + ": names",
+                        "expected two materials or more");
   }
   for (const ModelMaterial& m : *materials) {
     IBRDF_RETURN_IF_ERROR(CheckCaseName(m.name));
@@ -226,7 +225,8 @@ Status DrawEmbedding(const EmbeddingOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (error) return InvalidInput(options.out, error.message());
-  return Figures(options, *std::move(model), *materials).Draw(*from, *to);
+  return Figures(options, std::move(opened->model), *materials)
+      .Draw(*from, *to);
 }
 
 }  // namespace ibrdf

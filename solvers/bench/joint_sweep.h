@@ -5,25 +5,18 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/bench/held_out_models.h"
-#include "solvers/bench/solver_sweep.h"
+#include "solvers/bench/model_sweep.h"
 
 namespace ibrdf {
 
-struct JointSweepOptions : SolverSweepOptions, ModelOptions {
-  int lobes = 2;
-};
+struct JointSweepOptions : ModelSweepOptions {};
 
 // Columns of its results.csv, in order; the first six name the run.
 const std::vector<std::string>& JointColumns();
 
-// What options select, by material, then map. Fails on a material, map or model
-// that is not there.
-StatusOr<std::vector<SolverRun>> ListJointRuns(
-    const JointSweepOptions& options);
-
-// See RunSolverSweep. A case's folder also receives joint.yaml and
-// estimate_LOBES_METHOD[_MODEL]/.
-Status RunJointSweep(const JointSweepOptions& options);
+// For RunSolverSweep. A case's folder also receives joint.yaml,
+// estimate_LOBES_METHOD[_MODEL]/ and cook_torrance.json (see
+// joint_baselines.h). Fails on a material, map or model that is not there.
+StatusOr<SolverSweep> JointSweep(const JointSweepOptions& options);
 
 }  // namespace ibrdf

@@ -1,6 +1,6 @@
 #include "solvers/bench/known_brdf_sweep.h"
 
-#include <utility>
+#include <memory>
 
 #include "io/image_file.h"
 #include "solvers/bench/sphere_metrics.h"
@@ -70,41 +70,31 @@ const std::vector<std::string>& KnownBrdfColumns() {
   return columns;
 }
 
-StatusOr<std::vector<SolverRun>> ListKnownBrdfRuns(
-    const KnownBrdfSweepOptions& options) {
+StatusOr<SolverSweep> KnownBrdfSweep(const KnownBrdfSweepOptions& options) {
   const StatusOr<std::vector<SweepCase>> cases = ListSweepCases(options);
   if (!cases.ok()) return cases.status();
-  std::vector<SolverRun> runs;
-  for (const SweepCase& c : *cases) {
-    for (const std::string& prior : options.priors) {
-      NamedRow row(KnownBrdfColumns());
-      row.Set("material", c.material);
-      row.Set("map", c.map);
-      row.Set("geometry", GeometryName(options));
-      row.Set("prior", prior);
-      row.Set("method", options.method);
-      runs.push_back({c, "known_brdf_" + prior + ".yaml",
-                      ProblemText(options, c, prior),
-                      "known_brdf_" + prior + "_" + options.method, row});
-    }
-  }
-  return runs;
-}
-
-Status RunKnownBrdfSweep(const KnownBrdfSweepOptions& options) {
-  StatusOr<std::vector<SolverRun>> runs = ListKnownBrdfRuns(options);
-  if (!runs.ok()) return runs.status();
   SolverSweep sweep;
   sweep.title = "Illumination of a known material";
   sweep.columns = &KnownBrdfColumns();
   sweep.key_columns = kKeyColumns;
-  sweep.runs = *std::move(runs);
-  const SphereGallery gallery(options.num_threads);
-  sweep.finish = [&](const SolverRun& run, const std::string& folder,
-                     bool solved, NamedRow* row) {
-    return CompareMaps(options, gallery, run, folder, solved, row);
+  for (const SweepCase& c : *cases) {
+    for (const std::string& prior : options.priors) {
+      NamedRow row = CaseRow(options, c, KnownBrdfColumns());
+      row.Set("prior", prior);
+      row.Set("method", options.method);
+      sweep.runs.push_back({c, "known_brdf_" + prior + ".yaml",
+                            ProblemText(options, c, prior),
+                            "known_brdf_" + prior + "_" + options.method, row});
+    }
+  }
+  const auto gallery =
+      std::make_shared<const SphereGallery>(options.num_threads);
+  sweep.finish = [options, gallery](const SolverRun& run,
+                                    const std::string& folder, bool solved,
+                                    NamedRow* row) {
+    return CompareMaps(options, *gallery, run, folder, solved, row);
   };
-  return RunSolverSweep(options, sweep);
+  return sweep;
 }
 
 }  // namespace ibrdf

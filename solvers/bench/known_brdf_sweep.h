@@ -17,14 +17,10 @@ struct KnownBrdfSweepOptions : SolverSweepOptions {
 // Columns of its results.csv, in order; the first five name the run.
 const std::vector<std::string>& KnownBrdfColumns();
 
-// What options select, by material, map, then prior. Fails on a material or map
-// that is not there.
-StatusOr<std::vector<SolverRun>> ListKnownBrdfRuns(
-    const KnownBrdfSweepOptions& options);
-
-// See RunSolverSweep. A case's folder also receives known_brdf_PRIOR.yaml and
-// known_brdf_PRIOR_METHOD/. Estimated maps are compared as spheres too
-// (sphere_metrics.h), with the true map at the estimate's size.
-Status RunKnownBrdfSweep(const KnownBrdfSweepOptions& options);
+// For RunSolverSweep; runs by material, map, then prior. A case's folder also
+// receives known_brdf_PRIOR.yaml and known_brdf_PRIOR_METHOD/. Estimated maps
+// are compared as spheres too (sphere_metrics.h), with the true map at the
+// estimate's size. Fails on a material or map that is not there.
+StatusOr<SolverSweep> KnownBrdfSweep(const KnownBrdfSweepOptions& options);
 
 }  // namespace ibrdf

@@ -5,25 +5,18 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/bench/held_out_models.h"
-#include "solvers/bench/solver_sweep.h"
+#include "solvers/bench/model_sweep.h"
 
 namespace ibrdf {
 
-struct KnownLightSweepOptions : SolverSweepOptions, ModelOptions {
-  int lobes = 2;
-};
+struct KnownLightSweepOptions : ModelSweepOptions {};
 
 // Columns of its results.csv, in order; the first six name the run.
 const std::vector<std::string>& KnownLightColumns();
 
-// What options select, by material, then map. Fails on a material, map or model
-// that is not there.
-StatusOr<std::vector<SolverRun>> ListKnownLightRuns(
-    const KnownLightSweepOptions& options);
-
-// See RunSolverSweep. A case's folder also receives known_light.yaml and
-// known_light_LOBES_METHOD[_MODEL]/.
-Status RunKnownLightSweep(const KnownLightSweepOptions& options);
+// For RunSolverSweep. A case's folder also receives known_light.yaml and
+// known_light_LOBES_METHOD[_MODEL]/. Fails on a material, map or model that is
+// not there.
+StatusOr<SolverSweep> KnownLightSweep(const KnownLightSweepOptions& options);
 
 }  // namespace ibrdf

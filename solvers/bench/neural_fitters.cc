@@ -1,21 +1,14 @@
 #include "solvers/bench/neural_fitters.h"
 
-#include <chrono>
-
 #include "ibrdf/brdf/flow_brdf.h"
 #include "ibrdf/brdf/lobe_model.h"
+#include "solvers/bench/stopwatch.h"
 #include "solvers/trainer/flow_trainer.h"
 
 namespace ibrdf {
 namespace {
 
 constexpr int kFreeColumns = 4096;
-
-double Seconds() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 // The grid is not used.
 constexpr BrdfGridShape kNoGrid{2, 2, 1};
@@ -33,13 +26,13 @@ class FlowTableFitter final : public TableFitter {
 
   StatusOr<FittedTable> Fit(const MerlTable& table,
                             const TableFitContext& context) const override {
-    const double start = Seconds();
+    const Stopwatch watch;
     LobeTableFitOptions options = options_;
     options.num_threads = context.num_threads;
     const StatusOr<LobeTableFit> fit = fitter_->Fit(table, options);
     if (!fit.ok()) return fit.status();
     FittedTable result;
-    result.seconds = Seconds() - start;
+    result.seconds = watch.Seconds();
     const LobeModel lobes(fitter_->model(), options.lobes, kNoGrid,
                           context.num_threads);
     result.table = lobes.ToMerl(fit->parameters.data());
@@ -63,7 +56,7 @@ class FreeFlowTableFitter final : public TableFitter {
 
   StatusOr<FittedTable> Fit(const MerlTable& table,
                             const TableFitContext& context) const override {
-    const double start = Seconds();
+    const Stopwatch watch;
     const std::vector<int> columns = DrawColumns(kFreeColumns, context.seed);
     TrainingData data = ColumnsOfTable(columns);
     AddTable(table, columns, context.material, &data);
@@ -79,7 +72,7 @@ class FreeFlowTableFitter final : public TableFitter {
         TrainFlow(data, data.Slice(0, 64), training, nullptr, context.stop);
     if (!model.ok()) return model.status();
     FittedTable result;
-    result.seconds = Seconds() - start;
+    result.seconds = watch.Seconds();
     // Each channel is a lobe of its own colour.
     const LobeModel lobes(*model, 3, kNoGrid, context.num_threads);
     result.table = lobes.ToMerl(MaterialLobes(*model, 0).data());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "ibrdf/light/environment_map.h"
 #include "io/atomic_file.h"
@@ -105,9 +106,23 @@ Status RunOne(const SolverSweepOptions& options, const SolverSweep& sweep,
 
 }  // namespace
 
+NamedRow CaseRow(const SweepOptions& options, const SweepCase& c,
+                 const std::vector<std::string>& columns) {
+  NamedRow row(columns);
+  row.Set("material", c.material);
+  row.Set("map", c.map);
+  row.Set("geometry", GeometryName(options));
+  return row;
+}
+
 std::string SolverYaml(const SolverSweepOptions& options) {
   return "solver: {method: " + options.method +
          ", seconds: " + NumberCell(options.solver_seconds) + "}\n";
+}
+
+std::string JointTruthYaml(const SweepCase& c) {
+  return "truth: {brdf: " + Quoted(c.brdf_path) +
+         ", illumination: " + Quoted(c.map_path) + "}\n";
 }
 
 StatusOr<Image> TrueMap(const SweepOptions& options, const SweepCase& c) {
@@ -143,10 +158,12 @@ Status RunSolverSweep(const SolverSweepOptions& options,
   if (!present.ok()) return present.status();
   std::vector<bool> done;
   std::vector<SweepCase> open;
+  std::set<std::string> listed;
   for (const SolverRun& run : sweep.runs) {
     done.push_back(HoldsCase(*present, run.row.cells(), sweep.key_columns));
-    const bool listed = !open.empty() && open.back().name == run.of.name;
-    if (!done.back() && !listed) open.push_back(run.of);
+    if (!done.back() && listed.insert(run.of.name).second) {
+      open.push_back(run.of);
+    }
   }
   IBRDF_RETURN_IF_ERROR(MakeInputs(options, open));
   for (size_t i = 0; i < sweep.runs.size(); ++i) {
@@ -165,7 +182,8 @@ Status RunSolverSweep(const SolverSweepOptions& options,
   if (!rows.ok()) return rows.status();
   return WriteFileAtomically(
       options.out + "/results.md",
-      ResultsMarkdown("# " + sweep.title + "\n\n    " + options.command + "\n",
+      ResultsMarkdown("# " + sweep.title + "\n\n    " + options.command + "\n" +
+                          (sweep.summary ? "\n" + sweep.summary() : ""),
                       *sweep.columns, *rows));
 }
 

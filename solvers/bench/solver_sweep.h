@@ -38,10 +38,19 @@ struct SolverSweep {
   std::function<Status(const SolverRun& run, const std::string& folder,
                        bool solved, NamedRow* row)>
       finish;
+  // Markdown that results.md has above the table. May be empty.
+  std::function<std::string()> summary;
 };
+
+// A row of these columns with material, map and geometry set.
+NamedRow CaseRow(const SweepOptions& options, const SweepCase& c,
+                 const std::vector<std::string>& columns);
 
 // "solver: {...}" of a problem file.
 std::string SolverYaml(const SolverSweepOptions& options);
+
+// "truth: {...}" of a problem file with both unknown.
+std::string JointTruthYaml(const SweepCase& c);
 
 // The true map of a case at the estimate's size.
 StatusOr<Image> TrueMap(const SweepOptions& options, const SweepCase& c);

@@ -26,6 +26,12 @@ std::string Quoted(const std::string& text) {
   return nlohmann::json(text).dump();
 }
 
+SweepCase CaseOfSize(SweepCase c, int size) {
+  c.name += "_" + std::to_string(size) + "px";
+  c.size = size;
+  return c;
+}
+
 std::string CaseFolder(const SweepOptions& options, const SweepCase& c) {
   return fs::absolute(fs::path(options.out) / "cases" / c.name).string();
 }
@@ -33,7 +39,7 @@ std::string CaseFolder(const SweepOptions& options, const SweepCase& c) {
 Problem RenderProblem(const SweepOptions& options, const SweepCase& c) {
   Problem problem;
   problem.path = c.name;
-  problem.image.width = problem.image.height = options.size;
+  problem.image.width = problem.image.height = c.size;
   if (IsMesh(options)) {
     problem.geometry.kind = GeometryKind::kMesh;
     problem.geometry.file = options.geometry;
@@ -78,6 +84,7 @@ StatusOr<std::vector<SweepCase>> ListSweepCases(const SweepOptions& options) {
       SweepCase c;
       c.material = material;
       c.map = map;
+      c.size = options.size;
       c.name = material + "_" + map;
       if (IsMesh(options)) c.name += "_" + GeometryName(options);
       IBRDF_RETURN_IF_ERROR(CheckCaseName(c.name));

@@ -18,7 +18,7 @@ struct SweepOptions {
   std::vector<std::string> materials;  // empty: all of `data`, sorted
   std::vector<std::string> map_names;  // empty: all of `maps`, sorted
   std::string geometry = "sphere";     // or a mesh file
-  int size = 128;                      // of the square image, pixels
+  int size = 128;                      // of the cases' images
   double noise = 0.02;                 // log-normal, of the images
   int batch = 32;      // materials whose images are rendered together
   int only_index = 1;  // of only_count, from 1: every n-th case
@@ -37,11 +37,15 @@ struct SweepCase {
   std::string name;  // MATERIAL_MAP, for a mesh MATERIAL_MAP_MESH
   std::string material, map;
   std::string brdf_path, map_path;  // absolute
+  int size = 0;                     // of the square image, pixels
 };
 
 // The cases that options select, by material, then map. Fails on a material or
 // map that is not there.
 StatusOr<std::vector<SweepCase>> ListSweepCases(const SweepOptions& options);
+
+// The case with an image of another size, in a folder of its own: NAME_SIZEpx.
+SweepCase CaseOfSize(SweepCase c, int size);
 
 // "sphere" or the mesh's name.
 std::string GeometryName(const SweepOptions& options);

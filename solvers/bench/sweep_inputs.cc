@@ -26,22 +26,6 @@ constexpr size_t kMaxMaps = 16;
 // Points between two looks at options.stop: some seconds.
 constexpr size_t kPointsPerStep = 1024;
 
-std::string Settings(const SweepOptions& options, const SweepCase& c) {
-  const nlohmann::ordered_json settings = {
-      {"brdf", c.brdf_path},
-      {"illumination", c.map_path},
-      {"geometry", options.geometry == "sphere"
-                       ? options.geometry
-                       : fs::absolute(options.geometry).string()},
-      {"width", options.size},
-      {"height", options.size},
-      {"quality", "reference"},
-      {"samples_per_side", 2},
-      {"noise", options.noise},
-      {"seed", options.seed}};
-  return settings.dump(2) + "\n";
-}
-
 std::string SettingsPath(const SweepOptions& options, const SweepCase& c) {
   return CaseFolder(options, c) + "/input.json";
 }
@@ -60,7 +44,8 @@ Status WriteInput(const SweepOptions& options, const SweepCase& c,
     picture.rgb[i] = mask.inside[i / 3] != 0 ? 255 : 0;
   }
   IBRDF_RETURN_IF_ERROR(WritePng(picture, folder + "/mask.png"));
-  return WriteFileAtomically(SettingsPath(options, c), Settings(options, c));
+  return WriteFileAtomically(SettingsPath(options, c),
+                             InputSettings(options, c));
 }
 
 template <typename T>
@@ -101,9 +86,9 @@ Status RenderTogether(const SweepOptions& options, const ViewPoints& view,
   for (const SweepCase& c : cases) {
     const size_t k = IndexOf(materials, c.brdf_path) * maps.size() +
                      IndexOf(map_names, c.map_path);
-    IBRDF_RETURN_IF_ERROR(WriteInput(
-        options, c, view.mask,
-        PixelMeans(view.points, E[k].data(), options.size, options.size)));
+    IBRDF_RETURN_IF_ERROR(
+        WriteInput(options, c, view.mask,
+                   PixelMeans(view.points, E[k].data(), c.size, c.size)));
   }
   return OkStatus();
 }
@@ -153,26 +138,9 @@ Status RenderBatch(const SweepOptions& options, const ViewPoints& view,
   return OkStatus();
 }
 
-}  // namespace
-
-bool HasInput(const SweepOptions& options, const SweepCase& c) {
-  const std::string folder = CaseFolder(options, c);
-  const std::string path = SettingsPath(options, c);
-  for (const std::string& file :
-       {path, folder + "/input.exr", folder + "/mask.png"}) {
-    if (!fs::is_regular_file(file)) return false;
-  }
-  const StatusOr<std::string> text = ReadFile(path, kMaxJsonBytes);
-  return text.ok() && *text == Settings(options, c);
-}
-
-Status MakeInputs(const SweepOptions& options,
-                  const std::vector<SweepCase>& cases) {
-  std::vector<SweepCase> missing;
-  for (const SweepCase& c : cases) {
-    if (!HasInput(options, c)) missing.push_back(c);
-  }
-  if (missing.empty()) return OkStatus();
+// Cases of one size.
+Status MakeMissing(const SweepOptions& options,
+                   const std::vector<SweepCase>& missing) {
   const StatusOr<ViewPoints> view =
       FindViewPoints(RenderProblem(options, missing.front()));
   if (!view.ok()) return view.status();
@@ -196,6 +164,47 @@ Status MakeInputs(const SweepOptions& options,
     }
     batch.clear();
     materials.clear();
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
+std::string InputSettings(const SweepOptions& options, const SweepCase& c) {
+  const nlohmann::ordered_json settings = {
+      {"brdf", c.brdf_path},
+      {"illumination", c.map_path},
+      {"geometry", options.geometry == "sphere"
+                       ? options.geometry
+                       : fs::absolute(options.geometry).string()},
+      {"width", c.size},
+      {"height", c.size},
+      {"quality", "reference"},
+      {"samples_per_side", 2},
+      {"noise", options.noise},
+      {"seed", options.seed}};
+  return settings.dump(2) + "\n";
+}
+
+bool HasInput(const SweepOptions& options, const SweepCase& c) {
+  const std::string folder = CaseFolder(options, c);
+  const std::string path = SettingsPath(options, c);
+  for (const std::string& file :
+       {path, folder + "/input.exr", folder + "/mask.png"}) {
+    if (!fs::is_regular_file(file)) return false;
+  }
+  const StatusOr<std::string> text = ReadFile(path, kMaxJsonBytes);
+  return text.ok() && *text == InputSettings(options, c);
+}
+
+Status MakeInputs(const SweepOptions& options,
+                  const std::vector<SweepCase>& cases) {
+  std::map<int, std::vector<SweepCase>> missing;  // by size
+  for (const SweepCase& c : cases) {
+    if (!HasInput(options, c)) missing[c.size].push_back(c);
+  }
+  for (const auto& [size, of_size] : missing) {
+    IBRDF_RETURN_IF_ERROR(MakeMissing(options, of_size));
   }
   return OkStatus();
 }

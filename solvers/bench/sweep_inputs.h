@@ -7,6 +7,9 @@
 
 namespace ibrdf {
 
+// What the case's input is made from, as its input.json has it.
+std::string InputSettings(const SweepOptions& options, const SweepCase& c);
+
 // Whether the case's folder holds an input made with these settings.
 bool HasInput(const SweepOptions& options, const SweepCase& c);
 

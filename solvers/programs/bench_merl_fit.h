@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "io/model_file.h"
 #include "solvers/bench/baseline_fitters.h"
 #include "solvers/bench/merl_fit_sweep.h"
 #include "solvers/bench/neural_fitters.h"
+#include "solvers/open_model.h"
 #include "solvers/programs/bench_session.h"
 
 namespace ibrdf {
@@ -33,14 +33,9 @@ struct NeuralFitFlags {
         methods.empty() ||
         std::find(methods.begin(), methods.end(), "flow") != methods.end();
     if (!wanted) return OkStatus();
-    const StatusOr<std::string> path = FindModel(model);
-    if (!path.ok()) return path.status();
-    const StatusOr<NeuralBrdfModel> read = ReadModel(*path);
-    if (!read.ok()) return read.status();
-    if (read->num_codes() == 0) {
-      return InvalidInput(*path + ": names", "expected an embedding");
-    }
-    const auto fitter = std::make_shared<const LobeTableFitter>(*read);
+    const StatusOr<OpenedModel> opened = OpenModel(model);
+    if (!opened.ok()) return opened.status();
+    const auto fitter = std::make_shared<const LobeTableFitter>(opened->model);
     for (const int count : lobes) {
       LobeTableFitOptions options = fit;
       options.lobes = count;

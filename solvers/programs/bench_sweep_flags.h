@@ -64,8 +64,8 @@ inline void AddSweepFlags(CLI::App* app, SweepOptions* options,
 
 inline void AddSolverFlags(CLI::App* app, SolverSweepOptions* options) {
   app->add_option("--method", options->method, "of the solver")
-      ->check(CLI::IsMember({"auto", "alternating", "gauss_newton",
-                             "lbfgs", "adam", "trust_region"}))
+      ->check(CLI::IsMember({"auto", "alternating", "gauss_newton", "lbfgs",
+                             "adam", "trust_region"}))
       ->capture_default_str();
   app->add_option("--solver-seconds", options->solver_seconds,
                   "budget of the solver in each case, seconds")
@@ -97,9 +97,8 @@ inline void FindSolver(SolverSweepOptions* options) {
 }
 
 // One line a run: case, table, map, folder of the estimate.
-inline Status PrintRuns(const StatusOr<std::vector<SolverRun>>& runs) {
-  if (!runs.ok()) return runs.status();
-  for (const SolverRun& run : *runs) {
+inline Status PrintRuns(const std::vector<SolverRun>& runs) {
+  for (const SolverRun& run : runs) {
     std::printf("%s\t%s\t%s\t%s\n", run.of.name.c_str(),
                 run.of.brdf_path.c_str(), run.of.map_path.c_str(),
                 run.estimate.c_str());

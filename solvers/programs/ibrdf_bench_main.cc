@@ -7,12 +7,10 @@
 
 #include "solvers/programs/bench_albedo.h"
 #include "solvers/programs/bench_embedding.h"
-#include "solvers/programs/bench_joint.h"
-#include "solvers/programs/bench_known_brdf.h"
-#include "solvers/programs/bench_known_light.h"
 #include "solvers/programs/bench_merl_fit.h"
 #include "solvers/programs/bench_render_inputs.h"
 #include "solvers/programs/bench_session.h"
+#include "solvers/programs/bench_solver_sweeps.h"
 
 namespace ibrdf {
 namespace {
@@ -37,9 +35,7 @@ int Main(int argc, char** argv) {
   BenchSession session;
   AddCommonFlags(&app, &session.common);
   app.require_subcommand(0, 1);
-  AddJointExperiment(&app, &session);
-  AddKnownLightExperiment(&app, &session);
-  AddKnownBrdfExperiment(&app, &session);
+  AddSolverExperiments(&app, &session);
   AddRenderInputsExperiment(&app, &session);
   AddMerlFitExperiment(&app, &session);
   AddAlbedoExperiment(&app, &session);

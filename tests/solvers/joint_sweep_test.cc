@@ -13,6 +13,7 @@ namespace {
 class JointSweepTest : public testing::SweepTest {
  protected:
   JointSweepTest() { Apply(&options_); }
+  Status Run() const { return SweepTest::Run(options_, JointSweep(options_)); }
   std::vector<ResultsRow> Rows() const {
     return SweepTest::Rows(JointColumns());
   }
@@ -25,7 +26,7 @@ class JointSweepTest : public testing::SweepTest {
 
 TEST_F(JointSweepTest, WritesRowsAndResumes) {
   options_.map_names = {"b"};
-  ASSERT_TRUE(RunJointSweep(options_).ok());
+  ASSERT_TRUE(Run().ok());
   ASSERT_EQ(1u, Rows().size());
   const ResultsRow row = Rows()[0];
   EXPECT_EQ("paint", Cell(row, "material"));
@@ -45,10 +46,10 @@ TEST_F(JointSweepTest, WritesRowsAndResumes) {
   EXPECT_NE(std::string::npos,
             ReadBytes(options_.out + "/results.md").find("the command"));
   // A case in the table is not run again; one that a kill cut is.
-  ASSERT_TRUE(RunJointSweep(options_).ok());
+  ASSERT_TRUE(Run().ok());
   EXPECT_EQ(1u, Calls());
   CutResults();
-  ASSERT_TRUE(RunJointSweep(options_).ok());
+  ASSERT_TRUE(Run().ok());
   EXPECT_EQ(2u, Calls());
   EXPECT_EQ(1u, Rows().size());
 }
@@ -56,46 +57,43 @@ TEST_F(JointSweepTest, WritesRowsAndResumes) {
 TEST_F(JointSweepTest, FailuresGoToStatusAndInterruptsEndTheSweep) {
   options_.map_names = {"a"};
   WriteSolver("{", 3);
-  ASSERT_TRUE(RunJointSweep(options_).ok());
+  ASSERT_TRUE(Run().ok());
   EXPECT_EQ("no_result", Cell(Rows()[0], "status"));
   WriteSolver("{}", 2);
   options_.map_names = {"b"};
-  ASSERT_TRUE(RunJointSweep(options_).ok());
+  ASSERT_TRUE(Run().ok());
   EXPECT_EQ("bad_input", Cell(Rows()[1], "status"));
   WriteSolver("{}", 130);
   options_.map_names = {"c"};
-  EXPECT_EQ(StatusCode::kInterrupted, RunJointSweep(options_).code());
+  EXPECT_EQ(StatusCode::kInterrupted, Run().code());
   EXPECT_EQ(2u, Rows().size());
 }
 
 TEST_F(JointSweepTest, ListsCases) {
-  EXPECT_EQ(3u, ListJointRuns(options_).value().size());
+  EXPECT_EQ(3u, JointSweep(options_).value().runs.size());
   options_.only_index = 2;
   options_.only_count = 2;
-  ASSERT_EQ(1u, ListJointRuns(options_).value().size());
-  EXPECT_EQ("paint_b", ListJointRuns(options_).value()[0].of.name);
+  ASSERT_EQ(1u, JointSweep(options_).value().runs.size());
+  EXPECT_EQ("paint_b", JointSweep(options_).value().runs[0].of.name);
   options_.materials = {"gold"};
   EXPECT_NE(std::string::npos,
-            ListJointRuns(options_).status().message().find("gold.binary"));
+            JointSweep(options_).status().message().find("gold.binary"));
 }
 
 TEST_F(JointSweepTest, MalformedFoldersAreNamed) {
   options_.map_names = {"a"};
   WriteBytes(dir_.File("data/paint.binary"), "too short");
-  EXPECT_NE(std::string::npos,
-            RunJointSweep(options_).message().find("paint.binary"));
+  EXPECT_NE(std::string::npos, Run().message().find("paint.binary"));
   EXPECT_EQ(0u, Calls());
   options_.maps = dir_.File("nowhere");
   options_.map_names = {};
-  EXPECT_NE(std::string::npos,
-            RunJointSweep(options_).message().find("nowhere"));
+  EXPECT_NE(std::string::npos, Run().message().find("nowhere"));
   options_.maps = dir_.File("maps");
   options_.solver_program = dir_.File("none");
-  EXPECT_EQ(StatusCode::kInvalidInput, RunJointSweep(options_).code());
+  EXPECT_EQ(StatusCode::kInvalidInput, Run().code());
   options_.solver_program = dir_.File("solver");
   options_.models = dir_.File("data");  // holds none
-  EXPECT_NE(std::string::npos,
-            RunJointSweep(options_).message().find(".ibrdf"));
+  EXPECT_NE(std::string::npos, Run().message().find(".ibrdf"));
 }
 
 TEST(RunChild, SignalsAndMissingPrograms) {

@@ -26,7 +26,7 @@ TEST_F(KnownSweepsTest, KnownLightSolvesWithModelsThatHaveNotSeenTheMaterial) {
   Apply(&options);
   options.models = dir_.File("models");
   options.map_names = {"a", "b"};
-  ASSERT_TRUE(RunKnownLightSweep(options).ok());
+  ASSERT_TRUE(Run(options, KnownLightSweep(options)).ok());
   const auto& columns = KnownLightColumns();
   ASSERT_EQ(2u, Rows(columns).size());
   const ResultsRow row = Rows(columns)[1];
@@ -41,14 +41,14 @@ TEST_F(KnownSweepsTest, KnownLightSolvesWithModelsThatHaveNotSeenTheMaterial) {
   EXPECT_NE(std::string::npos, yaml.find("known: "));
 
   CutResults();
-  ASSERT_TRUE(RunKnownLightSweep(options).ok());
+  ASSERT_TRUE(Run(options, KnownLightSweep(options)).ok());
   EXPECT_EQ(3u, Calls());
   EXPECT_EQ(2u, Rows(columns).size());
   // Another model is another run.
   options.models.clear();
-  ASSERT_TRUE(RunKnownLightSweep(options).ok());
+  ASSERT_TRUE(Run(options, KnownLightSweep(options)).ok());
   EXPECT_EQ(5u, Calls());
-  ASSERT_TRUE(RunKnownLightSweep(options).ok());
+  ASSERT_TRUE(Run(options, KnownLightSweep(options)).ok());
   EXPECT_EQ(5u, Calls());
 }
 
@@ -60,7 +60,7 @@ TEST_F(KnownSweepsTest, KnownBrdfComparesPriorsAndSpheres) {
   KnownBrdfSweepOptions options;
   Apply(&options);
   options.map_names = {"a"};
-  ASSERT_TRUE(RunKnownBrdfSweep(options).ok());
+  ASSERT_TRUE(Run(options, KnownBrdfSweep(options)).ok());
   const auto& columns = KnownBrdfColumns();
   const std::vector<ResultsRow> rows = Rows(columns);
   ASSERT_EQ(2u, rows.size());
@@ -83,7 +83,7 @@ TEST_F(KnownSweepsTest, KnownBrdfComparesPriorsAndSpheres) {
   // A kill after the first prior: only the second runs again.
   const std::string csv = ReadBytes(Results());
   WriteBytes(Results(), csv.substr(0, csv.rfind("paint") + 4));
-  ASSERT_TRUE(RunKnownBrdfSweep(options).ok());
+  ASSERT_TRUE(Run(options, KnownBrdfSweep(options)).ok());
   EXPECT_EQ(3u, Calls());
   EXPECT_EQ(2u, Rows(columns).size());
 }
@@ -94,7 +94,7 @@ TEST_F(KnownSweepsTest, AnEstimateThatIsNotThereLeavesCellsEmpty) {
   Apply(&options);
   options.map_names = {"a"};
   options.priors = {"none"};
-  ASSERT_TRUE(RunKnownBrdfSweep(options).ok());
+  ASSERT_TRUE(Run(options, KnownBrdfSweep(options)).ok());
   const auto& columns = KnownBrdfColumns();
   const ResultsRow row = Rows(columns).at(0);
   EXPECT_EQ("internal_error", Cell(columns, row, "status"));
@@ -105,9 +105,9 @@ TEST_F(KnownSweepsTest, AnEstimateThatIsNotThereLeavesCellsEmpty) {
 TEST_F(KnownSweepsTest, ListRuns) {
   KnownBrdfSweepOptions brdf;
   Apply(&brdf);
-  EXPECT_EQ(6u, ListKnownBrdfRuns(brdf).value().size());
+  EXPECT_EQ(6u, KnownBrdfSweep(brdf).value().runs.size());
   brdf.only_index = brdf.only_count = 3;
-  const std::vector<SolverRun> runs = ListKnownBrdfRuns(brdf).value();
+  const std::vector<SolverRun> runs = KnownBrdfSweep(brdf).value().runs;
   ASSERT_EQ(2u, runs.size());
   EXPECT_EQ("paint_c", runs[1].of.name);
   EXPECT_EQ("known_brdf_none_auto", runs[1].estimate);
@@ -115,7 +115,7 @@ TEST_F(KnownSweepsTest, ListRuns) {
   Apply(&light);
   light.materials = {"gold"};
   EXPECT_NE(std::string::npos,
-            ListKnownLightRuns(light).status().message().find("gold.binary"));
+            KnownLightSweep(light).status().message().find("gold.binary"));
   EXPECT_EQ(0u, Calls());
 }
 

@@ -71,6 +71,11 @@ class SweepTest : public ::testing::Test {
     options->command = "the command";
   }
 
+  static Status Run(const SolverSweepOptions& options,
+                    const StatusOr<SolverSweep>& sweep) {
+    return sweep.ok() ? RunSolverSweep(options, *sweep) : sweep.status();
+  }
+
   size_t Calls() const {
     return std::filesystem::exists(dir_.File("calls"))
                ? ReadBytes(dir_.File("calls")).size() / 5

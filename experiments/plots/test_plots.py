@@ -1,0 +1,192 @@
+#!/usr/bin/env python3
+"""Tests of the plots: fronts, percentiles, tables, and pictures of made-up
+tables. Exits with 77 without matplotlib, after the rest passed."""
+import csv
+import importlib.util
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import results
+
+
+def load(name):
+    """experiments/NAME/plot.py as a module."""
+    spec = importlib.util.spec_from_file_location(
+        name, HERE.parent / name / "plot.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+pareto, joint_grid = load("pareto"), load("joint_grid")
+HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+def write(path, rows):
+    columns = list(dict.fromkeys(c for row in rows for c in row))
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def pareto_row(material, setting, seconds, error, **cells):
+    row = dict(material=material, map="m", geometry="sphere", setting=setting,
+               estimator="marginal", method="auto", budget_seconds="60",
+               size="128", map_width="128", lobes="2", prior="unet",
+               seconds=seconds, misfit=error, status="ok",
+               brdf_log_rmse_aligned=error,
+               illumination_relative_log_rmse_aligned=error)
+    row.update(cells)
+    return {name: str(value) for name, value in row.items()}
+
+
+def joint_row(material, error, **cells):
+    row = dict(material=material, map="m", geometry="sphere", lobes=2,
+               method="auto", model="fold0/m.ibrdf", misfit=0.02, status="ok",
+               brdf_log_rmse_aligned=error,
+               illumination_relative_log_rmse_aligned=error / 10,
+               cook_torrance_brdf_log_rmse_aligned=0.5,
+               constant_map_relative_log_rmse_aligned=0.1)
+    row.update(cells)
+    return {name: str(value) for name, value in row.items()}
+
+
+class Results(unittest.TestCase):
+    def test_front(self):
+        points = [(3, 1), (1, 5), (2, 6), (2, 3), (4, 1), (5, 0.5)]
+        # (2, 6) and (4, 1) are beaten; by cost.
+        self.assertEqual([1, 3, 0, 5], results.front(points))
+        self.assertEqual([1], results.front([(1, 2), (1, 1)]))
+        self.assertEqual([0], results.front([(1, 1), (1, 1)]))
+
+    def test_front_is_what_no_point_beats(self):
+        points = [((i * 37) % 23, (i * 53) % 19) for i in range(40)]
+        kept = {points[i] for i in results.front(points)}
+        slow = {p for p in points
+                if not any(q != p and q[0] <= p[0] and q[1] <= p[1]
+                           for q in points)}
+        self.assertEqual(slow, kept)
+
+    def test_percentile(self):
+        self.assertEqual(2.5, results.median([4, 1, 3, 2]))
+        self.assertEqual(7, results.percentile([7], 0.9))
+        self.assertAlmostEqual(9.1, results.percentile(range(1, 11), 0.9))
+        self.assertEqual(10, results.percentile(range(1, 11), 1.0))
+
+    def test_tables(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "results.csv"
+            write(path, [{"a": "1", "status": "ok"},
+                         {"a": "", "status": "no_improvement"},
+                         {"a": "3", "status": "signal_9"}])
+            rows = results.read_rows(path, ["a"])
+            self.assertEqual([1.0], results.numbers(rows, "a"))
+            self.assertEqual(2, len(rows))
+            with self.assertRaisesRegex(ValueError, "results.csv.*column b"):
+                results.read_rows(path, ["a", "b"])
+            write(path, [{"a": "1", "status": "signal_9"}])
+            with self.assertRaisesRegex(ValueError, "no case"):
+                results.read_rows(path, ["a"])
+
+
+class Pareto(unittest.TestCase):
+    def test_medians_are_over_shared_cases(self):
+        rows = [pareto_row("x", "default", 10, 1.0),
+                pareto_row("y", "default", 20, 3.0),
+                pareto_row("z", "default", 90, 99.0),
+                pareto_row("x", "lobes-1", 4, 2.0, lobes=1),
+                pareto_row("y", "lobes-1", 6, 4.0, lobes=1)]
+        points, cases = pareto.settings(rows)
+        self.assertEqual(2, cases)
+        self.assertEqual(["default", "lobes-1"], [name for name, _ in points])
+        self.assertEqual(15.0, points[0][1]["seconds"])
+        self.assertEqual(2.0, points[0][1]["misfit"])
+        self.assertEqual(3.0, points[1][1]["misfit"])
+        rows[3]["misfit"] = ""
+        self.assertIsNone(pareto.settings(rows)[0][1][1]["misfit"])
+
+    def test_refusals(self):
+        with self.assertRaisesRegex(ValueError, "every setting"):
+            pareto.settings([pareto_row("x", "default", 1, 1),
+                             pareto_row("y", "lobes-1", 1, 1, lobes=1)])
+        with self.assertRaisesRegex(ValueError, "default has rows"):
+            pareto.settings([pareto_row("x", "default", 1, 1),
+                             pareto_row("x", "default", 1, 1, lobes=3)])
+
+    def test_list_of_points(self):
+        points, _ = pareto.settings(
+            [pareto_row("x", "default", 10, 1.0),
+             pareto_row("x", "lobes-1", 4, 2.0, lobes=1),
+             pareto_row("x", "adam", 100, 1.5, method="adam")])
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "front.csv"
+            pareto.write_front(points, path)
+            with open(path, newline="") as file:
+                rows = list(csv.DictReader(file))
+        self.assertEqual(["lobes-1", "default", "adam"],
+                         [row["setting"] for row in rows])
+        self.assertEqual(["1", "1", "0"],
+                         [row["front_misfit"] for row in rows])
+
+    @unittest.skipUnless(HAS_MATPLOTLIB, "no matplotlib")
+    def test_picture(self):
+        points, cases = pareto.settings(
+            [pareto_row("x", "default", 10, 1.0),
+             pareto_row("x", "seconds-5", 5, 1.5, budget_seconds=5),
+             pareto_row("x", "adam", 100, 0.9, method="adam", misfit="")])
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "p.png"
+            pareto.draw(points, cases, path)
+            self.assertTrue(path.read_bytes().startswith(PNG))
+
+
+class JointGrid(unittest.TestCase):
+    def test_worst_and_wins(self):
+        rows = [joint_row("a", 0.4), joint_row("b", 0.9), joint_row("c", 0.6),
+                joint_row("d", 0.1, brdf_log_rmse_aligned="")]
+        self.assertEqual(["b", "c"],
+                         [r["material"] for r in joint_grid.worst(rows, 2)])
+        self.assertEqual((1, 3), joint_grid.better(
+            rows, joint_grid.BRDF, "cook_torrance_brdf_log_rmse_aligned"))
+
+    def test_folders_are_those_of_the_sweep(self):
+        self.assertEqual(
+            Path("c/a_m/estimate_2_auto_fold0-m.ibrdf/overview.png"),
+            joint_grid.overview(joint_row("a", 1), "c"))
+        self.assertEqual(
+            Path("c/a_m_bunny/estimate_2_auto/overview.png"),
+            joint_grid.overview(
+                joint_row("a", 1, geometry="bunny", model="default"), "c"))
+
+    @unittest.skipUnless(HAS_MATPLOTLIB, "no matplotlib")
+    def test_pictures(self):
+        rows = [joint_row(f"m{i}", 0.1 * i) for i in range(1, 8)]
+        with tempfile.TemporaryDirectory() as folder:
+            import numpy
+            from matplotlib import image
+            overview = joint_grid.overview(rows[6], folder)
+            overview.parent.mkdir(parents=True)
+            image.imsave(overview, numpy.zeros((9, 7, 3)))
+            for draw, name in (
+                    (lambda out: joint_grid.draw_errors(rows, out), "e.png"),
+                    (lambda out: joint_grid.draw_worst(rows, folder, out),
+                     "w.png")):
+                path = Path(folder) / name
+                draw(path)
+                self.assertTrue(path.read_bytes().startswith(PNG))
+            halves = joint_grid.halved(numpy.arange(90.0).reshape(6, 5, 3))
+            self.assertEqual((3, 2, 3), halves.shape)
+            self.assertEqual((0 + 3 + 15 + 18) / 4, halves[0, 0, 0])
+
+
+if __name__ == "__main__":
+    program = unittest.main(exit=False)
+    if not program.result.wasSuccessful():
+        sys.exit(1)
+    sys.exit(0 if HAS_MATPLOTLIB else 77)

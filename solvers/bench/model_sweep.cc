@@ -1,0 +1,48 @@
+#include "solvers/bench/model_sweep.h"
+
+namespace ibrdf {
+
+std::vector<std::string> ModelSweepColumns(
+    const std::vector<std::string>& rest) {
+  std::vector<std::string> columns = {"material", "map",    "geometry",
+                                      "lobes",    "method", "model"};
+  columns.insert(columns.end(), rest.begin(), rest.end());
+  return columns;
+}
+
+Status ForEachModelCase(
+    const ModelSweepOptions& options,
+    const std::function<void(const SweepCase& c, const ChosenModel& model)>&
+        add) {
+  const StatusOr<std::vector<SweepCase>> cases = ListSweepCases(options);
+  if (!cases.ok()) return cases.status();
+  const StatusOr<HeldOutModels> models = HeldOutModels::Open(options);
+  if (!models.ok()) return models.status();
+  for (const SweepCase& c : *cases) {
+    const StatusOr<ChosenModel> model = models->For(c.material);
+    if (!model.ok()) return model.status();
+    add(c, *model);
+  }
+  return OkStatus();
+}
+
+Status AddModelRuns(const ModelSweepOptions& options, const std::string& name,
+                    const std::string& estimate,
+                    const std::function<std::string(
+                        const SweepCase& c, const ChosenModel& model)>& problem,
+                    SolverSweep* sweep) {
+  const std::string lobes = std::to_string(options.lobes);
+  return ForEachModelCase(
+      options, [&](const SweepCase& c, const ChosenModel& model) {
+        NamedRow row = CaseRow(options, c, *sweep->columns);
+        row.Set("lobes", lobes);
+        row.Set("method", options.method);
+        row.Set("model", model.label);
+        sweep->runs.push_back({c, name + ".yaml", problem(c, model),
+                               estimate + "_" + lobes + "_" + options.method +
+                                   model.folder_suffix(),
+                               row});
+      });
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,238 @@
+#include "solvers/bench/pareto_sweep.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/metrics/illumination_metrics.h"
+#include "io/image_file.h"
+#include "solvers/bench/pareto_settings.h"
+#include "solvers/bench/solver_trace.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr char kDefault[] = "default";
+constexpr char kReference[] = "adam";
+constexpr int kKeyColumns = 12;
+
+struct NamedPoint {
+  std::string name;
+  ParetoPoint point;
+};
+
+StatusOr<std::vector<NamedPoint>> ChoosePoints(
+    const ParetoSweepOptions& options) {
+  ParetoPoint base;
+  base.method = options.method;
+  base.seconds = options.solver_seconds;
+  base.size = options.size;
+  base.map_width = kSweepMapWidth;
+  base.lobes = options.lobes;
+  const std::vector<std::string>& names = options.settings;
+  const auto wanted = [&](const std::string& name) {
+    return names.empty() ||
+           std::find(names.begin(), names.end(), name) != names.end();
+  };
+  std::vector<NamedPoint> points;
+  size_t known = 0;
+  for (const ParetoSetting& setting : ParetoSettings()) {
+    if (!wanted(setting.name)) continue;
+    known += std::count(names.begin(), names.end(), setting.name);
+    ParetoPoint point = base;
+    setting.change(&point);
+    const bool again = !points.empty() && wanted(kDefault) && point == base;
+    if (!again) points.push_back({setting.name, point});
+  }
+  if (known == names.size()) return points;
+  for (const std::string& name : names) {
+    const auto& all = ParetoSettings();
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const auto& s) { return name == s.name; })) {
+      return InvalidInput("command line: --settings",
+                          name + ": expected some of " + ParetoSettingNames());
+    }
+  }
+  return points;
+}
+
+std::string ProblemText(const ParetoSweepOptions& options, const SweepCase& c,
+                        const ChosenModel& model, const ParetoPoint& p) {
+  return "problem: joint\n" + ImageYaml(options) +
+         "reflectance: " + ReflectanceYaml(model, p.lobes) +
+         "illumination: {width: " + std::to_string(p.map_width) +
+         ", height: " + std::to_string(p.map_width / 2) +
+         ", prior: " + p.prior + "}\nsolver: {estimator: " + p.estimator +
+         ", method: " + p.method + ", seconds: " + NumberCell(p.seconds) +
+         ", tolerance: " + NumberCell(p.tolerance) +
+         ", max_iterations: " + std::to_string(p.max_iterations) + "}\n" +
+         JointTruthYaml(c);
+}
+
+// Of one setting under any other options: its results are not overwritten.
+std::string EstimateName(const NamedPoint& named, const ChosenModel& model) {
+  const ParetoPoint& p = named.point;
+  return "pareto_" + named.name + "_" + p.estimator + "_" + p.method + "_" +
+         NumberCell(p.seconds) + "s_" + std::to_string(p.map_width) + "_" +
+         std::to_string(p.lobes) + "_" + p.prior + model.folder_suffix();
+}
+
+NamedRow KeyRow(const ParetoSweepOptions& options, const SweepCase& c,
+                const ChosenModel& model, const NamedPoint& named) {
+  const ParetoPoint& p = named.point;
+  NamedRow row = CaseRow(options, c, ParetoColumns());
+  row.Set("setting", named.name);
+  row.Set("model", model.label);
+  row.Set("estimator", p.estimator);
+  row.Set("method", p.method);
+  row.Set("budget_seconds", NumberCell(p.seconds));
+  row.Set("size", std::to_string(p.size));
+  row.Set("map_width", std::to_string(p.map_width));
+  row.Set("lobes", std::to_string(p.lobes));
+  row.Set("prior", p.prior);
+  return row;
+}
+
+std::string EstimateFile(const SweepOptions& options, const SolverRun& run,
+                         const std::string& file) {
+  return CaseFolder(options, run.of) + "/" + run.estimate + "/" + file;
+}
+
+// Rounds, and the error of a map that is not of the size of the others.
+Status Finish(const ParetoSweepOptions& options, const SolverRun& run,
+              bool solved, NamedRow* row) {
+  if (!solved) return OkStatus();
+  const StatusOr<std::vector<TraceLine>> trace =
+      ReadTrace(EstimateFile(options, run, "result.json"));
+  if (!trace.ok()) return trace.status();
+  row->Set("rounds", std::to_string(CountRounds(*trace)));
+  const StatusOr<Image> map =
+      ReadImage(EstimateFile(options, run, "illumination.exr"));
+  if (!map.ok()) return map.status();
+  if (map->width == kSweepMapWidth) return OkStatus();
+  const StatusOr<Image> truth = TrueMap(options, run.of);
+  if (!truth.ok()) return truth.status();
+  const StatusOr<IlluminationMetrics> metrics = CompareIlluminations(
+      ResizeMap(*map, kSweepMapHeight, kSweepMapWidth), *truth);
+  if (!metrics.ok()) return metrics.status();
+  row->Set("illumination_relative_log_rmse",
+           NumberCell(metrics->relative_log_rmse));
+  row->Set("illumination_relative_log_rmse_aligned",
+           NumberCell(metrics->relative_log_rmse_aligned));
+  return OkStatus();
+}
+
+std::string Cells(const std::vector<std::string>& cells) {
+  std::string line = "|";
+  for (const std::string& cell : cells) line += " " + cell + " |";
+  return line + "\n";
+}
+
+std::string Short(double value, const char* format) {
+  char text[32];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+// How long the default takes to the reference's last misfit.
+std::string MisfitTimeTable(const ParetoSweepOptions& options,
+                            const std::vector<SolverRun>& defaults,
+                            const std::vector<SolverRun>& references) {
+  std::string lines;
+  for (const SolverRun& reference : references) {
+    const auto of_case = std::find_if(
+        defaults.begin(), defaults.end(),
+        [&](const SolverRun& run) { return run.of.name == reference.of.name; });
+    if (of_case == defaults.end()) continue;
+    const auto slow =
+        ReadTrace(EstimateFile(options, reference, "result.json"));
+    const auto fast = ReadTrace(EstimateFile(options, *of_case, "result.json"));
+    if (!slow.ok() || !fast.ok()) continue;
+    const TraceLine& end = slow->back();
+    const std::optional<double> at = SecondsToMisfit(*fast, end.misfit);
+    lines += Cells({reference.of.material, reference.of.map,
+                    std::to_string(CountRounds(*slow)),
+                    Short(end.misfit, "%.4f"), Short(end.seconds, "%.1f"),
+                    at.has_value() ? Short(*at, "%.1f") : "not reached",
+                    at.has_value() ? Short(end.seconds / *at, "%.1f") : "",
+                    Short(fast->back().misfit, "%.4f"),
+                    Short(fast->back().seconds, "%.1f")});
+  }
+  if (lines.empty()) return "";
+  return "## Time to Adam's last misfit\n\n" +
+         Cells({"material", "map", "Adam: rounds", "misfit", "seconds",
+                "default: seconds to it", "ratio", "default: last misfit",
+                "seconds"}) +
+         "|---|---|---|---|---|---|---|---|---|\n" + lines;
+}
+
+}  // namespace
+
+std::string ParetoSettingNames() {
+  std::string names;
+  for (const ParetoSetting& setting : ParetoSettings()) {
+    names += (names.empty() ? "" : ", ") + std::string(setting.name);
+  }
+  return names;
+}
+
+const std::vector<std::string>& ParetoColumns() {
+  static const std::vector<std::string> columns = {
+      "material",
+      "map",
+      "geometry",
+      "setting",
+      "model",
+      "estimator",
+      "method",
+      "budget_seconds",
+      "size",
+      "map_width",
+      "lobes",
+      "prior",
+      "seconds",
+      "peak_mb",
+      "misfit",
+      "brdf_log_rmse",
+      "brdf_log_rmse_aligned",
+      "brdf_log_rmse_below80",
+      "illumination_relative_log_rmse",
+      "illumination_relative_log_rmse_aligned",
+      "rounds",
+      "status"};
+  return columns;
+}
+
+StatusOr<SolverSweep> ParetoSweep(const ParetoSweepOptions& options) {
+  const StatusOr<std::vector<NamedPoint>> points = ChoosePoints(options);
+  if (!points.ok()) return points.status();
+  SolverSweep sweep;
+  sweep.title = "What accuracy costs in time";
+  sweep.columns = &ParetoColumns();
+  sweep.key_columns = kKeyColumns;
+  std::vector<SolverRun> defaults, references;
+  IBRDF_RETURN_IF_ERROR(ForEachModelCase(
+      options, [&](const SweepCase& c, const ChosenModel& model) {
+        for (const NamedPoint& named : *points) {
+          const int size = named.point.size;
+          const SweepCase of = size == c.size ? c : CaseOfSize(c, size);
+          const SolverRun run = {of, "pareto_" + named.name + ".yaml",
+                                 ProblemText(options, c, model, named.point),
+                                 EstimateName(named, model),
+                                 KeyRow(options, c, model, named)};
+          sweep.runs.push_back(run);
+          if (named.name == kDefault) defaults.push_back(run);
+          if (named.name == kReference) references.push_back(run);
+        }
+      }));
+  sweep.finish = [options](const SolverRun& run, const std::string&,
+                           bool solved, NamedRow* row) {
+    return Finish(options, run, solved, row);
+  };
+  sweep.summary = [options, defaults, references] {
+    return MisfitTimeTable(options, defaults, references);
+  };
+  return sweep;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,60 @@
+#include "solvers/bench/solver_trace.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr size_t kMaxJsonBytes = size_t{1} << 28;
+
+bool IsNumber(const nlohmann::json& line, const char* key) {
+  const auto at = line.find(key);
+  return at != line.end() && at->is_number();
+}
+
+}  // namespace
+
+StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json) {
+  const StatusOr<std::string> text = ReadFile(result_json, kMaxJsonBytes);
+  if (!text.ok()) return text.status();
+  const nlohmann::json json = nlohmann::json::parse(*text, nullptr, false);
+  if (!json.is_object() || !json.contains("trace") ||
+      !json["trace"].is_array() || json["trace"].empty()) {
+    return InvalidInput(result_json + ": trace", "expected a list of steps");
+  }
+  std::vector<TraceLine> trace;
+  for (const nlohmann::json& line : json["trace"]) {
+    if (!line.is_object() || !line.contains("stage") ||
+        !line["stage"].is_string() || !IsNumber(line, "seconds") ||
+        !IsNumber(line, "misfit") || !IsNumber(line, "scale")) {
+      return InvalidInput(
+          result_json + ": trace[" + std::to_string(trace.size()) + "]",
+          "expected stage, seconds, scale and misfit");
+    }
+    // The search for the reflectance knows no scale.
+    trace.push_back(
+        {line["stage"].get<std::string>(), line["seconds"].get<double>(),
+         line["misfit"].get<double>(), line["scale"].get<double>() > 0.0});
+  }
+  return trace;
+}
+
+int CountRounds(const std::vector<TraceLine>& trace) {
+  return static_cast<int>(
+      std::count_if(trace.begin(), trace.end(), [](const TraceLine& line) {
+        return line.stage.find(" round ") != std::string::npos;
+      }));
+}
+
+std::optional<double> SecondsToMisfit(const std::vector<TraceLine>& trace,
+                                      double misfit) {
+  for (const TraceLine& line : trace) {
+    if (line.has_map && line.misfit <= misfit) return line.seconds;
+  }
+  return std::nullopt;
+}
+
+}  // namespace ibrdf

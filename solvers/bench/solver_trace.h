@@ -1,0 +1,31 @@
+// The trace that ibrdf_solve leaves in result.json.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+
+namespace ibrdf {
+
+struct TraceLine {
+  std::string stage;
+  double seconds = 0.0;
+  double misfit = 0.0;
+  // False in the search for the reflectance with the light integrated out:
+  // its misfit is of cells of pixels and of no map.
+  bool has_map = false;
+};
+
+// Fails, naming the file, on one that holds no whole trace.
+StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json);
+
+// Steps of the optimiser of the map, or of both unknowns, that lowered the
+// cost: lines "STAGE round N". With Adam each is one round of its schedule.
+int CountRounds(const std::vector<TraceLine>& trace);
+
+// Seconds until a map and a reflectance had at most this misfit; none: never.
+std::optional<double> SecondsToMisfit(const std::vector<TraceLine>& trace,
+                                      double misfit);
+
+}  // namespace ibrdf
