@@ -12,6 +12,17 @@ if(IBRDF_SANITIZE)
                       -fno-sanitize-recover=undefined)
   add_link_options(-fsanitize=address,undefined)
 endif()
+if(IBRDF_BUILD_FUZZERS)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "IBRDF_BUILD_FUZZERS needs Clang, for libFuzzer: "
+                        "-DCMAKE_CXX_COMPILER=clang++")
+  endif()
+  # Everything counts its branches; the fuzzers alone have libFuzzer's main.
+  set(fuzz_flags -fsanitize=fuzzer-no-link,address,undefined
+                 -fno-sanitize-recover=undefined)
+  add_compile_options(${fuzz_flags} -fno-omit-frame-pointer)
+  add_link_options(${fuzz_flags})
+endif()
 add_compile_definitions($<$<CONFIG:Debug>:EIGEN_INITIALIZE_MATRICES_BY_NAN>)
 
 # Compiles each file of ARGN (named *_kernels.cc) into `target` once per

@@ -143,7 +143,65 @@ Status CheckHeader(const std::string& path, const Imf::Header& header) {
   return OkStatus();
 }
 
+uint32_t LittleEndian32(const std::string& bytes, size_t at) {
+  uint32_t value = 0;
+  for (size_t i = 0; i < 4; ++i) {
+    value |= uint32_t{static_cast<uint8_t>(bytes[at + i])} << (8 * i);
+  }
+  return value;
+}
+
+constexpr size_t kHeaderStart = 8;  // after the magic number and the version
+
+// OpenEXR allocates what an attribute claims before it reads it: every claim
+// must fit into the file. A header that is cut off is left to OpenEXR.
+Status CheckAttributes(const std::string& path, const std::string& bytes) {
+  constexpr uint32_t kMultiPart = 0x1000;
+  if (bytes.size() < kHeaderStart) return OkStatus();
+  const bool many = (LittleEndian32(bytes, 4) & kMultiPart) != 0;
+  size_t at = kHeaderStart;
+  bool header_is_empty = true;
+  while (true) {
+    const size_t name_end = bytes.find('\0', at);
+    if (name_end == std::string::npos) return OkStatus();
+    if (name_end == at) {  // the end of a header; an empty one is the last
+      if (!many || header_is_empty) return OkStatus();
+      header_is_empty = true;
+      ++at;
+      continue;
+    }
+    header_is_empty = false;
+    const std::string name =
+        bytes.substr(at, std::min(name_end - at, size_t{60}));
+    const size_t type_end = bytes.find('\0', name_end + 1);
+    if (type_end == std::string::npos || bytes.size() - type_end < 5) {
+      return OkStatus();
+    }
+    const uint32_t size = LittleEndian32(bytes, type_end + 1);
+    at = type_end + 5;
+    if (size > bytes.size() - at) {
+      return InvalidInput(path + ": attribute " + name,
+                          "expected a size that fits into the file, found " +
+                              std::to_string(size) + " bytes");
+    }
+    at += size;
+  }
+}
+
+// Before OpenEXR reads tables that grow with the size that the header claims.
+Status CheckFirstHeader(const std::string& path, const std::string& bytes) {
+  IBRDF_RETURN_IF_ERROR(CheckAttributes(path, bytes));
+  if (bytes.size() < kHeaderStart) return OkStatus();
+  MemoryInput stream(path, bytes);
+  stream.seekg(kHeaderStart);
+  int version = static_cast<int>(LittleEndian32(bytes, 4));
+  Imf::Header header;
+  header.readFrom(stream, version);
+  return CheckHeader(path, header);
+}
+
 StatusOr<Image> Decode(const std::string& path, const std::string& bytes) {
+  IBRDF_RETURN_IF_ERROR(CheckFirstHeader(path, bytes));
   MemoryInput stream(path, bytes);
   Imf::MultiPartInputFile file(stream, Imf::globalThreadCount(),
                                /*reconstructChunkOffsetTable=*/false);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -34,12 +35,30 @@ bool TakeLine(const std::string& bytes, size_t* at, std::string* line) {
 bool TakeFloats(const std::string& bytes, size_t* at, size_t count,
                 std::vector<float>* values) {
   values->resize(count);
+  if (count == 0) return true;  // memcpy takes no null pointer
   std::memcpy(values->data(), bytes.data() + *at, count * sizeof(float));
   *at += count * sizeof(float);
   for (const float v : *values) {
     if (!std::isfinite(v)) return false;
   }
   return true;
+}
+
+// -1 for what is no whole number in [0, INT_MAX]; get<int>() would wrap it into
+// the valid range. FlowShape::Validate refuses negative sizes.
+int IntOf(const nlohmann::json& value) {
+  if (!value.is_number_integer()) return -1;
+  const int64_t number = value.get<int64_t>();  // 2^63 and above: negative
+  return number >= 0 && number <= std::numeric_limits<int>::max()
+             ? static_cast<int>(number)
+             : -1;
+}
+
+std::vector<int> IntsOf(const nlohmann::json& list) {
+  if (!list.is_array()) return {-1};
+  std::vector<int> out;
+  for (const nlohmann::json& value : list) out.push_back(IntOf(value));
+  return out;
 }
 
 Status ParseHeader(const std::string& path, const std::string& text,
@@ -50,23 +69,22 @@ Status ParseHeader(const std::string& path, const std::string& text,
     if (flow == "triangular") {
       TriangularShape& shape = model->shape.triangular;
       // As a vector first: an array would take the first three of more.
-      const std::vector<int> bins = header.at("bins").get<std::vector<int>>();
+      const std::vector<int> bins = IntsOf(header.at("bins"));
       if (bins.size() != shape.bins.size()) {
         return InvalidInput(path + ": bins", "expected 3 numbers, found " +
                                                  std::to_string(bins.size()));
       }
       std::copy(bins.begin(), bins.end(), shape.bins.begin());
-      shape.code_size = header.at("code_size").get<int>();
-      shape.widths = header.at("widths").get<std::vector<int>>();
-      shape.marginal_widths =
-          header.at("marginal_widths").get<std::vector<int>>();
+      shape.code_size = IntOf(header.at("code_size"));
+      shape.widths = IntsOf(header.at("widths"));
+      shape.marginal_widths = IntsOf(header.at("marginal_widths"));
     } else if (flow == "coupling") {
       model->shape.architecture = FlowArchitecture::kCoupling;
       CouplingShape& shape = model->shape.coupling;
-      shape.layers = header.at("layers").get<int>();
-      shape.bins = header.at("bins").get<int>();
-      shape.code_size = header.at("code_size").get<int>();
-      shape.widths = header.at("widths").get<std::vector<int>>();
+      shape.layers = IntOf(header.at("layers"));
+      shape.bins = IntOf(header.at("bins"));
+      shape.code_size = IntOf(header.at("code_size"));
+      shape.widths = IntsOf(header.at("widths"));
     } else {
       return InvalidInput(path + ": flow",
                           "expected triangular or coupling, found " + flow);
@@ -74,7 +92,7 @@ Status ParseHeader(const std::string& path, const std::string& text,
     model->exponent = header.at("exponent").get<double>();
     model->names = header.at("names").get<std::vector<std::string>>();
     model->note = header.at("note").get<std::string>();
-    model->fit_lobes = header.at("fit_lobes").get<int>();
+    model->fit_lobes = IntOf(header.at("fit_lobes"));
   } catch (const nlohmann::json::exception& e) {
     return InvalidInput(path + ": header", e.what());
   }

@@ -176,17 +176,26 @@ StatusOr<Mask> ReadMask(const std::string& path) {
   }
 }
 
-Status WritePng(const Rgb8Image& image, const std::string& path) {
+StatusOr<std::string> EncodePng(const Rgb8Image& image) {
   IBRDF_RETURN_IF_ERROR(
-      CheckWritable(path, image.width, image.height, image.rgb.size()));
+      CheckWritable("PNG", image.width, image.height, image.rgb.size()));
   std::string bytes;
   WriteState state;
   state.bytes = &bytes;
   if (!WriteRows(&state, image)) {
     return Status(StatusCode::kInternal,
-                  path + ": cannot encode (" + state.message + ")");
+                  std::string("PNG: cannot encode (") + state.message + ")");
   }
-  return WriteFileAtomically(path, bytes);
+  return bytes;
+}
+
+Status WritePng(const Rgb8Image& image, const std::string& path) {
+  const StatusOr<std::string> bytes = EncodePng(image);
+  if (!bytes.ok()) {
+    return Status(bytes.status().code(),
+                  path + ": " + bytes.status().message());
+  }
+  return WriteFileAtomically(path, *bytes);
 }
 
 }  // namespace ibrdf

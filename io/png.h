@@ -13,7 +13,11 @@ namespace ibrdf {
 // Refuses damaged files and sizes over those of io/image_limits.h.
 StatusOr<Mask> ReadMask(const std::string& path);
 
-// 8-bit RGB. Whole or absent.
+// The bytes of an 8-bit RGB file. Sizes over those of io/image_limits.h are
+// kInternal.
+StatusOr<std::string> EncodePng(const Rgb8Image& image);
+
+// Writes them. Whole or absent.
 Status WritePng(const Rgb8Image& image, const std::string& path);
 
 }  // namespace ibrdf

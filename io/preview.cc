@@ -135,6 +135,38 @@ cv::Mat DisplayColours(const PreviewPanel& panel, double range) {
   return colours;
 }
 
+// CV_8UC3, red first.
+cv::Mat EncodeColours(const cv::Mat& linear) {
+  cv::Mat pixels(linear.size(), CV_8UC3);
+  for (int y = 0; y < linear.rows; ++y) {
+    for (int x = 0; x < linear.cols; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        pixels.at<cv::Vec3b>(y, x)[c] =
+            EncodeSrgb(linear.at<cv::Vec3f>(y, x)[c]);
+      }
+    }
+  }
+  return pixels;
+}
+
+Rgb8Image ToRgb8(const cv::Mat& pixels) {
+  Rgb8Image image(pixels.cols, pixels.rows);
+  CHECK(pixels.isContinuous());
+  std::memcpy(image.rgb.data(), pixels.data, image.rgb.size());
+  return image;
+}
+
+// A side of `length` pixels after reduction, at least 1.
+int Reduced(int length, double factor) {
+  return std::max(1, static_cast<int>(length * factor));
+}
+
+void CheckPanel(const PreviewPanel& panel) {
+  CHECK(!panel.image.empty()) << panel.label;
+  CHECK(panel.mask.empty() ||
+        panel.mask.inside.size() == panel.image.num_pixels());
+}
+
 // A panel ready to be placed.
 struct Placed {
   cv::Mat pixels;  // CV_8UC3, red first
@@ -150,8 +182,7 @@ struct Placed {
 
 Placed Place(const PreviewPanel& panel, int max_width) {
   const Image& image = panel.image;
-  CHECK(!image.empty()) << panel.label;
-  CHECK(panel.mask.empty() || panel.mask.inside.size() == image.num_pixels());
+  CheckPanel(panel);
   Placed placed;
   placed.kind = panel.kind;
   if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
@@ -169,22 +200,13 @@ Placed Place(const PreviewPanel& panel, int max_width) {
     std::snprintf(caption, sizeof(caption), "%d x %d px, shown x%d (nearest)",
                   image.width, image.height, factor);
   } else {
-    const cv::Size size(std::max(1, static_cast<int>(image.width * fit)),
-                        std::max(1, static_cast<int>(image.height * fit)));
+    const cv::Size size(Reduced(image.width, fit), Reduced(image.height, fit));
     cv::resize(colours, resized, size, 0, 0, cv::INTER_AREA);
     std::snprintf(caption, sizeof(caption), "%d x %d px, shown at %d x %d",
                   image.width, image.height, size.width, size.height);
   }
   placed.caption = caption;
-  placed.pixels.create(resized.size(), CV_8UC3);
-  for (int y = 0; y < resized.rows; ++y) {
-    for (int x = 0; x < resized.cols; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        placed.pixels.at<cv::Vec3b>(y, x)[c] =
-            EncodeSrgb(resized.at<cv::Vec3f>(y, x)[c]);
-      }
-    }
-  }
+  placed.pixels = EncodeColours(resized);
   placed.label =
       Wrap(panel.label, std::max(placed.width(), max_width / 2), kLabelStyle);
   return placed;
@@ -286,6 +308,27 @@ void DrawRow(cv::Mat* canvas, const RowLayout& row, int top) {
 
 }  // namespace
 
+PanelPicture DrawPanel(const PreviewPanel& panel, int max_side) {
+  CheckPanel(panel);
+  CHECK_GT(max_side, 0);
+  PanelPicture picture;
+  if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+    picture.range = ResidualRange(panel);
+  }
+  cv::Mat colours = DisplayColours(panel, picture.range);
+  const double fit =
+      static_cast<double>(max_side) / std::max(colours.cols, colours.rows);
+  if (fit < 1.0) {
+    cv::Mat reduced;
+    cv::resize(colours, reduced,
+               {Reduced(colours.cols, fit), Reduced(colours.rows, fit)}, 0, 0,
+               cv::INTER_AREA);
+    colours = reduced;
+  }
+  picture.pixels = ToRgb8(EncodeColours(colours));
+  return picture;
+}
+
 Rgb8Image ComposePanels(const std::vector<std::vector<PreviewPanel>>& rows,
                         const std::string& title,
                         const std::vector<std::string>& notes) {
@@ -342,10 +385,7 @@ Rgb8Image ComposePanels(const std::vector<std::vector<PreviewPanel>>& rows,
     DrawText(&canvas, line, kMargin, top, kLabelStyle);
     top += kLabelStyle.line_height;
   }
-  Rgb8Image image(canvas.cols, canvas.rows);
-  CHECK(canvas.isContinuous());
-  std::memcpy(image.rgb.data(), canvas.data, image.rgb.size());
-  return image;
+  return ToRgb8(canvas);
 }
 
 }  // namespace ibrdf

@@ -25,6 +25,16 @@ struct PreviewPanel {
   double range = 0.0;
 };
 
+// The picture of one panel alone, without any text.
+struct PanelPicture {
+  Rgb8Image pixels;
+  double range = 0.0;  // kSignedResidual: value at the ends of the colours
+};
+
+// One pixel of the picture for one of the image, or fewer where a side would
+// exceed max_side > 0: reduced by area in linear light.
+PanelPicture DrawPanel(const PreviewPanel& panel, int max_side);
+
 // Rows of panels on a light ground, the title above and the notes below, at
 // most 1440 pixels wide. Small images are enlarged by the largest whole factor
 // that fits, pixels staying squares; large ones are reduced by area in linear

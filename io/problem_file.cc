@@ -62,6 +62,9 @@ void ReadImageSpec(ConfigContext* context, const ConfigNode* node,
                                : "expected file or width and height");
   } else if (reader.Has("width") != reader.Has("height")) {
     context->Fail("image", "expected both width and height");
+  } else if (int64_t{image->width} * image->height > kMaxImagePixels) {
+    context->Fail("image", "expected at most " +
+                               std::to_string(kMaxImagePixels) + " pixels");
   }
 }
 
@@ -271,12 +274,10 @@ void ReadEffects(ConfigContext* context, const ConfigNode* node,
 
 void ReadSolver(ConfigContext* context, const ConfigNode* node,
                 SolverSpec* solver) {
-  ConfigReader reader(
-      context, node, "solver",
-      {"estimator", "method", "seconds", "tolerance", "max_iterations",
-       "seed"});
-  ReadChoice(&reader, "estimator", {"marginal", "maximum"},
-             &solver->estimator);
+  ConfigReader reader(context, node, "solver",
+                      {"estimator", "method", "seconds", "tolerance",
+                       "max_iterations", "seed"});
+  ReadChoice(&reader, "estimator", {"marginal", "maximum"}, &solver->estimator);
   Strings methods;
   for (int m = 0; m < kNumSolverMethods; ++m) {
     methods.emplace_back(SolverMethodName(static_cast<SolverMethod>(m)));

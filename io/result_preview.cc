@@ -183,15 +183,11 @@ Status CheckInput(const ResultPreviewInput& input) {
   return OkStatus();
 }
 
-struct ResultRows {
-  Row images, maps, spheres;
-};
-
-ResultRows MakeRows(const ResultPreviewInput& input) {
+ResultPanels MakeRows(const ResultPreviewInput& input) {
   return {ImagePanels(input), MapPanels(input), BrdfPanels(input)};
 }
 
-Rgb8Image ComposeOverview(const ResultRows& rows,
+Rgb8Image ComposeOverview(const ResultPanels& rows,
                           const ResultPreviewInput& input) {
   std::vector<Row> shown;
   for (const Row* row : {&rows.images, &rows.maps, &rows.spheres}) {
@@ -210,10 +206,14 @@ Rgb8Image MakeOverview(const ResultPreviewInput& input) {
   return ComposeOverview(MakeRows(input), input);
 }
 
-Status WriteResultPreviews(const ResultPreviewInput& input,
-                           const std::string& out_dir) {
+StatusOr<ResultPanels> MakeResultPanels(const ResultPreviewInput& input) {
   IBRDF_RETURN_IF_ERROR(CheckInput(input));
-  const ResultRows rows = MakeRows(input);
+  return MakeRows(input);
+}
+
+Status WriteResultPreviews(const ResultPanels& rows,
+                           const ResultPreviewInput& input,
+                           const std::string& out_dir) {
   IBRDF_RETURN_IF_ERROR(
       WritePng(ComposeOverview(rows, input), out_dir + "/overview.png"));
   const char* const names[] = {"input.png", "render.png", "residual.png"};
@@ -232,6 +232,13 @@ Status WriteResultPreviews(const ResultPreviewInput& input,
         WritePng(ComposePanels({rows.spheres}, ""), out_dir + "/brdf.png"));
   }
   return OkStatus();
+}
+
+Status WriteResultPreviews(const ResultPreviewInput& input,
+                           const std::string& out_dir) {
+  const StatusOr<ResultPanels> panels = MakeResultPanels(input);
+  if (!panels.ok()) return panels.status();
+  return WriteResultPreviews(*panels, input, out_dir);
 }
 
 }  // namespace ibrdf

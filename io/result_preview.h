@@ -7,6 +7,7 @@
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
+#include "io/preview.h"
 
 namespace ibrdf {
 
@@ -31,9 +32,24 @@ struct ResultPreviewInput {
 // reference's scale by one factor for all channels, which its label states.
 Rgb8Image MakeOverview(const ResultPreviewInput& input);
 
+// The overview's rows of panels; empty where there is nothing to show.
+struct ResultPanels {
+  std::vector<PreviewPanel> images;   // input, render, residual
+  std::vector<PreviewPanel> maps;     // estimate, reference
+  std::vector<PreviewPanel> spheres;  // of each light, estimate and reference
+};
+
+// Refuses an empty input and sizes that disagree.
+StatusOr<ResultPanels> MakeResultPanels(const ResultPreviewInput& input);
+
 // Writes overview.png, input.png, render.png, residual.png, illumination.png
 // and brdf.png into `out_dir`, which exists; each whole or absent, and none for
-// what is empty. Refuses an empty input and sizes that disagree.
+// what is empty. Of the input, title and metrics are read.
+Status WriteResultPreviews(const ResultPanels& panels,
+                           const ResultPreviewInput& input,
+                           const std::string& out_dir);
+
+// The same of the input's panels; refuses what MakeResultPanels does.
 Status WriteResultPreviews(const ResultPreviewInput& input,
                            const std::string& out_dir);
 

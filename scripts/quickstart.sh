@@ -23,7 +23,7 @@ step "Estimate reflectance and illumination" "${bin}/ibrdf_solve" \
 
 echo
 echo "Done in ${SECONDS} s. Pictures to look at:"
-for picture in overview.png input.png render.png residual.png \
+for picture in report.html overview.png input.png render.png residual.png \
                illumination.png brdf.png; do
   if [ -f "${out}/${picture}" ]; then
     echo "  ${project_dir}/${out}/${picture}"

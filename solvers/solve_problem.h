@@ -18,8 +18,9 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
 std::string DescribeEffects(const Problem& problem);
 
 // Writes result.json, brdf.binary, brdf.json, illumination.exr,
-// illumination_log_std.exr (joint problems), render.exr, residual.exr and the PNG previews into `folder`, making it; each file whole
-// or absent. `metrics_text`, where given, receives the metrics, one a line.
+// illumination_log_std.exr (joint problems), render.exr, residual.exr, the PNG
+// previews and, last, report.html into `folder`, making it; each file whole or
+// absent. `metrics_text`, where given, receives the metrics, one a line.
 Status WriteResults(const Problem& problem, const InverseProblem& inverse,
                     const Estimate& estimate, const std::string& folder,
                     std::string* metrics_text);

@@ -16,6 +16,7 @@
 #include "io/merl.h"
 #include "io/problem_json.h"
 #include "io/result_preview.h"
+#include "solvers/report/report_page.h"
 #include "solvers/solve_problem.h"
 
 namespace ibrdf {
@@ -149,6 +150,18 @@ Json PosteriorJson(const InverseProblem& inverse, const Estimate& estimate) {
   return out;
 }
 
+// The document as a file; paths need not be UTF-8.
+std::string Text(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+const char* Gauge(const InverseProblem& inverse) {
+  if (inverse.known_map.has_value()) return "set by the known illumination";
+  if (inverse.known_brdf.has_value()) return "set by the known reflectance";
+  return "scale per channel between reflectance and light: least prior cost of "
+         "log colours (training materials) and of the light's mean chroma";
+}
+
 const char* StatusName(const Status& status) {
   switch (status.code()) {
     case StatusCode::kOk:
@@ -207,18 +220,17 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
   IBRDF_RETURN_IF_ERROR(AddMetrics(inverse, estimate, truth, &metrics));
 
   const auto path = [&](const char* name) { return folder + "/" + name; };
+  Json brdf;
   if (!estimate.brdf.raw.empty()) {
     IBRDF_RETURN_IF_ERROR(WriteMerl(estimate.brdf, path("brdf.binary")));
-    const Json brdf = {
-        {"model", problem.reflectance.model.empty()
-                      ? "default"
-                      : problem.reflectance.model},
-        {"formula",
-         "raw = sum over lobes of colour * density(code) ^ exponent"},
-        {"exponent", inverse.model.exponent},
-        {"lobes", LobesJson(inverse, estimate)}};
-    IBRDF_RETURN_IF_ERROR(
-        WriteFileAtomically(path("brdf.json"), brdf.dump(2) + "\n"));
+    brdf = {{"model", problem.reflectance.model.empty()
+                          ? "default"
+                          : problem.reflectance.model},
+            {"formula",
+             "raw = sum over lobes of colour * density(code) ^ exponent"},
+            {"exponent", inverse.model.exponent},
+            {"lobes", LobesJson(inverse, estimate)}};
+    IBRDF_RETURN_IF_ERROR(WriteFileAtomically(path("brdf.json"), Text(brdf)));
   }
   IBRDF_RETURN_IF_ERROR(WriteExr(estimate.map, path("illumination.exr")));
   if (!estimate.map_std.rgb.empty()) {
@@ -240,26 +252,31 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
   preview.reference_brdf = truth.brdf;
   preview.metrics = MetricLines(metrics);
   preview.num_threads = inverse.num_threads;
-  IBRDF_RETURN_IF_ERROR(WriteResultPreviews(preview, folder));
+  const StatusOr<ResultPanels> panels = MakeResultPanels(preview);
+  if (!panels.ok()) return panels.status();
+  IBRDF_RETURN_IF_ERROR(WriteResultPreviews(*panels, preview, folder));
 
   const Json result = {
       {"ibrdf_version", kVersion},
       {"status", StatusName(estimate.status)},
       {"problem", ProblemToJson(problem)},
       {"effects", DescribeEffects(problem)},
-      {"gauge",
-       "scale per channel between reflectance and light: least prior cost of "
-       "log colours (training materials) and of the light's mean chroma"},
+      {"gauge", Gauge(inverse)},
       {"start", estimate.start},
       {"posterior", PosteriorJson(inverse, estimate)},
       {"seed", inverse.seed},
       {"pixels_used", estimate.pixels_used},
+      {"pixels_of_object", inverse.points.size()},
       {"likelihood",
        {{"scale", estimate.scale}, {"epsilon", estimate.epsilon}}},
       {"metrics", metrics},
       {"trace", TraceJson(estimate)}};
-  IBRDF_RETURN_IF_ERROR(
-      WriteFileAtomically(path("result.json"), result.dump(2) + "\n"));
+  IBRDF_RETURN_IF_ERROR(WriteFileAtomically(path("result.json"), Text(result)));
+  const StatusOr<std::string> page =
+      ReportPage({preview.title, result, brdf,
+                  MakeReportGroups(*panels, estimate.map_std)});
+  if (!page.ok()) return page.status();
+  IBRDF_RETURN_IF_ERROR(WriteFileAtomically(path("report.html"), *page));
   if (metrics_text != nullptr) {
     metrics_text->clear();
     for (const std::string& line : MetricLines(metrics)) {

@@ -49,7 +49,7 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
   IBRDF_RETURN_IF_ERROR(
       WriteResults(*problem, *inverse, *estimate, folder, &metrics));
   if (!flags.quiet) {
-    std::printf("%sresults in %s; look at %s/overview.png\n", metrics.c_str(),
+    std::printf("%sresults in %s; look at %s/report.html\n", metrics.c_str(),
                 folder.c_str(), folder.c_str());
   }
   return estimate->status;

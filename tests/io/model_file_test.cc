@@ -355,5 +355,17 @@ TEST(FindModel, DefaultOfTheSourceTreeLoadsAndMakesSense) {
   }
 }
 
+// 2^32 + 4 is 4 in 32 bits.
+TEST_F(ModelFile, SizesThatNoIntHoldsAreRefused) {
+  Rewrite("\"code_size\":4", "\"code_size\":4294967300");
+  ExpectRefused("code size");
+  ASSERT_TRUE(WriteModel(model_, path_).ok());
+  Rewrite("\"fit_lobes\":", "\"fit_lobes\":429496729");
+  ExpectRefused("fit_lobes");
+  ASSERT_TRUE(WriteModel(model_, path_).ok());
+  Rewrite("\"bins\":[6,4,4]", "\"bins\":[4294967302,4,4]");
+  ExpectRefused("bins");
+}
+
 }  // namespace
 }  // namespace ibrdf

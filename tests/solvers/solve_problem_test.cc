@@ -14,6 +14,7 @@
 #include "io/png.h"
 #include "io/problem_file.h"
 #include "tests/solvers/solver_testing.h"
+#include "tests/support/markup.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -147,7 +148,8 @@ TEST_F(SolveProblemTest, ResultsAreWholeAndReadBack) {
   const char* names[] = {"result.json",      "brdf.binary", "brdf.json",
                          "illumination.exr", "render.exr",  "residual.exr",
                          "overview.png",     "render.png",  "residual.png",
-                         "illumination.png", "brdf.png",    "input.png"};
+                         "illumination.png", "brdf.png",    "input.png",
+                         "report.html"};
   for (const char* name : names) {
     EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
   }
@@ -180,6 +182,10 @@ TEST_F(SolveProblemTest, ResultsAreWholeAndReadBack) {
   }
   EXPECT_EQ(e->misfit, result["metrics"]["misfit"].get<double>());
 
+  const std::string page = ReadBytes(out + "/report.html");
+  EXPECT_EQ("", MarkupError(page));
+  EXPECT_NE(std::string::npos, page.find("joint.yaml"));
+
   const nlohmann::json brdf =
       nlohmann::json::parse(ReadBytes(out + "/brdf.json"));
   ASSERT_EQ(size_t{2}, brdf["lobes"].size());
@@ -207,6 +213,24 @@ TEST_F(SolveProblemTest, ResultsOfAKnownReflectanceHoldNoBrdf) {
   EXPECT_TRUE(std::filesystem::exists(out + "/result.json"));
   EXPECT_FALSE(std::filesystem::exists(out + "/brdf.binary"));
   EXPECT_FALSE(std::filesystem::exists(out + "/brdf.json"));
+}
+
+// A path need not be UTF-8; JSON and HTML must be.
+TEST_F(SolveProblemTest, NamesInOtherEncodingsAreWritten) {
+  const std::string file = dir_.File("b\xE4r.exr");
+  std::filesystem::copy_file(dir_.File("input.exr"), file);
+  const StatusOr<InverseProblem> p = Load({"solver.max_iterations=0"});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  InverseProblem inverse = *p;
+  inverse.transport = TinyTransportOptions();
+  const StatusOr<Estimate> e = SolveInverseRendering(inverse, nullptr, nullptr);
+  ASSERT_TRUE(e.ok());
+  problem_.image.file = file;
+  const std::string out = dir_.File("out");
+  ASSERT_TRUE(WriteResults(problem_, inverse, *e, out, nullptr).ok());
+  EXPECT_TRUE(nlohmann::json::accept(ReadBytes(out + "/result.json")));
+  EXPECT_NE(std::string::npos,
+            ReadBytes(out + "/report.html").find("b\xEF\xBF\xBDr.exr"));
 }
 
 TEST_F(SolveProblemTest, FolderThatCannotBeMadeIsNamed) {

@@ -80,6 +80,19 @@ using Vi [[gnu::vector_size(IBRDF_SIMD_WIDTH * 4), gnu::may_alias]] = int32_t;
 #endif
 }
 
+// Lane i is lane index[i] of a and b, one after the other.
+[[maybe_unused]] inline Vf Shuffle(Vf a, Vf b, Vi index) {
+#if defined(__clang__)  // which shuffles by constants only
+  Vf v;
+  for (int i = 0; i < kLanes; ++i) {
+    v[i] = index[i] < kLanes ? a[index[i]] : b[index[i] - kLanes];
+  }
+  return v;
+#else
+  return __builtin_shuffle(a, b, index);
+#endif
+}
+
 // Transposes kLanes vectors of kLanes floats in place, by log2(kLanes) perfect
 // shuffles of pairs.
 [[maybe_unused]] inline void Transpose(Vf* rows) {
@@ -93,8 +106,8 @@ using Vi [[gnu::vector_size(IBRDF_SIMD_WIDTH * 4), gnu::may_alias]] = int32_t;
     Vf mixed[kLanes];
 #pragma GCC unroll 8
     for (int i = 0; i < kLanes / 2; ++i) {
-      mixed[2 * i] = __builtin_shuffle(rows[i], rows[i + kLanes / 2], low);
-      mixed[2 * i + 1] = __builtin_shuffle(rows[i], rows[i + kLanes / 2], high);
+      mixed[2 * i] = Shuffle(rows[i], rows[i + kLanes / 2], low);
+      mixed[2 * i + 1] = Shuffle(rows[i], rows[i + kLanes / 2], high);
     }
 #pragma GCC unroll 16
     for (int i = 0; i < kLanes; ++i) rows[i] = mixed[i];

@@ -34,9 +34,15 @@ class [[nodiscard]] Status {
 
 inline Status OkStatus() { return Status(); }
 
-// Bad input: "<where>: <what>", where = "file" or "file: field".
+// Bad input: "<where>: <what>", where = "file" or "file: field". Control
+// characters, which names and quoted contents of files may hold, become '?':
+// the message stays one line and cannot steer a terminal.
 inline Status InvalidInput(const std::string& where, const std::string& what) {
-  return Status(StatusCode::kInvalidInput, where + ": " + what);
+  std::string message = where + ": " + what;
+  for (char& c : message) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return Status(StatusCode::kInvalidInput, std::move(message));
 }
 
 // A value or the reason why there is none. Reading the value of a failed

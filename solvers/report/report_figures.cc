@@ -1,0 +1,151 @@
+#include "solvers/report/report_figures.h"
+
+#include <cstdio>
+
+#include "io/html.h"
+#include "io/png.h"
+#include "io/preview.h"
+#include "io/tone_map.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kMaxSide = 1024;  // the page stays small
+// Wider pictures are smoothed by the browser, the pixels of others stay
+// squares.
+constexpr int kSmoothWidth = 500;
+
+ReportFigure Figure(const PreviewPanel& panel) {
+  PanelPicture picture = DrawPanel(panel, kMaxSide);
+  ReportFigure figure;
+  figure.caption = panel.label;
+  figure.pixels = std::move(picture.pixels);
+  figure.range = picture.range;
+  figure.map = panel.kind == PreviewPanel::Kind::kMap;
+  if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+    figure.bar = ReportFigure::Bar::kSigned;
+  }
+  return figure;
+}
+
+ReportFigure DeviationFigure(const Image& map_std) {
+  PreviewPanel panel;
+  panel.label = "Standard deviation of log radiance, mean of R, G, B (" +
+                std::to_string(map_std.width) + "x" +
+                std::to_string(map_std.height) +
+                " texels). 0.1 is about 10 %, 0.7 a factor of two.";
+  panel.image = map_std;
+  panel.kind = PreviewPanel::Kind::kSignedResidual;
+  ReportFigure figure = Figure(panel);
+  figure.bar = ReportFigure::Bar::kPositive;
+  figure.map = true;
+  return figure;
+}
+
+ReportGroup Group(std::string heading, std::string text,
+                  const std::vector<PreviewPanel>& panels) {
+  ReportGroup group{std::move(heading), std::move(text), {}};
+  for (const PreviewPanel& panel : panels) {
+    group.figures.push_back(Figure(panel));
+  }
+  return group;
+}
+
+std::string CssColour(double t) {
+  uint8_t rgb[3];
+  DivergingColour(t, rgb);
+  char text[32];
+  std::snprintf(text, sizeof(text), "rgb(%d %d %d)", rgb[0], rgb[1], rgb[2]);
+  return text;
+}
+
+std::string Labels(const std::vector<std::string>& labels) {
+  std::string out = "<div class=\"labels\">";
+  for (const std::string& label : labels) out += HtmlElement("span", label);
+  return out + "</div>\n";
+}
+
+std::string ColourBar(const ReportFigure& figure) {
+  if (figure.bar == ReportFigure::Bar::kNone) return "";
+  const bool is_signed = figure.bar == ReportFigure::Bar::kSigned;
+  char high[32], low[32];
+  std::snprintf(high, sizeof(high), is_signed ? "+%g" : "%g", figure.range);
+  std::snprintf(low, sizeof(low), "-%g", figure.range);
+  std::string colours = CssColour(0.0) + "," + CssColour(1.0);
+  if (is_signed) colours = CssColour(-1.0) + "," + colours;
+  return "<div class=\"bar\" style=\"background:linear-gradient(to right," +
+         colours + ")\"></div>\n" +
+         (is_signed ? Labels({low, "0", high}) : Labels({"0", high}));
+}
+
+StatusOr<std::string> FigureMarkup(const ReportFigure& figure) {
+  const StatusOr<std::string> png = EncodePng(figure.pixels);
+  if (!png.ok()) return png.status();
+  std::string out = figure.map ? "<figure class=\"wide\">\n" : "<figure>\n";
+  out += std::string("<img ") +
+         (figure.pixels.width < kSmoothWidth ? "class=\"pixels\" " : "") +
+         "width=\"" + std::to_string(figure.pixels.width) + "\" height=\"" +
+         std::to_string(figure.pixels.height) + "\" alt=\"" +
+         EscapeHtml(figure.caption) + "\" src=\"" + PngDataUri(*png) +
+         "\" />\n";
+  if (figure.map) out += Labels({"+z", "+x", "-z", "-x", "+z"});
+  out += ColourBar(figure);
+  return out + HtmlElement("figcaption", figure.caption) + "\n</figure>\n";
+}
+
+// Explains the factor in an estimate's caption.
+constexpr char kScaleNote[] =
+    " An estimate beside its reference is shown times the factor xN, the one "
+    "for all channels that brings its mean logarithm to the reference's.";
+
+}  // namespace
+
+std::vector<ReportGroup> MakeReportGroups(const ResultPanels& panels,
+                                          const Image& map_std) {
+  std::vector<ReportGroup> groups;
+  if (!panels.images.empty()) {
+    groups.push_back(Group(
+        "Image",
+        "Where the residual has structure, the estimate does not explain the "
+        "image: red is rendered too bright, blue too dark. Grey pixels took no "
+        "part.",
+        panels.images));
+  }
+  if (!panels.maps.empty()) {
+    groups.push_back(
+        Group("Illumination",
+              "Columns look along the axes named below the map, the top row "
+              "up (+y); the middle (-z) is what the camera looks at, the edges "
+              "are behind it.",
+              panels.maps));
+    if (panels.maps.size() > 1) groups.back().text += kScaleNote;
+    if (!map_std.empty()) {
+      groups.back().text +=
+          " The deviation is that of the light given the reflectance: where it "
+          "is large, the image says nothing and the map shows the prior.";
+      groups.back().figures.push_back(DeviationFigure(map_std));
+    }
+  }
+  if (!panels.spheres.empty()) {
+    groups.push_back(Group("Reflectance",
+                           "Spheres of the material under three lamps and "
+                           "under an artificial sky.",
+                           panels.spheres));
+    if (panels.spheres.size() > 2) groups.back().text += kScaleNote;
+  }
+  return groups;
+}
+
+StatusOr<std::string> GroupSection(const ReportGroup& group) {
+  std::string out = "<section>\n" + HtmlElement("h2", group.heading) + "\n" +
+                    HtmlElement("p", group.text) +
+                    "\n<div class=\"figures\">\n";
+  for (const ReportFigure& figure : group.figures) {
+    const StatusOr<std::string> markup = FigureMarkup(figure);
+    if (!markup.ok()) return markup.status();
+    out += *markup;
+  }
+  return out + "</div>\n</section>\n";
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,170 @@
+// fuzz_seeds DIR: writes small valid inputs of every fuzzer into DIR/NAME/.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfTileDescription.h>
+#include <ImfTiledOutputFile.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "io/exr.h"
+#include "io/model_file.h"
+#include "io/png.h"
+#include "io/radiance_hdr.h"
+#include "tests/fuzz/parsers.h"
+#include "tests/support/temp_dir.h"
+#include "tests/support/tiny_model.h"
+
+namespace ibrdf {
+namespace {
+
+Image Gradient(int width, int height) {
+  Image image(width, height);
+  for (size_t i = 0; i < image.rgb.size(); ++i) {
+    image.rgb[i] = 0.25f * static_cast<float>(i % 7);
+  }
+  return image;
+}
+
+// All compressions, as scanlines and as tiles.
+void WriteExrs(const std::string& folder) {
+  CHECK(WriteExr(Gradient(3, 2), folder + "/float.exr").ok());
+  CHECK(
+      WriteExr(Gradient(3, 2), folder + "/half.exr", ExrPixelType::kHalf).ok());
+  const Image image = Gradient(17, 9);
+  for (int c = 0; c < Imf::NUM_COMPRESSION_METHODS; ++c) {
+    Imf::Header header(image.width, image.height);
+    header.compression() = static_cast<Imf::Compression>(c);
+    Imf::FrameBuffer frame;
+    for (int k = 0; k < 3; ++k) {
+      const char* const names[] = {"R", "G", "B"};
+      header.channels().insert(names[k], Imf::Channel(Imf::FLOAT));
+      frame.insert(names[k], Imf::Slice::Make(Imf::FLOAT, image.rgb.data() + k,
+                                              header.dataWindow(), 12,
+                                              size_t{12} * image.width));
+    }
+    const std::string name = folder + "/compression" + std::to_string(c);
+    Imf::OutputFile lines((name + ".exr").c_str(), header);
+    lines.setFrameBuffer(frame);
+    lines.writePixels(image.height);
+    header.setTileDescription(Imf::TileDescription(8, 8));
+    Imf::TiledOutputFile tiles((name + "_tiles.exr").c_str(), header);
+    tiles.setFrameBuffer(frame);
+    tiles.writeTiles(0, tiles.numXTiles() - 1, 0, tiles.numYTiles() - 1);
+  }
+}
+
+void WriteMeshes(const std::string& obj, const std::string& ply) {
+  WriteBytes(obj + "/plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  WriteBytes(obj + "/all.obj",
+             "# c\nmtllib m.mtl\no a\nv 0 0 0 1\nv 1.5e0 -0 +2\nv 0 1 0\n"
+             "v 1 1 0\nvt 0 0\nvn 0 0 1\nusemtl x\ns off\n"
+             "f -4/1/-1 2/1/1 \\\n3/1/1 4//1\nf 1//1 2//1 3//1\nl 1 2\n");
+  const std::string header =
+      "comment c\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n";
+  WriteBytes(ply + "/ascii.ply", "ply\nformat ascii 1.0\n" + header +
+                                     "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  WriteBytes(ply + "/normals.ply",
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\n"
+             "property double y\nproperty double z\nproperty float nx\n"
+             "property float ny\nproperty float nz\nproperty uchar red\n"
+             "element face 1\nproperty list uint8 uint32 vertex_index\n"
+             "end_header\n0 0 0 0 0 1 9\n1 0 0 0 0 1 9\n0 1 0 0 0 1 9\n"
+             "3 0 1 2\n");
+  for (const bool big : {false, true}) {
+    std::string body;
+    const auto put = [&](const void* value, size_t size) {
+      std::string bytes(static_cast<const char*>(value), size);
+      if (big) std::reverse(bytes.begin(), bytes.end());
+      body += bytes;
+    };
+    for (const float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) {
+      put(&v, sizeof(v));
+    }
+    body += '\3';
+    for (const int32_t v : {0, 1, 2}) put(&v, sizeof(v));
+    WriteBytes(ply + (big ? "/big.ply" : "/little.ply"),
+               std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                   "_endian 1.0\n" + header + body);
+  }
+}
+
+void WriteProblems(const std::string& folder) {
+  WriteBytes(folder + "/joint.yaml",
+             "problem: joint\nimage: {file: i.exr, mask: m.png}\n"
+             "camera: {type: perspective, fov_degrees: 30, from: [0,0,4], "
+             "to: [0,0,0], up: [0,1,0]}\n"
+             "geometry: {mesh: b.obj, fit: unit_sphere}\n"
+             "reflectance: {model: default, lobes: 2, prior_sigma: 0.5}\n"
+             "illumination: {width: 128, height: 64, prior: unet}\n"
+             "likelihood: {scale: auto, epsilon: 1e-5}\neffects: auto\n"
+             "solver: {estimator: marginal, method: auto, seconds: 120, "
+             "tolerance: 1e-4, max_iterations: 3, seed: 1}\n"
+             "truth: {brdf: g.binary, illumination: g.exr}\n"
+             "\xffsolver.seconds=30\xff"
+             "illumination={known: e.exr}");
+  WriteBytes(folder + "/scene.yaml",
+             "# a scene\nimage:\n  width: 128\n  height: 128\n"
+             "geometry: {sphere: {}}\nreflectance:\n  known:\n"
+             "    cook_torrance: {diffuse: [0.1, 0.2, 0.3], specular: 1, "
+             "roughness: 0.1, f0: 0.04}\n"
+             "illumination: {known: {sky: {sun_theta_degrees: 50, "
+             "sun_phi_degrees: 35}}}\nquality: preview\nnoise: 0.02\n");
+}
+
+void WriteModels(const std::string& folder) {
+  const TempDir dir;
+  for (const int lobes : {0, 2}) {
+    CHECK(WriteModel(TinyModel(lobes), dir.File("a.ibrdf")).ok());
+    const std::string file = ReadBytes(dir.File("a.ibrdf"));
+    const std::string name = folder + "/lobes" + std::to_string(lobes);
+    WriteBytes(name, "\2" + file);
+    WriteBytes(name + "_sum", "\1" + file.substr(0, file.size() - 8));
+  }
+}
+
+void WriteSeeds(const std::string& folder) {
+  const auto in = [&](const std::string& parser) {
+    return folder + "/" + parser;
+  };
+  for (const std::string& parser : FuzzedParsers()) {
+    std::filesystem::create_directories(in(parser));
+  }
+  WriteExrs(in("exr"));
+  CHECK(WriteRadianceHdr(Gradient(3, 2), in("hdr") + "/flat.hdr").ok());
+  CHECK(WriteRadianceHdr(Gradient(9, 2), in("hdr") + "/runs.hdr").ok());
+  WriteBytes(in("hdr") + "/old.hdr",
+             std::string("#?RADIANCE\nEXPOSURE=2\nCOLORCORR=1 2 3\n"
+                         "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n"
+                         "\x10\x20\x30\x80\1\1\1\x8"));
+  Rgb8Image mask(9, 3);
+  for (size_t i = 0; i < mask.rgb.size(); ++i) {
+    mask.rgb[i] = static_cast<uint8_t>(i % 5 == 0 ? 255 : 0);
+  }
+  CHECK(WritePng(mask, in("png") + "/mask.png").ok());
+  const std::string dims("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12);
+  WriteBytes(in("merl") + "/header", '\2' + dims);
+  WriteBytes(in("merl") + "/patch",
+             std::string("\1\x0c\0\0\0\0\0\0\0\0\0\xf0\x7f", 13));
+  WriteMeshes(in("obj"), in("ply"));
+  WriteProblems(in("problem"));
+  WriteModels(in("model"));
+}
+
+}  // namespace
+}  // namespace ibrdf
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: fuzz_seeds DIR\n");
+    return 2;
+  }
+  ibrdf::WriteSeeds(argv[1]);
+  return 0;
+}
