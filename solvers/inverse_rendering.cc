@@ -268,6 +268,8 @@ class Estimator {
   Status SearchMarginal(JointState* state) {
     ReflectanceSearchOptions o;
     o.num_threads = problem_.num_threads;
+    o.screen.visibility = o.coarse.visibility = o.fine.visibility =
+        problem_.transport.visibility;
     o.should_stop = StopAfter(kSearchShare);
     // The first stages of a small budget of iterations are cut short alike.
     const int iterations = problem_.solver.max_iterations;

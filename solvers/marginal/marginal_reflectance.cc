@@ -26,6 +26,7 @@ MarginalReflectance::MarginalReflectance(
   TransportOptions options;
   options.grid = resolution.grid;
   options.num_threads = num_threads;
+  options.visibility = resolution.visibility;
   transport_ = std::make_unique<Transport>(cells_.points, resolution.map_height,
                                            resolution.map_width, options);
   lobes_ = std::make_unique<LobeModel>(model, num_lobes, resolution.grid,

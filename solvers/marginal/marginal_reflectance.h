@@ -14,6 +14,7 @@ struct MarginalResolution {
   ImageCellOptions cells;
   int map_width = 32, map_height = 16;
   BrdfGridShape grid = {48, 20, 12};
+  std::shared_ptr<const Visibility> visibility = nullptr;  // of the points
 };
 
 // Lobe parameters as LobeModel's. Immutable but for what its callers keep; may
