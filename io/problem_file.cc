@@ -331,7 +331,7 @@ const char* EffectName(Effect effect) {
 }
 
 bool EffectAvailable(Effect effect) {
-  return effect != Effect::kVisibility && effect != Effect::kInterreflection;
+  return effect != Effect::kInterreflection;
 }
 
 StatusOr<Problem> ReadProblem(const std::string& path,

@@ -48,6 +48,7 @@ constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
 constexpr int kMapCells = 64;
 constexpr int kKnownLightCells = 26;
 constexpr double kMinCosine = 0.1;
+constexpr size_t kThinPoints = 4000;
 // Maps are first found at this size or below.
 constexpr int kProcessWidth = 128;
 constexpr int kKnownLightStarts = 4;
@@ -142,13 +143,31 @@ class Estimator {
     level->points = std::move(points);
     return level;
   }
-  // All pixels where the image has too few away from the limb.
+  // All pixels where the image has too few away from the limb. Points in shadow
+  // have no like: they are thinned by rows and columns.
   std::unique_ptr<Level> MakeCellLevel(int cells_across) const {
+    if (problem_.transport.visibility != nullptr) return MakeThinLevel();
     const std::vector<double> radiance = RadianceOf(problem_.points);
     MeanCells cells =
         JoinLikePoints(problem_.points, radiance, cells_across, kMinCosine);
     if (cells.points.empty()) return MakeLevel(problem_.points, radiance);
     return MakeLevel(std::move(cells.points), cells.radiance);
+  }
+  std::unique_ptr<Level> MakeThinLevel() const {
+    int step = 1;
+    while (problem_.points.size() >
+           kThinPoints * static_cast<size_t>(step) * step) {
+      ++step;
+    }
+    std::vector<ShadingPoint> thin;
+    for (const ShadingPoint& p : problem_.points) {
+      const int x = p.pixel % problem_.image.width;
+      const int y = p.pixel / problem_.image.width;
+      if (x % step == 0 && y % step == 0) thin.push_back(p);
+    }
+    std::unique_ptr<Level> level = MakeLevel(thin, RadianceOf(thin));
+    if (level->observed.num_valid > 0) return level;
+    return MakeLevel(problem_.points, RadianceOf(problem_.points));
   }
 
   std::vector<double> RadianceOf(
@@ -254,6 +273,8 @@ class Estimator {
   Status SearchMarginal(JointState* state) {
     ReflectanceSearchOptions o;
     o.num_threads = problem_.num_threads;
+    o.screen.visibility = o.coarse.visibility = o.fine.visibility =
+        problem_.transport.visibility;
     o.should_stop = StopAfter(kSearchShare);
     // The first stages of a small budget of iterations are cut short alike.
     const int iterations = problem_.solver.max_iterations;

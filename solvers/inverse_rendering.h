@@ -15,6 +15,7 @@
 #include "ibrdf/render/scene.h"
 #include "ibrdf/render/transport.h"
 #include "io/problem.h"
+#include "solvers/effects_plan.h"
 
 namespace ibrdf {
 
@@ -38,7 +39,9 @@ struct InverseProblem {
   SolverSpec solver;
   uint64_t seed = 1;
   int num_threads = 0;
+  // With the visibility of `points` where `effects` has it.
   TransportOptions transport;
+  EffectsPlan effects;
 };
 
 // One line of the trace: the best state after a step. Costs of lines with

@@ -1,5 +1,4 @@
-#include <glog/logging.h>
-
+#include <memory>
 #include <utility>
 
 #include "ibrdf/light/environment_map.h"
@@ -34,15 +33,6 @@ Status LoadImage(const ImageSpec& spec, Image* image, Mask* mask) {
 
 }  // namespace
 
-std::string DescribeEffects(const Problem& problem) {
-  const bool sphere = problem.geometry.kind == GeometryKind::kSphere;
-  if (sphere) {
-    return "none: the sphere is convex, no point shadows or lights another";
-  }
-  return "none: shadows and interreflection are not simulated; where the "
-         "object is not convex, reflectance and light absorb them";
-}
-
 StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
                                             uint64_t default_seed,
                                             int num_threads) {
@@ -73,9 +63,6 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
     return InvalidInput(problem.path, points.status().message());
   }
   inverse.points = std::move(points).value();
-  if (problem.geometry.kind != GeometryKind::kSphere) {
-    LOG(WARNING) << DescribeEffects(problem);
-  }
 
   if (problem.reflectance.known()) {
     const StatusOr<MerlTable> table = LoadKnownReflectance(problem.reflectance);
@@ -95,6 +82,19 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
         map->width == inverse.map_width && map->height == inverse.map_height
             ? *map
             : ResizeMap(*map, inverse.map_height, inverse.map_width);
+  }
+  StatusOr<EffectsPlan> effects = PlanEffects(
+      problem, *scene, inverse.points,
+      inverse.known_map.has_value() ? &*inverse.known_map : nullptr,
+      inverse.known_brdf.has_value() ? &*inverse.known_brdf : nullptr,
+      kWorthwhileLogError, num_threads);
+  if (!effects.ok()) return effects.status();
+  inverse.effects = *std::move(effects);
+  if (inverse.effects.visibility) {
+    VisibilityOptions rays;
+    rays.num_threads = num_threads;
+    inverse.transport.visibility =
+        std::make_shared<Visibility>(*scene, inverse.points, rays);
   }
   return inverse;
 }

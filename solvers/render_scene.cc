@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <string>
 #include <utility>
@@ -20,6 +21,7 @@ constexpr int kReferenceSamplesPerSide = 2;
 // Points between two calls of progress: well below a second at reference
 // quality, enough to keep the threads busy.
 constexpr size_t kPointsPerStep = 2048;
+constexpr int kPreviewShadowRows = 128;
 
 // A quarter of the reference's rings: within 1 % but for mirrors.
 ReferenceOptions QualityOptions(RenderQuality quality, int num_threads) {
@@ -73,6 +75,7 @@ StatusOr<ViewPoints> FindViewPoints(const Problem& problem) {
     return InvalidInput(problem.path, found.status().message());
   }
   ViewPoints view;
+  view.scene = *scene;
   view.points = *std::move(found);
   view.mask = Mask(width, height, 0);
   for (const ShadingPoint& p : view.points) view.mask.inside[p.pixel] = 255;
@@ -156,8 +159,26 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
     table = *std::move(read);
   }
 
-  const ReferenceRenderer renderer(
-      *map, QualityOptions(problem.quality, options.num_threads));
+  BrdfGrid grid;
+  if (view->scene.CastsShadows()) {
+    const auto& analytic = problem.reflectance.analytic;
+    grid = analytic.has_value()
+               ? BrdfGrid::FromFunction(analytic->Function(), {})
+               : BrdfGrid::FromMerl(table, {});
+  }
+  const bool reference = problem.quality == RenderQuality::kReference;
+  StatusOr<EffectsPlan> effects =
+      PlanEffects(problem, view->scene, points, &*map, &grid,
+                  reference ? kReferenceLogError : kWorthwhileLogError,
+                  options.num_threads);
+  if (!effects.ok()) return effects.status();
+  ReferenceOptions quality =
+      QualityOptions(problem.quality, options.num_threads);
+  if (effects->visibility) {
+    quality.shadows = std::make_shared<VisibilityGrid>(
+        view->scene, reference ? kReferenceShadowRows : kPreviewShadowRows);
+  }
+  const ReferenceRenderer renderer(*map, quality);
   std::vector<double> E(3 * points.size());
   for (size_t begin = 0; begin < points.size(); begin += kPointsPerStep) {
     if (options.progress &&
@@ -180,6 +201,7 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
   out.image =
       PixelMeans(points, E.data(), problem.image.width, problem.image.height);
   out.mask = view->mask;
+  out.effects = *std::move(effects);
   out.illumination = *std::move(map);
   AddNoise(problem.noise,
            problem.solver.seed.has_value()

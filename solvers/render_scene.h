@@ -9,6 +9,7 @@
 #include "ibrdf/image/image.h"
 #include "ibrdf/render/scene.h"
 #include "io/problem.h"
+#include "solvers/effects_plan.h"
 
 namespace ibrdf {
 
@@ -30,6 +31,7 @@ struct ViewPoints {
   // together.
   std::vector<ShadingPoint> points;
   Mask mask;  // pixels with a point
+  Scene scene = Scene::UnitSphere();
 };
 StatusOr<ViewPoints> FindViewPoints(const Problem& problem);
 
@@ -49,6 +51,7 @@ struct RenderedScene {
   Image image;         // radiance; 0 outside the object
   Mask mask;           // pixels whose centre (preview) or any sample sees it
   Image illumination;  // the map used
+  EffectsPlan effects;
 };
 
 // Reference quality: 2x2 samples a pixel; preview: one, and a coarser

@@ -14,9 +14,6 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
                                             uint64_t default_seed,
                                             int num_threads);
 
-// What the effects key comes to for this problem, in words for the user.
-std::string DescribeEffects(const Problem& problem);
-
 // Writes result.json, brdf.binary, brdf.json, illumination.exr,
 // illumination_log_std.exr (joint problems), render.exr, residual.exr, the PNG
 // previews and, last, report.html into `folder`, making it; each file whole or

@@ -33,6 +33,25 @@ Json Metric(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
 
+// What was decided, and the predictions that it follows from.
+Json EffectsJson(const InverseProblem& inverse) {
+  const EffectsPlan& plan = inverse.effects;
+  Json visibility = {{"simulated", plan.visibility},
+                     {"points_probed", plan.probe.points},
+                     {"hidden_mean", plan.probe.hidden_mean},
+                     {"hidden_90", plan.probe.hidden_90},
+                     {"hidden_max", plan.probe.hidden_max},
+                     {"shadowed_share", plan.probe.shadowed_share},
+                     {"log_radiance_error_without", plan.worth.log_error},
+                     {"log_radiance_error_threshold", plan.threshold},
+                     {"seconds_predicted", plan.worth.seconds}};
+  if (const Visibility* rays = inverse.transport.visibility.get()) {
+    visibility["rays"] = rays->num_rays();
+    visibility["bytes"] = rays->MemoryBytes();
+  }
+  return {{"visibility", visibility}};
+}
+
 // Pixels that the estimate renders.
 Mask ObjectMask(const InverseProblem& inverse) {
   Mask mask(inverse.image.width, inverse.image.height, 0);
@@ -260,7 +279,8 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
       {"ibrdf_version", kVersion},
       {"status", StatusName(estimate.status)},
       {"problem", ProblemToJson(problem)},
-      {"effects", DescribeEffects(problem)},
+      {"effects", inverse.effects.words},
+      {"effects_plan", EffectsJson(inverse)},
       {"gauge", Gauge(inverse)},
       {"start", estimate.start},
       {"posterior", PosteriorJson(inverse, estimate)},

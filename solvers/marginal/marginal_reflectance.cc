@@ -28,6 +28,7 @@ MarginalReflectance::MarginalReflectance(
   options.num_threads = num_threads;
   options.quadrature.near_rings = resolution.near_rings;
   options.quadrature.near_ring_samples = resolution.near_ring_samples;
+  options.visibility = resolution.visibility;
   transport_ = std::make_unique<Transport>(cells_.points, resolution.map_height,
                                            resolution.map_width, options);
   lobes_ = std::make_unique<LobeModel>(model, num_lobes, resolution.grid,

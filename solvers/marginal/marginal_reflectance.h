@@ -16,6 +16,7 @@ struct MarginalResolution {
   BrdfGridShape grid = {48, 20, 12};
   // Of QuadratureOptions: coarser than a render's, as the texels are.
   int near_rings = 12, near_ring_samples = 32;
+  std::shared_ptr<const Visibility> visibility = nullptr;  // of the points
 };
 
 // Lobe parameters as LobeModel's. Immutable but for what its callers keep; may

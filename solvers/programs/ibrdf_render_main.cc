@@ -122,6 +122,9 @@ Status Run(const std::string& scene, const std::vector<std::string>& overrides,
   const StatusOr<RenderedScene> rendered = RenderScene(*problem, options);
   if (!rendered.ok()) return rendered.status();
 
+  if (!flags.quiet) {
+    std::printf("effects: %s\n", rendered->effects.words.c_str());
+  }
   IBRDF_RETURN_IF_ERROR(WriteExr(rendered->image, out.image));
   const std::string preview =
       std::filesystem::path(out.image).replace_extension(".png").string();

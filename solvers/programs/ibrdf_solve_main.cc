@@ -20,7 +20,8 @@ std::atomic<bool> stop_requested{false};
 void RequestStop(int) { stop_requested = true; }
 
 Status Solve(const std::string& file, const std::vector<std::string>& overrides,
-             const std::string& folder, const CommonFlags& flags) {
+             const std::string& folder, bool explain,
+             const CommonFlags& flags) {
   const StatusOr<Problem> problem = ReadProblem(file, overrides);
   if (!problem.ok()) return problem.status();
   const StatusOr<InverseProblem> inverse =
@@ -29,11 +30,12 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
   std::signal(SIGINT, RequestStop);
   std::signal(SIGTERM, RequestStop);
   const bool terminal = ::isatty(STDOUT_FILENO) != 0;
-  if (!flags.quiet) {
+  if (explain || !flags.quiet) {
     std::printf("%zu pixels of the object, map %dx%d; effects: %s\n",
                 inverse->points.size(), inverse->map_width, inverse->map_height,
-                DescribeEffects(*problem).c_str());
+                inverse->effects.words.c_str());
   }
+  if (explain) return OkStatus();
   const SolveProgress progress = [&](const TraceEntry& e, double share) {
     if (flags.quiet) return;
     std::printf("%s%7.1f s  %3.0f %%  %-32s misfit %.4f  cost %.1f%s",
@@ -75,8 +77,12 @@ int Main(int argc, char** argv) {
                  "e.g. --set solver.seconds=30")
       ->expected(1)
       ->take_all();
-  return RunProgram(&app, argc, argv,
-                    [&] { return Solve(file, overrides, folder, flags); });
+  bool explain = false;
+  app.add_flag("--explain", explain,
+               "print which effects would be simulated and why; solve nothing");
+  return RunProgram(&app, argc, argv, [&] {
+    return Solve(file, overrides, folder, explain, flags);
+  });
 }
 
 }  // namespace

@@ -78,6 +78,9 @@ struct ReferenceBatch::Scratch {
   std::vector<float> f;  // [kRayBlock][tables.stride] and room to read beyond
   std::vector<float> g;  // [kRayBlock][maps.stride]
   std::vector<double> sums;  // [points of the group][3][maps][tables, rounded]
+  VisibilityGrid::Scratch trace;
+  // Of the points of the group; empty where nothing is hidden.
+  std::vector<VisibilityGrid::Bits> hidden;
 };
 
 ReferenceBatch::Light ReferenceBatch::GatherLight(
@@ -139,6 +142,7 @@ ReferenceBatch::Light ReferenceBatch::GatherLight(
     }
     if (apart.empty()) continue;
     light.texels.push_back(texels[t]);
+    light.texel_of.push_back(t);
     light.texel_power.insert(light.texel_power.end(), apart.begin(),
                              apart.end());
   }
@@ -171,8 +175,31 @@ ReferenceBatch::ReferenceBatch(const MerlTableStack& tables,
       texels_(std::move(light.texels)),
       block_power_(std::move(light.block_power)),
       texel_power_(std::move(light.texel_power)),
+      shadows_(options.shadows),
       quadrature_(std::move(light.blocks),
-                  NearOptions(maps[0]->width, options)) {}
+                  NearOptions(maps[0]->width, options)) {
+  if (shadows_ == nullptr) return;
+  for (int cell = 0; cell < far_height_ * far_width_; ++cell) {
+    block_ranges_.push_back(shadows_->RangeOf(
+        cell / far_width_, cell % far_width_, far_height_, far_width_));
+  }
+  for (const int texel : light.texel_of) {
+    texel_ranges_.push_back(shadows_->RangeOf(
+        texel / maps_.width, texel % maps_.width, maps_.height, maps_.width));
+  }
+}
+
+void ReferenceBatch::Shade(const double* visible, int n, const float** rows,
+                           Scratch* s) const {
+  for (int k = 0; k < n; ++k) {
+    float* const to = &s->g[size_t{1} * k * maps_.stride];
+    const auto factor = static_cast<float>(visible[k]);
+    for (int lane = 0; lane < maps_.stride; ++lane) {
+      to[lane] = factor * rows[k][lane];
+    }
+    rows[k] = to;
+  }
+}
 
 void ReferenceBatch::AddProducts(const float* const* rows, int n, int index,
                                  Scratch* s) const {
@@ -206,6 +233,17 @@ void ReferenceBatch::AddNear(const std::vector<ShadingPoint>& points,
                             maps_.stride, row, column, n, s->g.data());
       const float* rows[kRayBlock];
       for (int k = 0; k < n; ++k) rows[k] = &s->g[size_t{1} * k * maps_.stride];
+      if (const VisibilityGrid::Bits& hidden = s->hidden[p]; !hidden.empty()) {
+        kernels_.place_rays(x, y, z, n, axes[p].data(), shadows_->rows(),
+                            shadows_->columns(), row, column);
+        const Eigen::Vector3d normal = axes[p].col(2).cast<double>();
+        double visible[kRayBlock];
+        for (int k = 0; k < n; ++k) {
+          visible[k] =
+              shadows_->VisibleAt(hidden.data(), normal, row[k], column[k]);
+        }
+        Shade(visible, n, rows, s);
+      }
       AddProducts(rows, n, p, s);
     }
   }
@@ -236,7 +274,7 @@ void ReferenceBatch::AddFar(const std::vector<ShadingPoint>& points,
           own.push_back(mirrored[m]);
         }
       }
-      if (!own.empty()) AddBlocks(own, other_hand, s);
+      if (!own.empty()) AddBlocks(points, group, own, other_hand, s);
     }
     for (size_t m = first; m < last; ++m) {
       const int index = mirrored[m].second;
@@ -245,9 +283,10 @@ void ReferenceBatch::AddFar(const std::vector<ShadingPoint>& points,
   }
 }
 
-void ReferenceBatch::AddBlocks(
-    const std::vector<std::pair<Mirrored, int>>& points, bool other_hand,
-    Scratch* s) const {
+void ReferenceBatch::AddBlocks(const std::vector<ShadingPoint>& points,
+                               const int* group,
+                               const std::vector<std::pair<Mirrored, int>>& own,
+                               bool other_hand, Scratch* s) const {
   for (size_t begin = 0; begin < s->far.size(); begin += kRayBlock) {
     const int n =
         static_cast<int>(std::min<size_t>(kRayBlock, s->far.size() - begin));
@@ -258,12 +297,19 @@ void ReferenceBatch::AddBlocks(
           MerlTapsAt(far[k].theta_h, far[k].theta_d, phi_d, far[k].weight);
     }
     tables_.Blend(kernels_, s->taps.data(), n, s->f.data());
-    for (const auto& [mirrored, index] : points) {
+    for (const auto& [mirrored, index] : own) {
+      const VisibilityGrid::Bits& hidden = s->hidden[index];
+      const Eigen::Vector3d n_own = PointFrame(points[group[index]]).n;
       const float* rows[kRayBlock];
+      double visible[kRayBlock];
       for (int k = 0; k < n; ++k) {
         const int cell = mirrored.Cell(far[k].cell, far_height_, far_width_);
         rows[k] = &block_power_[static_cast<size_t>(cell) * maps_.stride];
+        if (hidden.empty()) continue;
+        visible[k] =
+            shadows_->VisibleShare(hidden.data(), n_own, block_ranges_[cell]);
       }
+      if (!hidden.empty()) Shade(visible, n, rows, s);
       AddProducts(rows, n, index, s);
     }
   }
@@ -271,18 +317,24 @@ void ReferenceBatch::AddBlocks(
 
 void ReferenceBatch::AddTexels(const PointFrame& frame, double correction,
                                int index, Scratch* s) const {
+  const VisibilityGrid::Bits& hidden = s->hidden[index];
   quadrature_.SampleCells(texels_, frame.n, frame.wo, &s->far);
   for (size_t begin = 0; begin < s->far.size(); begin += kRayBlock) {
     const int n =
         static_cast<int>(std::min<size_t>(kRayBlock, s->far.size() - begin));
     const float* rows[kRayBlock];
+    double visible[kRayBlock];
     for (int k = 0; k < n; ++k) {
       const FarSample& far = s->far[begin + k];
       s->taps[k] = MerlTapsAt(far.theta_h, far.theta_d, far.phi_d,
                               far.weight * correction);
       rows[k] = &texel_power_[static_cast<size_t>(far.cell) * maps_.stride];
+      if (hidden.empty()) continue;
+      visible[k] = shadows_->VisibleShare(hidden.data(), frame.n,
+                                          texel_ranges_[far.cell]);
     }
     tables_.Blend(kernels_, s->taps.data(), n, s->f.data());
+    if (!hidden.empty()) Shade(visible, n, rows, s);
     AddProducts(rows, n, index, s);
   }
 }
@@ -302,6 +354,13 @@ void ReferenceBatch::Render(const std::vector<ShadingPoint>& points,
     s.f.resize(size_t{kRayBlock} * tables_.stride() + kReferenceStride);
     s.g.resize(size_t{kRayBlock} * maps_.stride);
     s.sums.assign(count * sums_size_, 0.0);
+    s.hidden.resize(count);
+    for (size_t p = 0; p < count; ++p) {
+      if (shadows_ == nullptr ||
+          !shadows_->Trace(points[group[p]], &s.trace, &s.hidden[p])) {
+        s.hidden[p].clear();
+      }
+    }
     AddNear(points, group, static_cast<int>(count), &s);
     AddFar(points, group, static_cast<int>(count), &s);
     for (size_t p = 0; p < count; ++p) {

@@ -6,6 +6,7 @@
 // shared between the four blocks around it so that their centroid is its own.
 // Bright texels stay apart. Tables need not be symmetric in phi_d.
 #pragma once
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,7 @@ class ReferenceBatch {
     int height, width;  // of the blocks
     std::vector<FarCell> blocks, texels;
     std::vector<float> block_power, texel_power;  // [cells][stride]
+    std::vector<int> texel_of;  // of `texels`: row * width + column of the map
   };
   static Light GatherLight(const std::vector<const Image*>& maps, int stride,
                            int far_width);
@@ -54,10 +56,15 @@ class ReferenceBatch {
                int count, Scratch* scratch) const;
   void AddFar(const std::vector<ShadingPoint>& points, const int* group,
               int count, Scratch* scratch) const;
-  void AddBlocks(const std::vector<std::pair<Mirrored, int>>& points,
+  // own: points of the group and their indices in it.
+  void AddBlocks(const std::vector<ShadingPoint>& points, const int* group,
+                 const std::vector<std::pair<Mirrored, int>>& own,
                  bool other_hand, Scratch* scratch) const;
   void AddTexels(const PointFrame& frame, double correction, int index,
                  Scratch* scratch) const;
+  // Rows of light times what is visible of each, in scratch->g.
+  void Shade(const double* visible, int n, const float** rows,
+             Scratch* scratch) const;
 
   const ReferenceKernels& kernels_ = ActiveReferenceKernels();
   const MerlTableStack& tables_;
@@ -67,6 +74,8 @@ class ReferenceBatch {
   int far_height_, far_width_;
   std::vector<FarCell> texels_;
   std::vector<float> block_power_, texel_power_;
+  std::shared_ptr<const VisibilityGrid> shadows_;
+  std::vector<GridRange> block_ranges_, texel_ranges_;  // under shadows
   PointQuadrature quadrature_;
 };
 

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "ibrdf/brdf/merl_table.h"
@@ -11,6 +12,7 @@
 #include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/reference_kernels.h"
 #include "ibrdf/render/scene.h"
+#include "ibrdf/render/visibility_grid.h"
 
 namespace ibrdf {
 
@@ -27,7 +29,12 @@ struct ReferenceOptions {
   // to mirror, a hard key light included.
   int far_width = 128;
   int num_threads = 0;  // <= 0: all
+  // What hides light from the points; null: nothing. Traced afresh for every
+  // point rendered.
+  std::shared_ptr<const VisibilityGrid> shadows;
 };
+// Rows of the grid that suits ReferenceOptions: steps of 0.7 degrees.
+inline constexpr int kReferenceShadowRows = 256;
 
 // The near rule for maps of this width.
 QuadratureOptions NearOptions(int map_width, const ReferenceOptions& options);

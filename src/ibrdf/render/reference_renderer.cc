@@ -62,9 +62,9 @@ class MerlSampler {
 
 }  // namespace
 
-ReferenceRenderer::Light ReferenceRenderer::GatherLight(const Image& map,
-                                                        int far_width) {
-  const int block = FarBlockSize(map.height, map.width, far_width);
+ReferenceRenderer::Light ReferenceRenderer::GatherLight(
+    const Image& map, const ReferenceOptions& options) {
+  const int block = FarBlockSize(map.height, map.width, options.far_width);
   const std::vector<FarCell> texels = MapCells(map.height, map.width, 1);
   const std::vector<FarCell> blocks = MapCells(map.height, map.width, block);
   const int columns = map.width / block;
@@ -78,6 +78,12 @@ ReferenceRenderer::Light ReferenceRenderer::GatherLight(const Image& map,
     total += power_of(static_cast<int>(t)).abs().sum();
   }
   Light light;
+  // Cell (y, x) of a map in cells of `side` texels.
+  const auto add_range = [&](int y, int x, int side) {
+    if (options.shadows == nullptr) return;
+    light.ranges.push_back(options.shadows->RangeOf(
+        y / side, x / side, map.height / side, map.width / side));
+  };
   for (size_t b = 0; b < blocks.size(); ++b) {
     const int y0 = static_cast<int>(b) / columns * block;
     const int x0 = static_cast<int>(b) % columns * block;
@@ -100,6 +106,7 @@ ReferenceRenderer::Light ReferenceRenderer::GatherLight(const Image& map,
         const int texel = (y0 + k / block) * map.width + x0 + k % block;
         light.cells.push_back(texels[texel]);
         light.power.push_back(power_of(texel));
+        add_range(y0 + k / block, x0 + k % block, 1);
       }
       continue;
     }
@@ -107,19 +114,22 @@ ReferenceRenderer::Light ReferenceRenderer::GatherLight(const Image& map,
     if (centroid.norm() > 0.0) cell.direction = centroid.normalized();
     light.cells.push_back(cell);
     light.power.push_back(power);
+    add_range(y0, x0, block);
   }
   return light;
 }
 
 ReferenceRenderer::ReferenceRenderer(const Image& map,
                                      const ReferenceOptions& options)
-    : ReferenceRenderer(map, GatherLight(map, options.far_width), options) {}
+    : ReferenceRenderer(map, GatherLight(map, options), options) {}
 
 ReferenceRenderer::ReferenceRenderer(const Image& map, Light light,
                                      const ReferenceOptions& options)
     : num_threads_(options.num_threads),
       map_({&map}, 4),
       power_(std::move(light.power)),
+      shadows_(options.shadows),
+      ranges_(std::move(light.ranges)),
       quadrature_(std::move(light.cells), NearOptions(map.width, options)) {}
 
 struct ReferenceRenderer::Rays {
@@ -128,7 +138,9 @@ struct ReferenceRenderer::Rays {
 };
 
 Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
-                                         const Eigen::Matrix3f& axes) const {
+                                         const Eigen::Matrix3f& axes,
+                                         const uint64_t* hidden) const {
+  const Eigen::Vector3d normal = axes.col(2).cast<double>();
   const auto load = [](const float* p) {
     Float4 v;
     std::memcpy(&v, p, sizeof(v));
@@ -141,8 +153,20 @@ Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
     float row[kRayBlock], column[kRayBlock];
     kernels_.place_rays(&rays.x[begin], &rays.y[begin], &rays.z[begin], n,
                         axes.data(), map_.height, map_.width, row, column);
+    float visible[kRayBlock];
+    if (hidden != nullptr) {
+      float grid_row[kRayBlock], grid_column[kRayBlock];
+      kernels_.place_rays(&rays.x[begin], &rays.y[begin], &rays.z[begin], n,
+                          axes.data(), shadows_->rows(), shadows_->columns(),
+                          grid_row, grid_column);
+      for (int k = 0; k < n; ++k) {
+        visible[k] = static_cast<float>(
+            shadows_->VisibleAt(hidden, normal, grid_row[k], grid_column[k]));
+      }
+    }
     Float4 block = {0.0f, 0.0f, 0.0f, 0.0f};
     for (int k = 0; k < n; ++k) {
+      if (hidden != nullptr && visible[k] == 0.0f) continue;
       const int r = std::min(static_cast<int>(row[k]), map_.height);
       const int c = std::min(static_cast<int>(column[k]), map_.width - 1);
       const float fy = row[k] - static_cast<float>(r);
@@ -152,7 +176,9 @@ Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
       const float* const below = texel + size_t{4} * (map_.width + 1);
       const Float4 upper = (1 - fx) * load(texel) + fx * load(texel + 4);
       const Float4 lower = (1 - fx) * load(below) + fx * load(below + 4);
-      block += load(&rays.f[4 * (begin + k)]) * ((1 - fy) * upper + fy * lower);
+      Float4 light = (1 - fy) * upper + fy * lower;
+      if (hidden != nullptr) light *= visible[k];
+      block += load(&rays.f[4 * (begin + k)]) * light;
     }
     sum += Eigen::Array3d(block[0], block[1], block[2]);
   }
@@ -186,6 +212,8 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
     std::vector<NearSample> near;
     std::vector<FarSample> far;
     Rays rays;
+    VisibilityGrid::Scratch trace;
+    VisibilityGrid::Bits bits;
   };
   std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
                                                 : HardwareThreads());
@@ -197,11 +225,20 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
     for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
       const int i = groups.order[k];
       const PointFrame frame(points[i]);
-      Eigen::Array3d sum = Gather(s.rays, frame.Axes());
+      const uint64_t* const hidden =
+          shadows_ != nullptr && shadows_->Trace(points[i], &s.trace, &s.bits)
+              ? s.bits.data()
+              : nullptr;
+      Eigen::Array3d sum = Gather(s.rays, frame.Axes(), hidden);
       quadrature_.SampleFar(frame.n, frame.wo, &s.far);
       for (const FarSample& far : s.far) {
-        sum += far.weight * lookup(far.theta_h, far.theta_d, far.phi_d) *
-               power_[far.cell];
+        const double visible =
+            hidden == nullptr
+                ? 1.0
+                : shadows_->VisibleShare(hidden, frame.n, ranges_[far.cell]);
+        if (visible == 0.0) continue;
+        sum += visible * far.weight *
+               lookup(far.theta_h, far.theta_d, far.phi_d) * power_[far.cell];
       }
       for (int c = 0; c < 3; ++c) E[size_t{3} * i + c] = sum[c];
     }

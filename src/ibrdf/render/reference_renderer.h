@@ -1,9 +1,11 @@
 // Slow, converged renderer: the image that accuracy is measured against.
 // Full-resolution map, MERL table trilinear between bin centres
-// (InterpolateMerl), no BRDF grid. No shadows, no bounces. Points seen at the
-// same angle (most of a sphere's under an orthographic camera) share the BRDF
-// values of their near samples.
+// (InterpolateMerl), no BRDF grid. Shadows where asked for; no bounces. Points
+// seen at the same angle (most of a sphere's under an orthographic camera)
+// share the BRDF values of their near samples.
 #pragma once
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "ibrdf/brdf/brdf_grid.h"
@@ -32,17 +34,21 @@ class ReferenceRenderer {
   void RenderWith(const std::vector<ShadingPoint>& points, const Lookup& lookup,
                   double* E) const;
 
-  // Cells of the far rule and their radiance times solid angle.
+  // Cells of the far rule, their radiance times solid angle, and, under
+  // shadows, their texels in the grid.
   struct Light {
     std::vector<FarCell> cells;
     std::vector<Eigen::Array3d> power;
+    std::vector<GridRange> ranges;
   };
-  static Light GatherLight(const Image& map, int far_width);
+  static Light GatherLight(const Image& map, const ReferenceOptions& options);
 
   // Directions and BRDF values of near samples.
   struct Rays;
-  // Sum of f_k L(wi_k), wi = x t + y b + z n of unit length; axes t, b, n.
-  Eigen::Array3d Gather(const Rays& rays, const Eigen::Matrix3f& axes) const;
+  // Sum of f_k L(wi_k) V(wi_k), wi = x t + y b + z n of unit length; axes t, b,
+  // n. hidden: the point's bits; null: V = 1.
+  Eigen::Array3d Gather(const Rays& rays, const Eigen::Matrix3f& axes,
+                        const uint64_t* hidden) const;
   // Near samples of one view angle, in the frame of ViewFrame.
   template <typename Lookup>
   void ShadeNear(const PointFrame& frame, const Lookup& lookup,
@@ -55,6 +61,8 @@ class ReferenceRenderer {
   const ReferenceKernels& kernels_ = ActiveReferenceKernels();
   PaddedMaps map_;
   std::vector<Eigen::Array3d> power_;
+  std::shared_ptr<const VisibilityGrid> shadows_;
+  std::vector<GridRange> ranges_;
   PointQuadrature quadrature_;
 };
 

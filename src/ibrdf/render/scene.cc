@@ -43,7 +43,42 @@ bool IntersectUnitSphere(const Ray& ray, bool from_infinity, SurfaceHit* hit) {
   const Eigen::Vector3d normal = (ray.origin + t * ray.direction).normalized();
   hit->distance = t;
   hit->normal = FaceViewer(normal, normal, -ray.direction);
+  hit->position = ray.origin + t * ray.direction;
   return true;
+}
+
+// Start of a shadow ray off the surface, in units of the bounding sphere's
+// radius: a hundred times what float resolves there.
+constexpr double kShadowOffset = 1e-5;
+// The lift is at most this share of a triangle's longest edge: facets that meet
+// at a true edge describe no smooth surface, whatever their normals say.
+constexpr double kMaxLift = 0.15;
+
+// A point of a triangle moved outwards to the tangent planes of its vertices,
+// by the barycentric weights: the quadratic surface that the normals describe,
+// where it lies above the facet (Hanika 2021). Without this a ray that leaves
+// just above the shading horizon hits the next facet, and the edge between
+// light and shadow shows the triangles.
+Eigen::Vector3d LiftToSmoothSurface(const Eigen::Vector3d corners[3],
+                                    const Eigen::Vector3d normals[3],
+                                    const double weights[3],
+                                    const Eigen::Vector3d& outward) {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) point += weights[k] * corners[k];
+  Eigen::Vector3d lift = Eigen::Vector3d::Zero();
+  double longest = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    longest = std::max(longest, (corners[(k + 1) % 3] - corners[k]).norm());
+    Eigen::Vector3d n = normals[k];
+    if (!(n.allFinite() && n.norm() > 1e-6)) continue;
+    n.normalize();
+    if (n.dot(outward) < 0.0) n = -n;
+    const double above = (point - corners[k]).dot(n);
+    if (above < 0.0) lift -= weights[k] * above * n;
+  }
+  const double most = kMaxLift * longest;
+  if (lift.norm() > most) lift *= most / lift.norm();
+  return point + lift;
 }
 
 }  // namespace
@@ -68,6 +103,8 @@ struct Scene::Impl {
 
   bool BuildEmbree();
   bool IntersectMesh(const Ray& ray, bool from_infinity, SurfaceHit* hit) const;
+  bool MeshOccludes(const Eigen::Vector3d& position,
+                    const Eigen::Vector3d& direction) const;
 };
 
 bool Scene::Impl::BuildEmbree() {
@@ -151,9 +188,44 @@ bool Scene::Impl::IntersectMesh(const Ray& ray, bool from_infinity,
       if (geometric.dot(normal) < 0.0) geometric = -geometric;
     }
   }
+  const Eigen::Vector3d outward =
+      geometric.dot(wo) < 0.0 ? Eigen::Vector3d(-geometric) : geometric;
+  const double weights[3] = {1.0 - query.hit.u - query.hit.v, query.hit.u,
+                             query.hit.v};
+  Eigen::Vector3d corners[3], corner_normals[3];
+  for (int k = 0; k < 3; ++k) {
+    corners[k] = (mesh.vertices[triangle[k]].cast<double>() - center) / radius;
+    corner_normals[k] = outward;
+    if (!mesh.normals.empty()) {
+      corner_normals[k] = mesh.normals[triangle[k]].cast<double>();
+    }
+  }
+  hit->position =
+      center +
+      radius * (LiftToSmoothSurface(corners, corner_normals, weights, outward) +
+                kShadowOffset * outward);
   hit->distance = (start + query.ray.tfar) * radius;
   hit->normal = FaceViewer(normal, geometric, wo);
   return true;
+}
+
+bool Scene::Impl::MeshOccludes(const Eigen::Vector3d& position,
+                               const Eigen::Vector3d& direction) const {
+  const Eigen::Vector3d o = (position - center) / radius;
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(o.x());
+  ray.org_y = static_cast<float>(o.y());
+  ray.org_z = static_cast<float>(o.z());
+  ray.dir_x = static_cast<float>(direction.x());
+  ray.dir_y = static_cast<float>(direction.y());
+  ray.dir_z = static_cast<float>(direction.z());
+  ray.tnear = 0.0f;
+  ray.tfar = std::numeric_limits<float>::infinity();
+  ray.mask = ~0u;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(embree, &context, &ray);
+  return ray.tfar < 0.0f;
 }
 
 Scene Scene::UnitSphere() { return Scene(std::make_shared<Impl>()); }
@@ -228,6 +300,13 @@ bool Scene::Intersect(const Ray& ray, bool from_infinity,
   }
   return false;
 }
+
+bool Scene::Occluded(const Eigen::Vector3d& position,
+                     const Eigen::Vector3d& direction) const {
+  return CastsShadows() && impl_->MeshOccludes(position, direction);
+}
+
+bool Scene::CastsShadows() const { return impl_->kind == Impl::Kind::kMesh; }
 
 const Image& Scene::normal_map() const { return impl_->normals; }
 
@@ -310,7 +389,7 @@ StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
           continue;
         }
         rows[y].push_back({hit.normal.cast<float>(), wo.cast<float>(), pixel,
-                           1.0f / static_cast<float>(s * s)});
+                           1.0f / static_cast<float>(s * s), 0, hit.position});
       }
     }
   });
@@ -320,6 +399,9 @@ StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
   }
   if (points.empty()) {
     return InvalidInput("geometry", "no pixel inside the mask sees the object");
+  }
+  for (size_t i = 0; i < points.size(); ++i) {
+    points[i].index = static_cast<int>(i);
   }
   return points;
 }

@@ -21,11 +21,19 @@ struct ShadingPoint {
   Eigen::Vector3f wo;      // to the viewer
   int pixel;               // y * width + x
   float coverage;          // share of the pixel's area it stands for, (0, 1]
+  int index = 0;           // in the list of FindShadingPoints; copies keep it
+  // Where shadow rays start: just above the smooth surface (see SurfaceHit).
+  // Of a normal map, which has no position, the origin.
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
 struct SurfaceHit {
   double distance;         // along the ray
   Eigen::Vector3d normal;  // unit, as ShadingPoint
+  // The point lifted off its triangle to the surface that interpolated normals
+  // describe, and a little more to the viewer's side: a ray from here above the
+  // horizon of `normal` meets no facet of a convex part.
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
 // Geometry that rays can be cast at. Immutable; safe to share between threads;
@@ -48,6 +56,15 @@ class Scene {
   // First hit of the ray. `from_infinity`: the ray's origin is any point of its
   // line. Always false for a normal map, which has no position.
   bool Intersect(const Ray& ray, bool from_infinity, SurfaceHit* hit) const;
+
+  // Whether anything is hit from `position` on; direction: unit. Always false
+  // where CastsShadows() is.
+  bool Occluded(const Eigen::Vector3d& position,
+                const Eigen::Vector3d& direction) const;
+
+  // Whether the geometry may hide light from itself: meshes. The sphere is
+  // convex, and a normal map has no position.
+  bool CastsShadows() const;
 
   // The normal map; empty for other geometry.
   const Image& normal_map() const;

@@ -65,17 +65,40 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
     pair->fp = Quantise(cell.fp);
     pair->weight = static_cast<float>(sample.weight);
   };
+  const Visibility* const visibility = options_.visibility.get();
+  const int columns = map_width_ / block_;
   PointSamples samples;
   for (int i = chunk->begin; i < chunk->end; ++i) {
-    quadrature.Sample(points[i].normal.cast<double>().normalized(),
-                      points[i].wo.cast<double>().normalized(), &samples);
-    for (const FarSample& s : samples.far) {
+    const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
+    const uint64_t* const hidden =
+        visibility != nullptr ? visibility->Hidden(points[i]) : nullptr;
+    quadrature.Sample(n, points[i].wo.cast<double>().normalized(), &samples);
+    for (FarSample& s : samples.far) {
+      if (hidden != nullptr) {
+        const VisibilityGrid& grid = visibility->grid();
+        const double share =
+            grid.VisibleShare(hidden, n,
+                              grid.RangeOf(s.cell / columns, s.cell % columns,
+                                           map_height_ / block_, columns));
+        if (share <= 0.0) continue;
+        if (share < 1.0 && block_ > 1) {
+          NearPair sample{};
+          set_cell(s, &sample);
+          SplitBlock(hidden, n, s.cell, sample, &chunk->near);
+          continue;
+        }
+        s.weight *= share;
+      }
       FarPair pair{};
       set_cell(s, &pair);
       pair.block = static_cast<uint16_t>(s.cell);
       chunk->far.push_back(pair);
     }
-    for (const NearSample& s : samples.near) {
+    for (NearSample& s : samples.near) {
+      if (hidden != nullptr) {
+        s.weight *= visibility->grid().VisibleAlong(hidden, n, s.wi);
+        if (s.weight <= 0.0) continue;
+      }
       NearPair pair{};
       set_cell(s, &pair);
       double row = 0.0, column = 0.0;
@@ -93,6 +116,25 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
   }
   chunk->far.shrink_to_fit();
   chunk->near.shrink_to_fit();
+}
+
+void Transport::SplitBlock(const uint64_t* hidden, const Eigen::Vector3d& n,
+                           int block, const NearPair& sample,
+                           std::vector<NearPair>* pairs) const {
+  const VisibilityGrid& grid = options_.visibility->grid();
+  const int columns = map_width_ / block_;
+  for (int k = 0; k < block_ * block_; ++k) {
+    const int y = block / columns * block_ + k / block_;
+    const int x = block % columns * block_ + k % block_;
+    const double share = grid.VisibleShare(
+        hidden, n, grid.RangeOf(y, x, map_height_, map_width_));
+    if (share <= 0.0) continue;
+    NearPair pair = sample;
+    pair.texel = static_cast<uint32_t>((y + 1) * (map_width_ + 1) + x);
+    pair.weight *=
+        static_cast<float>(share * TexelSolidAngle(y, map_height_, map_width_));
+    pairs->push_back(pair);
+  }
 }
 
 size_t Transport::MemoryBytes() const {

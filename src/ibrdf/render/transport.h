@@ -3,18 +3,23 @@
 //
 // E_ic = sum_pairs weight f_c(pair) L_c(pair): the pairs of a point are the
 // samples of PointQuadrature, each with eight taps into the BRDF grid and one
-// block of the map (far) or four of its texels (near). No shadows, no bounces.
+// block of the map (far) or four of its texels (near). No bounces. Shadows,
+// where asked for, are part of the weights: pairs are dropped or lowered when
+// the lists are built, so that every product below is that of the shadowed
+// scene. A block that is hidden in part is taken texel by texel.
 //
 // Shapes: map [H, W, 3] radiance; E [points, 3] radiance; BRDF grid
 // [3, nodes] in 1/sr. Inputs must be finite; maps and grids may be negative
 // (tangents). Same bits for any number of threads.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/scene.h"
+#include "ibrdf/render/visibility.h"
 
 namespace ibrdf {
 
@@ -22,6 +27,9 @@ struct TransportOptions {
   QuadratureOptions quadrature;
   BrdfGridShape grid;
   int num_threads = 0;  // <= 0: all
+  // Of the points or more of their image; null: unshadowed. Read at
+  // construction alone.
+  std::shared_ptr<const Visibility> visibility;
 };
 
 class LightOperator;
@@ -89,6 +97,9 @@ class Transport {
 
   void BuildChunk(const std::vector<ShadingPoint>& points,
                   const PointQuadrature& quadrature, Chunk* chunk) const;
+  // A far sample whose block is hidden in part, as pairs with its texels.
+  void SplitBlock(const uint64_t* hidden, const Eigen::Vector3d& n, int block,
+                  const NearPair& sample, std::vector<NearPair>* pairs) const;
   // See PaddedTexels; four floats per entry, the last one 0.
   std::vector<float> PadMap(const float* map) const;
   std::vector<float> PadGrid(const BrdfGrid& grid) const;

@@ -1,0 +1,38 @@
+// Which effects a problem is solved or rendered with, and why.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/render/scene_probe.h"
+#include "ibrdf/render/visibility.h"
+#include "io/problem.h"
+
+namespace ibrdf {
+
+// `auto` simulates an effect where leaving it out is predicted to change log
+// radiance by more than this, mean over the image: in a solve, and in a render
+// at reference quality, which others measure themselves against.
+inline constexpr double kWorthwhileLogError = 0.01;
+inline constexpr double kReferenceLogError = 0.001;
+
+struct EffectsPlan {
+  bool visibility = false;
+  SceneProbe probe;
+  // Predicted under the known light and reflectance; where one is unknown,
+  // under a sun in a clear sky, and for a matte and a glossy surface.
+  ShadowWorth worth;
+  double threshold = kWorthwhileLogError;
+  std::string words;  // for the user
+};
+
+// known_map and known_brdf may be null. Fails where the problem lists an effect
+// that its geometry cannot have.
+StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
+                                  const std::vector<ShadingPoint>& points,
+                                  const Image* known_map,
+                                  const BrdfGrid* known_brdf, double threshold,
+                                  int num_threads);
+
+}  // namespace ibrdf

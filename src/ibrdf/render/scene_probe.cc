@@ -1,0 +1,120 @@
+#include "ibrdf/render/scene_probe.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "ibrdf/base/parallel_for.h"
+#include "ibrdf/render/transport.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kGoldenAngle = kPi * (3.0 - 2.23606797749978969641);
+// Of the mean radiance: darker points count as this bright.
+constexpr double kDarkest = 1e-3;
+
+// At most `most` of the points, evenly spread over the list.
+std::vector<ShadingPoint> Spread(const std::vector<ShadingPoint>& points,
+                                 int most) {
+  const size_t count = std::min(points.size(), static_cast<size_t>(most));
+  std::vector<ShadingPoint> out;
+  for (size_t k = 0; k < count; ++k) {
+    out.push_back(points[(2 * k + 1) * points.size() / (2 * count)]);
+  }
+  return out;
+}
+
+}  // namespace
+
+SceneProbe ProbeScene(const Scene& scene,
+                      const std::vector<ShadingPoint>& points,
+                      const SceneProbeOptions& options) {
+  CHECK(options.max_points > 0 && options.rays_per_point > 0);
+  SceneProbe probe;
+  if (!scene.CastsShadows() || points.empty()) return probe;
+  const std::vector<ShadingPoint> few = Spread(points, options.max_points);
+  const int rays = options.rays_per_point;
+  std::vector<double> hidden(few.size());
+  ParallelFor(static_cast<int64_t>(few.size()), options.num_threads,
+              [&](int64_t i, int) {
+                const Eigen::Vector3d n =
+                    few[i].normal.cast<double>().normalized();
+                const Eigen::Vector3d t = n.unitOrthogonal(), b = n.cross(t);
+                int count = 0;
+                for (int k = 0; k < rays; ++k) {
+                  // A spiral of equal shares of the cosine.
+                  const double r = std::sqrt((k + 0.5) / rays);
+                  const double phi = k * kGoldenAngle;
+                  const Eigen::Vector3d direction =
+                      r * (std::cos(phi) * t + std::sin(phi) * b) +
+                      std::sqrt(1.0 - r * r) * n;
+                  count += scene.Occluded(few[i].position, direction) ? 1 : 0;
+                }
+                hidden[i] = static_cast<double>(count) / rays;
+              });
+  probe.points = static_cast<int>(few.size());
+  probe.rays = static_cast<int64_t>(few.size()) * rays;
+  for (const double h : hidden) {
+    probe.hidden_mean += h / static_cast<double>(hidden.size());
+  }
+  probe.shadowed_share =
+      static_cast<double>(std::count_if(hidden.begin(), hidden.end(),
+                                        [](double h) { return h > 0.0; })) /
+      static_cast<double>(hidden.size());
+  std::sort(hidden.begin(), hidden.end());
+  probe.hidden_90 = hidden[hidden.size() * 9 / 10];
+  probe.hidden_max = hidden.back();
+  return probe;
+}
+
+ShadowWorth PredictShadowWorth(const Scene& scene,
+                               const std::vector<ShadingPoint>& points,
+                               const std::vector<ProbeLook>& looks,
+                               const SceneProbeOptions& options) {
+  CHECK(!looks.empty());
+  ShadowWorth worth;
+  if (!scene.CastsShadows() || points.empty()) return worth;
+  const std::vector<ShadingPoint> few = Spread(points, options.max_points);
+  const int height = looks[0].map->height, width = looks[0].map->width;
+  TransportOptions bare, shadowed;
+  bare.num_threads = options.num_threads;
+  bare.grid = looks[0].brdf->shape;
+  shadowed = bare;
+  VisibilityOptions rays;
+  rays.num_threads = options.num_threads;
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  shadowed.visibility = std::make_shared<Visibility>(scene, few, rays);
+  worth.seconds = std::chrono::duration<double>(Clock::now() - start).count() *
+                  static_cast<double>(points.size()) /
+                  static_cast<double>(few.size());
+  const Transport without(few, height, width, bare);
+  const Transport with(few, height, width, shadowed);
+  std::vector<double> a(3 * few.size()), b(a.size());
+  for (size_t look = 0; look < looks.size(); ++look) {
+    CHECK(looks[look].map->height == height && looks[look].map->width == width);
+    without.Render(*looks[look].brdf, looks[look].map->rgb.data(), a.data());
+    with.Render(*looks[look].brdf, looks[look].map->rgb.data(), b.data());
+    double mean = 0.0, error = 0.0;
+    for (const double e : a) mean += e / static_cast<double>(a.size());
+    if (!(mean > 0.0)) continue;
+    for (size_t i = 0; i < a.size(); ++i) {
+      error += std::abs(std::log(std::max(a[i], kDarkest * mean)) -
+                        std::log(std::max(b[i], kDarkest * mean))) /
+               static_cast<double>(a.size());
+    }
+    if (error > worth.log_error) {
+      worth.log_error = error;
+      worth.look = static_cast<int>(look);
+    }
+  }
+  return worth;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,97 @@
+// Meshes that shadow themselves or must not.
+#pragma once
+#include <Eigen/Geometry>
+#include <cmath>
+#include <vector>
+
+#include "ibrdf/geometry/camera.h"
+#include "ibrdf/geometry/triangle_mesh.h"
+#include "tests/render/render_testing.h"
+
+namespace ibrdf {
+namespace testing {
+
+inline void AddQuad(const std::vector<Eigen::Vector3d>& corners,
+                    TriangleMesh* mesh) {
+  const int first = static_cast<int>(mesh->vertices.size());
+  for (const Eigen::Vector3d& p : corners) {
+    mesh->vertices.push_back(p.cast<float>());
+  }
+  mesh->triangles.push_back({first, first + 1, first + 2});
+  mesh->triangles.push_back({first, first + 2, first + 3});
+}
+
+// Facing z.
+inline void AddDisc(const Eigen::Vector3d& centre, double radius, int sides,
+                    TriangleMesh* mesh) {
+  const int first = static_cast<int>(mesh->vertices.size());
+  mesh->vertices.push_back(centre.cast<float>());
+  for (int k = 0; k < sides; ++k) {
+    const double phi = 2 * kPi * k / sides;
+    mesh->vertices.push_back(
+        (centre + radius * Eigen::Vector3d(std::cos(phi), std::sin(phi), 0))
+            .cast<float>());
+    mesh->triangles.push_back(
+        {first, first + 1 + k, first + 1 + (k + 1) % sides});
+  }
+}
+
+// Smooth normals on a grid of a closed surface of two angles.
+template <typename Surface>
+TriangleMesh GridMesh(int rows, int columns, bool rows_wrap,
+                      const Surface& surface) {
+  TriangleMesh mesh;
+  const int vertex_rows = rows_wrap ? rows : rows + 1;
+  for (int r = 0; r < vertex_rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      Eigen::Vector3d p, n;
+      surface(static_cast<double>(r) / rows, static_cast<double>(c) / columns,
+              &p, &n);
+      mesh.vertices.push_back(p.cast<float>());
+      mesh.normals.push_back(n.cast<float>());
+    }
+  }
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      const int a = r * columns + c, b = r * columns + (c + 1) % columns;
+      const int below = (r + 1) % vertex_rows * columns;
+      const int d = below + c, e = below + (c + 1) % columns;
+      mesh.triangles.push_back({a, d, e});
+      mesh.triangles.push_back({a, e, b});
+    }
+  }
+  return mesh;
+}
+
+inline TriangleMesh BallMesh(int rings, double radius) {
+  return GridMesh(
+      rings, 2 * rings, false,
+      [radius](double u, double v, Eigen::Vector3d* p, Eigen::Vector3d* n) {
+        const double s = std::sin(kPi * u), phi = 2 * kPi * v;
+        *n = {s * std::sin(phi), std::cos(kPi * u), s * std::cos(phi)};
+        *p = radius * *n;
+      });
+}
+
+// Radii 0.7 and 0.3 about the y axis.
+inline TriangleMesh TorusMesh(int around, int tube) {
+  return GridMesh(
+      tube, around, true,
+      [](double u, double v, Eigen::Vector3d* p, Eigen::Vector3d* n) {
+        const double a = 2 * kPi * u, phi = 2 * kPi * v;
+        const Eigen::Vector3d out(std::sin(phi), 0, std::cos(phi));
+        *n = std::cos(a) * out + std::sin(a) * Eigen::Vector3d::UnitY();
+        *p = 0.7 * out + 0.3 * *n;
+      });
+}
+
+// Looks into the hole from above.
+inline Camera TorusCamera() {
+  Camera camera;
+  camera.type = CameraType::kPerspective;
+  camera.from = {0.5, 4.0, 3.0};
+  return camera;
+}
+
+}  // namespace testing
+}  // namespace ibrdf

@@ -1,0 +1,152 @@
+#include "solvers/effects_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "io/exr.h"
+#include "io/problem_file.h"
+#include "solvers/render_scene.h"
+#include "solvers/solve_problem.h"
+#include "tests/solvers/solver_testing.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+// Each side hides half of what a point inside sees towards it: a right angle,
+// its crease at the back, along y.
+constexpr char kGroove[] =
+    "v 0.001 -1 -1\nv 1 -1 0\nv 1 1 0\nv 0.001 1 -1\n"
+    "v -0.001 -1 -1\nv -0.001 1 -1\nv -1 1 0\nv -1 -1 0\n"
+    "f 1 2 3 4\nf 5 6 7 8\n";
+// Two sides that look away from each other.
+constexpr char kRidge[] =
+    "v 0.001 -1 0\nv 1 -1 -1\nv 1 1 -1\nv 0.001 1 0\n"
+    "v -0.001 -1 0\nv -0.001 1 0\nv -1 1 -1\nv -1 -1 -1\n"
+    "f 1 2 3 4\nf 5 6 7 8\n";
+
+class EffectsPlanTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    WriteBytes(dir_.File("groove.obj"), kGroove);
+    WriteBytes(dir_.File("ridge.obj"), kRidge);
+    ASSERT_TRUE(WriteExr(SmoothMap(32, 64), dir_.File("map.exr")).ok());
+    WriteBytes(dir_.File("scene.yaml"),
+               "image: {width: 24, height: 24}\n"
+               "geometry: {mesh: groove.obj, fit: none}\n"
+               "reflectance: {known: {lambertian: 0.5}}\n"
+               "illumination: {known: map.exr}\n"
+               "quality: preview\n");
+  }
+  StatusOr<RenderedScene> Render(const std::vector<std::string>& overrides) {
+    const StatusOr<Problem> problem =
+        ReadProblem(dir_.File("scene.yaml"), overrides);
+    if (!problem.ok()) return problem.status();
+    return RenderScene(*problem, {});
+  }
+  const TempDir dir_;
+};
+
+TEST_F(EffectsPlanTest, AutoShadowsWhatNeedsItAndSaysSo) {
+  const RenderedScene groove = Render({}).value();
+  EXPECT_TRUE(groove.effects.visibility);
+  EXPECT_EQ(0u, groove.effects.words.find("visibility: "))
+      << groove.effects.words;
+  EXPECT_GT(groove.effects.worth.log_error, 0.1);
+  EXPECT_EQ(1.0, groove.effects.probe.shadowed_share);
+
+  const RenderedScene ridge = Render({"geometry.mesh=ridge.obj"}).value();
+  EXPECT_FALSE(ridge.effects.visibility);
+  EXPECT_EQ(0u, ridge.effects.words.find("none: "));
+  EXPECT_EQ(0.0, ridge.effects.worth.log_error);
+
+  const RenderedScene sphere = Render({"geometry={sphere: {}}"}).value();
+  EXPECT_EQ(0, sphere.effects.probe.rays);
+  EXPECT_NE(std::string::npos, sphere.effects.words.find("convex"));
+}
+
+TEST_F(EffectsPlanTest, PredictionIsTheErrorOfTheImage) {
+  const RenderedScene with = Render({"effects=all"}).value();
+  const RenderedScene without = Render({"effects=none"}).value();
+  EXPECT_TRUE(with.effects.visibility);
+  EXPECT_FALSE(without.effects.visibility);
+  double error = 0.0;
+  int count = 0;
+  for (size_t k = 0; k < with.image.rgb.size(); ++k) {
+    if (with.mask.inside[k / 3] == 0) continue;
+    EXPECT_LE(with.image.rgb[k], without.image.rgb[k] * (1 + 1e-6));
+    error += std::log(without.image.rgb[k] / with.image.rgb[k]);
+    ++count;
+  }
+  EXPECT_NEAR(error / count, without.effects.worth.log_error,
+              0.1 * error / count);
+}
+
+TEST_F(EffectsPlanTest, TheUserOverrules) {
+  EXPECT_FALSE(Render({"effects=[perspective]"})->effects.visibility);
+  EXPECT_TRUE(Render({"effects=[visibility]"})->effects.visibility);
+  const RenderedScene ridge =
+      Render({"effects=[visibility]", "geometry.mesh=ridge.obj"}).value();
+  EXPECT_TRUE(ridge.effects.visibility);
+  EXPECT_EQ(Render({"geometry.mesh=ridge.obj"})->image.rgb, ridge.image.rgb);
+}
+
+TEST_F(EffectsPlanTest, NormalsHaveNoShadows) {
+  Image normals(24, 24);
+  for (size_t i = 0; i < normals.num_pixels(); ++i) normals.rgb[3 * i + 2] = 1;
+  ASSERT_TRUE(WriteExr(normals, dir_.File("normals.exr")).ok());
+  const std::string geometry = "geometry={normals: normals.exr}";
+  EXPECT_NE(std::string::npos,
+            Render({geometry})->effects.words.find("no positions"));
+  const Status refused = Render({geometry, "effects=[visibility]"}).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, refused.code());
+  EXPECT_NE(std::string::npos, refused.message().find("effects"));
+}
+
+// The solver gets the table, its result tells why, and the light that it finds
+// under shadows explains the shadowed image where the other's does not.
+TEST_F(EffectsPlanTest, SolveUsesShadowsAndReportsThem) {
+  const RenderedScene scene =
+      Render({"effects=all", "quality=reference"}).value();
+  ASSERT_TRUE(WriteExr(scene.image, dir_.File("input.exr")).ok());
+  WriteBytes(dir_.File("solve.yaml"),
+             "problem: illumination\n"
+             "image: {file: input.exr}\n"
+             "geometry: {mesh: groove.obj, fit: none}\n"
+             "reflectance: {known: {lambertian: 0.5}}\n"
+             "illumination: {width: 16, height: 8, prior: none}\n"
+             "solver: {seconds: 20, max_iterations: 6}\n");
+  double misfit[2];
+  for (const bool shadows : {false, true}) {
+    const StatusOr<Problem> problem = ReadProblem(
+        dir_.File("solve.yaml"), {shadows ? "effects=auto" : "effects=none"});
+    ASSERT_TRUE(problem.ok()) << problem.status().message();
+    StatusOr<InverseProblem> inverse = LoadInverseProblem(*problem, 1, 0);
+    ASSERT_TRUE(inverse.ok()) << inverse.status().message();
+    EXPECT_EQ(shadows, inverse->transport.visibility != nullptr);
+    const StatusOr<Estimate> estimate =
+        SolveInverseRendering(*inverse, nullptr, nullptr);
+    ASSERT_TRUE(estimate.ok()) << estimate.status().message();
+    misfit[shadows ? 1 : 0] = estimate->misfit;
+    if (!shadows) continue;
+    ASSERT_TRUE(
+        WriteResults(*problem, *inverse, *estimate, dir_.File("out"), nullptr)
+            .ok());
+    const nlohmann::json result =
+        nlohmann::json::parse(ReadBytes(dir_.File("out/result.json")));
+    EXPECT_EQ(inverse->effects.words, result["effects"].get<std::string>());
+    const nlohmann::json& visibility = result["effects_plan"]["visibility"];
+    EXPECT_TRUE(visibility["simulated"].get<bool>());
+    EXPECT_EQ(inverse->effects.worth.log_error,
+              visibility["log_radiance_error_without"].get<double>());
+    EXPECT_GT(visibility["rays"].get<int64_t>(), 0);
+  }
+  EXPECT_LT(misfit[1], 0.5 * misfit[0]);
+}
+
+}  // namespace
+}  // namespace ibrdf
