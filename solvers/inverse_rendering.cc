@@ -30,8 +30,12 @@ namespace {
 // a draw of the light's process, then the last round, are over.
 constexpr double kSearchShare = 0.5;
 constexpr double kProcessShare = 0.75;
-// What follows the last round, its last steps included, takes the rest.
-constexpr double kMapShare = 0.9;
+// A round's last steps take the rest.
+constexpr double kMapShare = 0.95;
+// Time of Finish over that of a transport of all pixels, which it builds: the
+// render, the alternatives and the tables are the rest.
+constexpr double kFinishPerTransport = 2.5;
+constexpr double kMostFinishShare = 0.3;
 constexpr double kFirstScale = 0.1;  // b at first: tolerant
 constexpr double kScaleStep = 3.0;   // b falls by no more in a round
 // Rounds end where b falls by no more than to this share, and the cost by this
@@ -46,7 +50,7 @@ constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
 // Of the disc of normals: what a map's estimate is made from, and what a few
 // dozen parameters under known light can learn from.
 constexpr int kMapCells = 64;
-constexpr int kKnownLightCells = 26;
+constexpr int kKnownLightCells = 20;
 constexpr double kMinCosine = 0.1;
 constexpr size_t kThinPoints = 4000;
 // Maps are first found at this size or below.
@@ -83,7 +87,7 @@ class Estimator {
     } else if (lobes_unknown() &&
                problem_.solver.estimator == SolverEstimator::kMarginal) {
       IBRDF_RETURN_IF_ERROR(SearchMarginal(&state));
-      EstimateLight(&state);
+      IBRDF_RETURN_IF_ERROR(EstimateLight(&state));
     } else if (lobes_unknown()) {
       StartAtMeanMaterial(&state);
       SetLight(MakeLight(), true);
@@ -92,9 +96,10 @@ class Estimator {
       first_ = state;
       first_mean_ = light_mean_;
       Report("start", cells_.get(), state);
-      Rounds("maximum", JointBlocks::kBoth, kMapShare, &state);
+      IBRDF_RETURN_IF_ERROR(Rounds("maximum", MethodFor(JointBlocks::kBoth),
+                                   JointBlocks::kBoth, kMapShare, &state));
     } else {
-      EstimateLight(&state);
+      IBRDF_RETURN_IF_ERROR(EstimateLight(&state));
     }
     return Finish(state);
   }
@@ -105,9 +110,11 @@ class Estimator {
   bool Interrupted() const { return stop_ != nullptr && stop_->load(); }
   bool lobes_unknown() const { return !problem_.known_brdf.has_value(); }
   bool light_unknown() const { return !problem_.known_map.has_value(); }
+  // Of the time but for what Finish takes.
   std::function<bool()> StopAfter(double share) const {
-    return
-        [this, share] { return Interrupted() || Elapsed() > share * Budget(); };
+    return [this, share] {
+      return Interrupted() || Elapsed() > share * (Budget() - finish_seconds_);
+    };
   }
 
   Status Prepare() {
@@ -181,7 +188,7 @@ class Estimator {
   }
 
   // Built at first use, for the present map's size.
-  const Transport& TransportOf(Level* level) const {
+  const Transport& TransportOf(Level* level) {
     const int height = light_ ? light_->height() : problem_.map_height;
     const int width = light_ ? light_->width() : problem_.map_width;
     if (level->transport == nullptr ||
@@ -189,8 +196,17 @@ class Estimator {
         level->transport->map_width() != width) {
       TransportOptions options = problem_.transport;
       options.num_threads = problem_.num_threads;
+      const double start = Elapsed();
       level->transport =
           std::make_unique<Transport>(level->points, height, width, options);
+      const double texels =
+          static_cast<double>(problem_.map_width) * problem_.map_height;
+      finish_seconds_ = std::min(
+          kFinishPerTransport * (Elapsed() - start) *
+              (static_cast<double>(full_->points.size()) /
+               level->points.size()) *
+              std::max(1.0, texels / (static_cast<double>(width) * height)),
+          kMostFinishShare * Budget());
     }
     return *level->transport;
   }
@@ -201,7 +217,7 @@ class Estimator {
     std::unique_ptr<LightOperator> known_brdf;
     std::unique_ptr<JointObjective> objective;
   };
-  LevelObjective ObjectiveOn(Level* level) const {
+  LevelObjective ObjectiveOn(Level* level) {
     LevelObjective out;
     JointTerms terms;
     terms.observed = &level->observed;
@@ -375,7 +391,7 @@ class Estimator {
   // The map given the reflectance: as a draw of the light's process first,
   // whose parameters are as good as whitened and take a tenth of the time of
   // a network's; then as the network's output, from its fit to that draw.
-  void EstimateLight(JointState* state) {
+  Status EstimateLight(JointState* state) {
     const bool none = problem_.illumination_prior == IlluminationPrior::kNone;
     if (none || problem_.solver.max_iterations == 0) {
       SetLight(MakeLight(), !none);
@@ -383,8 +399,8 @@ class Estimator {
       first_.light = state->light;
       first_mean_ = light_mean_;
       Report("constant map", cells_.get(), *state);
-      Rounds("map", JointBlocks::kLight, kMapShare, state);
-      return;
+      return Rounds("map", MethodFor(JointBlocks::kLight), JointBlocks::kLight,
+                    kMapShare, state);
     }
     const bool network =
         problem_.illumination_prior == IlluminationPrior::kUNet;
@@ -406,9 +422,12 @@ class Estimator {
       o.should_stop = StopAfter(kProcessShare);
       FitLogMap(Planar(mode_, height, width), o, light_.get(), &state->light);
     }
-    Rounds("map", JointBlocks::kLight, network ? kProcessShare : kMapShare,
-           state);
-    if (!network) return;
+    // The draw itself has one fitting method; solver.method is the network's.
+    IBRDF_RETURN_IF_ERROR(Rounds(
+        "map",
+        network ? JointMethod::kGaussNewton : MethodFor(JointBlocks::kLight),
+        JointBlocks::kLight, network ? kProcessShare : kMapShare, state));
+    if (!network) return OkStatus();
     Image log_map(width, height);
     std::vector<float> planar(light_->num_outputs());
     light_->Forward(state->light.data(), planar.data());
@@ -425,7 +444,8 @@ class Estimator {
     FitLogMap(Planar(log_map, problem_.map_height, problem_.map_width), o,
               light_.get(), &state->light);
     Report("network", cells_.get(), *state);
-    Rounds("network", JointBlocks::kLight, kMapShare, state);
+    return Rounds("network", MethodFor(JointBlocks::kLight),
+                  JointBlocks::kLight, kMapShare, state);
   }
 
   // [3][height][width] of an image [H, W, 3], between its centres bilinearly.
@@ -494,11 +514,11 @@ class Estimator {
 
   // Lowers the objective over the blocks, some steps at a scale, until a share
   // of the time is spent or a round gains less than the tolerance.
-  void Rounds(const std::string& stage, JointBlocks blocks, double share,
-              JointState* state) {
+  Status Rounds(const std::string& stage, JointMethod method,
+                JointBlocks blocks, double share, JointState* state) {
     Level* const level = cells_.get();
     if (StopAfter(share)() || iterations_ >= problem_.solver.max_iterations) {
-      return;
+      return OkStatus();
     }
     JointMethodOptions o;
     // The network's products cost more, and its fit leaves less to do.
@@ -507,15 +527,18 @@ class Estimator {
     o.tolerance = problem_.solver.tolerance;
     o.should_stop = StopAfter(share);
     o.adam_rounds = 1;
+    // The reference runs as many rounds as it is given (Chen et al. 2020).
+    const bool whole_schedule = method == JointMethod::kAdam;
     TraceEntry before = Evaluate(stage, level, *state);
     for (int round = 0; iterations_ < problem_.solver.max_iterations; ++round) {
-      if (StopAfter(share)()) return;
+      if (StopAfter(share)()) break;
       UpdateScale(before.misfit);
       const LevelObjective on = ObjectiveOn(level);
       if (lobes_unknown() && light_unknown()) on.objective->Free(blocks);
+      IBRDF_RETURN_IF_ERROR(CheckJointMethod(method, *on.objective));
       before = Entry(stage, *level, *state, on.objective->Evaluate(*state));
       JointState next = *state;
-      MinimiseJoint(MethodFor(blocks), on.objective.get(), &next, o);
+      MinimiseJoint(method, on.objective.get(), &next, o);
       const std::vector<float> mean = light_mean_;
       if (blocks == JointBlocks::kBoth) FixGauge(&next);
       const TraceEntry after =
@@ -523,19 +546,15 @@ class Estimator {
       ++iterations_;
       if (!(after.cost < before.cost)) {
         light_mean_ = mean;
-        return;
+        if (whole_schedule) continue;
+        break;
       }
       *state = next;
       Report(after);
-      const double gain = before.cost - after.cost;
-      const bool scale_settled =
-          ScaleFor(after.misfit) > kSettledScale * likelihood_.scale;
+      if (!whole_schedule && RoundsSettled(before, after)) break;
       before = after;
-      if (scale_settled && gain < kRoundTolerance * problem_.solver.tolerance *
-                                      std::max(after.cost, 1.0)) {
-        return;
-      }
     }
+    return OkStatus();
   }
 
   // The materials under the known light, the best few refined.
@@ -593,14 +612,17 @@ class Estimator {
       if (!(after.cost < before.cost)) return;
       *state = next;
       Report(after);
-      const bool scale_settled = ScaleFor(after.misfit) == likelihood_.scale;
-      const double gain = before.cost - after.cost;
+      if (RoundsSettled(before, after)) return;
       before = after;
-      if (scale_settled &&
-          gain < problem_.solver.tolerance * std::max(after.cost, 1.0)) {
-        return;
-      }
     }
+  }
+
+  // Whether another round is not worth its time.
+  bool RoundsSettled(const TraceEntry& before, const TraceEntry& after) const {
+    return ScaleFor(after.misfit) > kSettledScale * likelihood_.scale &&
+           before.cost - after.cost < kRoundTolerance *
+                                          problem_.solver.tolerance *
+                                          std::max(after.cost, 1.0);
   }
 
   // The Laplacian's maximum-likelihood scale is the mean magnitude of the
@@ -693,6 +715,7 @@ class Estimator {
   std::vector<float> light_mean_, first_mean_;
   double light_amplitude_ = 1.0;
   JointState first_;
+  double finish_seconds_ = 0.0;  // predicted
   std::string start_name_;
   std::vector<TriedMaterial> tried_;
   Eigen::MatrixXd covariance_;
