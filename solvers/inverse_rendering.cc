@@ -17,6 +17,7 @@
 #include "solvers/joint/joint_method.h"
 #include "solvers/joint/process_prior.h"
 #include "solvers/known_light_search.h"
+#include "solvers/level_gauge.h"
 #include "solvers/log_map_fit.h"
 #include "solvers/marginal/reflectance_search.h"
 #include "solvers/mean_cells.h"
@@ -26,12 +27,13 @@
 namespace ibrdf {
 namespace {
 
-// Of the time, at most: until the search for the reflectance, then the map as
-// a draw of the light's process, then the last round, are over.
-constexpr double kSearchShare = 0.5;
-constexpr double kProcessShare = 0.75;
-// A round's last steps take the rest.
-constexpr double kMapShare = 0.95;
+// Of the time left, at most: the search for the reflectance; the map as a draw
+// of the light's process; the last rounds, whose last steps take the rest.
+constexpr double kSearchShare = 0.4;
+constexpr double kProcessShare = 0.5;
+constexpr double kMapShare = 0.9;
+// Of the draw's misfit: a network beyond it is not finished.
+constexpr double kWorseMisfit = 1.5;
 // Time of Finish over that of a transport of all pixels, which it builds: the
 // render, the alternatives and the tables are the rest.
 constexpr double kFinishPerTransport = 2.5;
@@ -110,11 +112,12 @@ class Estimator {
   bool Interrupted() const { return stop_ != nullptr && stop_->load(); }
   bool lobes_unknown() const { return !problem_.known_brdf.has_value(); }
   bool light_unknown() const { return !problem_.known_map.has_value(); }
-  // Of the time but for what Finish takes.
+  // Of the time left from now on but for what Finish takes.
   std::function<bool()> StopAfter(double share) const {
-    return [this, share] {
-      return Interrupted() || Elapsed() > share * (Budget() - finish_seconds_);
-    };
+    const double now = Elapsed();
+    const double end =
+        now + share * std::max(Budget() - finish_seconds_ - now, 0.0);
+    return [this, end] { return Interrupted() || Elapsed() > end; };
   }
 
   Status Prepare() {
@@ -312,6 +315,15 @@ class Estimator {
                           RadianceOf(problem_.points), o);
     if (!found.ok()) return found.status();
     state->lobes = found->parameters;
+    const double level =
+        LevelShift(problem_.model, materials_, VectorOf(state->lobes),
+                   problem_.num_threads);
+    for (int k = 0; k < lobes_->num_lobes(); ++k) {
+      for (int c = 0; c < 3; ++c) {
+        state->lobes[static_cast<size_t>(k) * lobes_->lobe_size() +
+                     lobes_->code_size() + c] += level;
+      }
+    }
     start_name_ = found->start;
     light_amplitude_ = found->amplitude;
     const auto& materials = materials_.materials;
@@ -325,7 +337,7 @@ class Estimator {
     const size_t texels = map_std_.num_pixels();
     for (size_t i = 0; i < 3 * texels; ++i) {
       const size_t from = i % 3 * texels + i / 3;
-      mode_.rgb[i] = static_cast<float>(found->log_radiance[from]);
+      mode_.rgb[i] = static_cast<float>(found->log_radiance[from] - level);
       map_std_.rgb[i] = static_cast<float>(found->log_radiance_std[from]);
     }
     for (const TriedMaterial& tried : found->tried) {
@@ -419,7 +431,7 @@ class Estimator {
     Report("constant map", cells_.get(), *state);
     if (mode_.num_pixels() > 0) {
       LogMapFitOptions o;
-      o.should_stop = StopAfter(kProcessShare);
+      o.should_stop = StopAfter(kProcessShare / 2);
       FitLogMap(Planar(mode_, height, width), o, light_.get(), &state->light);
     }
     // The draw itself has one fitting method; solver.method is the network's.
@@ -435,17 +447,32 @@ class Estimator {
     for (size_t i = 0; i < 3 * texels; ++i) {
       log_map.rgb[i] = planar[i % 3 * texels + i / 3];
     }
+    const double draw_misfit = Evaluate("map", cells_.get(), *state).misfit;
+    const std::vector<float> draw = state->light, draw_mean = light_mean_;
+    const JointState draw_first = first_;
+    std::unique_ptr<IlluminationModel> process = std::move(light_);
     SetLight(MakeLight(), true);
     StartAtLevel(state);
     first_.light = state->light;
     first_mean_ = light_mean_;
     LogMapFitOptions o;
-    o.should_stop = StopAfter(kMapShare);
+    o.should_stop = StopAfter(kMapShare / 2);
     FitLogMap(Planar(log_map, problem_.map_height, problem_.map_width), o,
               light_.get(), &state->light);
     Report("network", cells_.get(), *state);
-    return Rounds("network", MethodFor(JointBlocks::kLight),
-                  JointBlocks::kLight, kMapShare, state);
+    IBRDF_RETURN_IF_ERROR(Rounds("network", MethodFor(JointBlocks::kLight),
+                                 JointBlocks::kLight, kMapShare, state));
+    // Out of time before the network came near the draw: the draw it is.
+    const double misfit = Evaluate("network", cells_.get(), *state).misfit;
+    if (misfit > kWorseMisfit * draw_misfit &&
+        process->width() == problem_.map_width) {
+      SetLight(std::move(process), false);
+      state->light = draw;
+      light_mean_ = first_mean_ = draw_mean;
+      first_ = draw_first;
+      Report("map again", cells_.get(), *state);
+    }
+    return OkStatus();
   }
 
   // [3][height][width] of an image [H, W, 3], between its centres bilinearly.
@@ -517,7 +544,8 @@ class Estimator {
   Status Rounds(const std::string& stage, JointMethod method,
                 JointBlocks blocks, double share, JointState* state) {
     Level* const level = cells_.get();
-    if (StopAfter(share)() || iterations_ >= problem_.solver.max_iterations) {
+    const std::function<bool()> stop = StopAfter(share);
+    if (stop() || iterations_ >= problem_.solver.max_iterations) {
       return OkStatus();
     }
     JointMethodOptions o;
@@ -525,13 +553,13 @@ class Estimator {
     o.max_iterations = has_process_prior_ ? 3 : 4;
     o.max_cg_iterations = has_process_prior_ ? 20 : 40;
     o.tolerance = problem_.solver.tolerance;
-    o.should_stop = StopAfter(share);
+    o.should_stop = stop;
     o.adam_rounds = 1;
     // The reference runs as many rounds as it is given (Chen et al. 2020).
     const bool whole_schedule = method == JointMethod::kAdam;
     TraceEntry before = Evaluate(stage, level, *state);
     for (int round = 0; iterations_ < problem_.solver.max_iterations; ++round) {
-      if (StopAfter(share)()) break;
+      if (stop()) break;
       UpdateScale(before.misfit);
       const LevelObjective on = ObjectiveOn(level);
       if (lobes_unknown() && light_unknown()) on.objective->Free(blocks);
@@ -571,8 +599,9 @@ class Estimator {
     if (problem_.solver.max_iterations == 0) return best;
     const int starts =
         std::min<int>(kKnownLightStarts, static_cast<int>(ranked.size()));
+    const std::function<bool()> stop = StopAfter(kSearchShare);
     for (int k = 0; k < starts; ++k) {
-      if (k > 0 && StopAfter(kSearchShare)()) break;
+      if (k > 0 && stop()) break;
       JointState state;
       state.lobes = ranked[k].parameters;
       LobeSteps(&state);
@@ -601,7 +630,7 @@ class Estimator {
   void KnownLightRounds(JointState* state) {
     TraceEntry before = Evaluate("refine", few_.get(), *state);
     for (int round = 0; iterations_ < problem_.solver.max_iterations; ++round) {
-      if (StopAfter(1.0)()) return;
+      if (Interrupted() || Elapsed() > Budget() - finish_seconds_) return;
       UpdateScale(before.misfit);
       before = Evaluate("refine", few_.get(), *state);
       JointState next = *state;

@@ -177,6 +177,10 @@ std::string Text(const Json& document) {
 const char* Gauge(const InverseProblem& inverse) {
   if (inverse.known_map.has_value()) return "set by the known illumination";
   if (inverse.known_brdf.has_value()) return "set by the known reflectance";
+  if (inverse.solver.estimator == SolverEstimator::kMarginal) {
+    return "scale between reflectance and light: mean log reflectance that of "
+           "the training materials; hue: most probable";
+  }
   return "scale per channel between reflectance and light: least prior cost of "
          "log colours (training materials) and of the light's mean chroma";
 }

@@ -70,6 +70,7 @@ const std::vector<ParetoSetting>& ParetoSettings() {
       {"lobes-1", [](P* p) { p->lobes = 1; }},
       {"lobes-2", [](P* p) { p->lobes = 2; }},
       {"lobes-3", [](P* p) { p->lobes = 3; }},
+      {"prior-process", [](P* p) { p->prior = "process"; }},
       {"prior-none", [](P* p) { p->prior = "none"; }},
       {"small", MakeSmall},
       {"small-trust_region",
