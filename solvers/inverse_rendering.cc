@@ -52,7 +52,7 @@ constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
 // Of the disc of normals: what a map's estimate is made from, and what a few
 // dozen parameters under known light can learn from.
 constexpr int kMapCells = 64;
-constexpr int kKnownLightCells = 20;
+constexpr int kKnownLightCells = 26;
 constexpr double kMinCosine = 0.1;
 constexpr size_t kThinPoints = 4000;
 // Maps are first found at this size or below.
@@ -587,7 +587,14 @@ class Estimator {
 
   // The materials under the known light, the best few refined.
   JointState StartUnderKnownLight() {
-    few_ = MakeCellLevel(kKnownLightCells);
+    // Pixels as they are: under a known lamp the mean of a cell is not the
+    // radiance of its mean normal.
+    std::vector<ShadingPoint> few =
+        GroupByNormal(problem_.points, RadianceOf(problem_.points),
+                      {kKnownLightCells, 1, kMinCosine})
+            .points;
+    if (few.empty()) few = problem_.points;
+    few_ = MakeLevel(few, RadianceOf(few));
     const std::vector<RankedMaterial> ranked = RankUnderKnownLight(
         TransportOf(few_.get()), *lobes_, materials_, problem_.known_map->rgb,
         few_->observed, likelihood_);
