@@ -56,8 +56,8 @@ double CeresCost(const JointScene& scene, const JointTerms& terms, bool unet,
       nullptr, light.data());
   double cost = 0.0;
   EXPECT_TRUE(problem.Evaluate({}, &cost, nullptr, nullptr, nullptr));
-  EdgePrior edges(8, 16, 1.0, 0.3);
-  return cost + edges.Evaluate(log_map.data(), nullptr);
+  ProcessPrior process(8, 16, LightProcess(), 1.0, 0.0);
+  return cost + process.Evaluate(log_map.data(), nullptr);
 }
 
 JointMethodOptions ShortOptions() {

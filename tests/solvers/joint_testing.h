@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
-#include "solvers/joint/edge_prior.h"
 #include "solvers/joint/joint_objective.h"
+#include "solvers/joint/process_prior.h"
 #include "tests/solvers/solver_testing.h"
 
 namespace ibrdf {
@@ -38,7 +38,7 @@ struct JointScene {
     mean = light->ConstantMap(zero);
   }
 
-  JointTerms Terms(bool with_edges = true) {
+  JointTerms Terms(bool with_process = true) {
     JointTerms terms;
     terms.observed = &observed;
     terms.likelihood.scale = 0.1;
@@ -47,7 +47,7 @@ struct JointScene {
     for (double& m : terms.lobe_prior.colour_mean) m = 4.0;
     terms.illumination = light.get();
     terms.light_mean = mean;
-    if (with_edges) terms.light_priors = {&edges};
+    if (with_process) terms.light_priors = {&process};
     return terms;
   }
   JointTerms KnownLight() {
@@ -86,7 +86,7 @@ struct JointScene {
   const NeuralBrdfModel model = SmoothTinyModel(2);
   const LobeModel lobes{model, 2, TinyTransportOptions().grid, 1};
   const std::unique_ptr<IlluminationModel> light;
-  EdgePrior edges{8, 16, 1.0, 0.3};
+  ProcessPrior process{8, 16, LightProcess(), 1.0, 0.0};
   std::vector<double> truth;
   BrdfGrid grid;
   Observations observed;
