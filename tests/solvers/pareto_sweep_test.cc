@@ -1,6 +1,7 @@
 #include "solvers/bench/pareto_sweep.h"
 
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "io/problem_file.h"
@@ -80,9 +81,11 @@ TEST_F(ParetoSweepTest, ProblemsSayWhatRowsSay) {
     EXPECT_EQ(std::stoi(Cell(row, "lobes")), problem->reflectance.lobes);
     EXPECT_EQ(std::stoi(Cell(row, "map_width")), problem->illumination.width);
     EXPECT_EQ(problem->illumination.width, 2 * problem->illumination.height);
-    EXPECT_EQ(Cell(row, "prior"),
-              problem->illumination.prior == IlluminationPrior::kUNet ? "unet"
-                                                                      : "none");
+    const std::map<IlluminationPrior, std::string> priors = {
+        {IlluminationPrior::kUNet, "unet"},
+        {IlluminationPrior::kProcess, "process"},
+        {IlluminationPrior::kNone, "none"}};
+    EXPECT_EQ(Cell(row, "prior"), priors.at(problem->illumination.prior));
     EXPECT_EQ(std::stoi(Cell(row, "size")), run.of.size);
     const bool own_case = run.of.name != "paint_a";
     EXPECT_EQ(own_case, run.of.size != options_.size);

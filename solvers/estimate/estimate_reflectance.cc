@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "solvers/embedding_prior.h"
+#include "solvers/estimate/estimator.h"
+#include "solvers/known_light_search.h"
+#include "solvers/level_gauge.h"
+#include "solvers/reflectance_solver.h"
+
+namespace ibrdf {
+namespace {
+
+// Of the time left, at most: the search for the reflectance.
+constexpr double kSearchShare = 0.4;
+// Of the disc of normals: what a few dozen parameters under known light can
+// learn from.
+constexpr int kKnownLightCells = 26;
+constexpr int kKnownLightStarts = 4;
+constexpr int kKnownLightSteps = 6;  // of the trust region, each time
+
+}  // namespace
+
+double Estimator::MoveToMeanLevel(std::vector<double>* lobes) const {
+  const double level = LevelShift(problem_.model, materials_, VectorOf(*lobes),
+                                  problem_.num_threads);
+  for (int k = 0; k < lobes_->num_lobes(); ++k) {
+    for (int c = 0; c < 3; ++c) {
+      (*lobes)[static_cast<size_t>(k) * lobes_->lobe_size() +
+               lobes_->code_size() + c] += level;
+    }
+  }
+  return level;
+}
+
+Status Estimator::SearchMarginal(JointState* state) {
+  ReflectanceSearchOptions o;
+  o.num_threads = problem_.num_threads;
+  o.screen.visibility = o.coarse.visibility = o.fine.visibility =
+      problem_.transport.visibility;
+  o.should_stop = StopAfter(kSearchShare);
+  // The first stages of a small budget of iterations are cut short alike.
+  const int iterations = problem_.solver.max_iterations;
+  o.starts = iterations == 0 ? 1 : o.starts;
+  o.coarse_iterations = std::min(o.coarse_iterations, 5 * iterations);
+  o.fine_iterations = std::min(o.fine_iterations, 5 * iterations);
+  o.covariance = iterations > 0;
+  o.report = [this](const std::string& stage, double cost, double misfit) {
+    TraceEntry entry;
+    entry.stage = stage;
+    entry.pixels = full_->observed.num_valid;
+    entry.cost = entry.likelihood = cost;
+    entry.misfit = misfit;
+    entry.seconds = Elapsed();
+    Report(entry);
+  };
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance(problem_.model, materials_, problem_.points,
+                        RadianceOf(problem_.image, problem_.points), o);
+  if (!found.ok()) return found.status();
+  state->lobes = found->parameters;
+  const double level = MoveToMeanLevel(&state->lobes);
+  start_name_ = found->start;
+  light_amplitude_ = found->amplitude;
+  const auto& materials = materials_.materials;
+  const auto start =
+      std::find_if(materials.begin(), materials.end(),
+                   [&](const auto& m) { return m.name == found->start; });
+  first_.lobes.assign(start->parameters.data(),
+                      start->parameters.data() + start->parameters.size());
+  MoveToMeanLevel(&first_.lobes);
+  covariance_ = found->covariance;
+  mode_ = map_std_ = Image(found->map_width, found->map_height);
+  const size_t texels = map_std_.num_pixels();
+  for (size_t i = 0; i < 3 * texels; ++i) {
+    const size_t from = i % 3 * texels + i / 3;
+    mode_.rgb[i] = static_cast<float>(found->log_radiance[from] - level);
+    map_std_.rgb[i] = static_cast<float>(found->log_radiance_std[from]);
+  }
+  for (const TriedMaterial& tried : found->tried) {
+    if (std::isfinite(tried.cost)) tried_.push_back(tried);
+  }
+  return OkStatus();
+}
+
+void Estimator::StartAtMeanMaterial(JointState* state) {
+  const std::string name = SpreadMaterials(problem_.model, 1).front().name;
+  for (const MaterialPrior::Material& m : materials_.materials) {
+    if (m.name != name) continue;
+    state->lobes.assign(m.parameters.data(),
+                        m.parameters.data() + m.parameters.size());
+  }
+  start_name_ = name;
+}
+
+JointState Estimator::StartUnderKnownLight() {
+  // Pixels as they are: under a known lamp the mean of a cell is not the
+  // radiance of its mean normal.
+  few_ = MakeSampleLevel(problem_, kKnownLightCells);
+  const std::vector<RankedMaterial> ranked =
+      RankUnderKnownLight(TransportOf(few_.get()), *lobes_, materials_,
+                          problem_.known_map->rgb, few_->observed, likelihood_);
+  first_.lobes = ranked.front().parameters;
+  start_name_ = ranked.front().name;
+  JointState best = first_;
+  TraceEntry least = Evaluate("start " + start_name_, few_.get(), first_);
+  Report(least);
+  if (problem_.solver.max_iterations == 0) return best;
+  const int starts =
+      std::min<int>(kKnownLightStarts, static_cast<int>(ranked.size()));
+  const std::function<bool()> stop = StopAfter(kSearchShare);
+  for (int k = 0; k < starts; ++k) {
+    if (k > 0 && stop()) break;
+    JointState state;
+    state.lobes = ranked[k].parameters;
+    LobeSteps(&state);
+    const TraceEntry entry =
+        Evaluate("start " + ranked[k].name, few_.get(), state);
+    Report(entry);
+    if (!(entry.cost < least.cost)) continue;
+    least = entry;
+    best = state;
+    start_name_ = ranked[k].name;
+  }
+  return best;
+}
+
+void Estimator::LobeSteps(JointState* state) const {
+  ReflectanceStepOptions o;
+  o.likelihood = likelihood_;
+  o.materials = &materials_;
+  o.max_iterations = kKnownLightSteps;
+  o.tolerance = problem_.solver.tolerance;
+  o.should_stop = StopAfter(1.0);
+  SolveReflectance(*few_->transport, *lobes_, problem_.known_map->rgb,
+                   few_->observed, o, &state->lobes);
+}
+
+void Estimator::KnownLightRounds(JointState* state) {
+  TraceEntry before = Evaluate("refine", few_.get(), *state);
+  for (int round = 0; iterations_ < problem_.solver.max_iterations; ++round) {
+    if (Interrupted() || Elapsed() > Budget() - finish_seconds_) return;
+    UpdateScale(before.misfit);
+    before = Evaluate("refine", few_.get(), *state);
+    JointState next = *state;
+    LobeSteps(&next);
+    const TraceEntry after =
+        Evaluate("refine round " + std::to_string(round + 1), few_.get(), next);
+    ++iterations_;
+    if (!(after.cost < before.cost)) return;
+    *state = next;
+    Report(after);
+    if (RoundsSettled(before, after)) return;
+    before = after;
+  }
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,175 @@
+#include "solvers/estimate/estimator.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "solvers/embedding_prior.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kFirstScale = 0.1;     // b at first: tolerant
+constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
+// Of the disc of normals: what a map's estimate is made from.
+constexpr int kMapCells = 64;
+// Time of Finish over that of a transport of all pixels, which it builds: the
+// render, the alternatives and the tables are the rest.
+constexpr double kFinishPerTransport = 2.5;
+constexpr double kMostFinishShare = 0.3;
+
+double Now() {
+  return std::chrono::duration<double>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+Estimator::Estimator(const InverseProblem& problem,
+                     const SolveProgress& progress,
+                     const std::atomic<bool>* stop)
+    : problem_(problem), progress_(progress), stop_(stop), start_(Now()) {}
+
+StatusOr<Estimate> Estimator::Run() {
+  IBRDF_RETURN_IF_ERROR(Prepare());
+  likelihood_.scale = problem_.scale.value_or(kFirstScale);
+  JointState state;
+  if (!light_unknown()) {
+    state = StartUnderKnownLight();
+    if (problem_.solver.max_iterations > 0) KnownLightRounds(&state);
+  } else if (lobes_unknown() &&
+             problem_.solver.estimator == SolverEstimator::kMarginal) {
+    IBRDF_RETURN_IF_ERROR(SearchMarginal(&state));
+    IBRDF_RETURN_IF_ERROR(EstimateLight(&state));
+  } else if (lobes_unknown()) {
+    IBRDF_RETURN_IF_ERROR(EstimateBoth(&state));
+  } else {
+    IBRDF_RETURN_IF_ERROR(EstimateLight(&state));
+  }
+  return Finish(state);
+}
+
+double Estimator::Elapsed() const { return Now() - start_; }
+
+std::function<bool()> Estimator::StopAfter(double share) const {
+  const double now = Elapsed();
+  const double end =
+      now + share * std::max(Budget() - finish_seconds_ - now, 0.0);
+  return [this, end] { return Interrupted() || Elapsed() > end; };
+}
+
+Status Estimator::Prepare() {
+  full_ = MakeFullLevel(problem_);
+  if (full_->observed.num_valid == 0) {
+    return InvalidInput("image",
+                        "no pixel of the object is finite and positive in "
+                        "all three channels");
+  }
+  if (light_unknown()) cells_ = MakeCellLevel(problem_, kMapCells);
+  double mean = 0.0;
+  for (size_t i = 0; i < full_->observed.radiance.size(); ++i) {
+    if (full_->observed.valid[i / 3]) mean += full_->observed.radiance[i];
+  }
+  mean /= 3.0 * full_->observed.num_valid;
+  likelihood_.epsilon = problem_.epsilon.value_or(kEpsilonShare * mean);
+
+  if (lobes_unknown()) {
+    lobes_ = std::make_unique<LobeModel>(problem_.model, problem_.lobes,
+                                         problem_.transport.grid,
+                                         problem_.num_threads);
+    lobe_prior_ = EmbeddingPrior(problem_.model, problem_.prior_sigma);
+    materials_ = JointMaterialPrior(problem_.model, problem_.lobes,
+                                    problem_.prior_sigma);
+  }
+  return OkStatus();
+}
+
+const Transport& Estimator::TransportOf(Level* level) {
+  const int height = light_ ? light_->height() : problem_.map_height;
+  const int width = light_ ? light_->width() : problem_.map_width;
+  if (level->transport == nullptr || level->transport->map_height() != height ||
+      level->transport->map_width() != width) {
+    TransportOptions options = problem_.transport;
+    options.num_threads = problem_.num_threads;
+    const double start = Elapsed();
+    level->transport =
+        std::make_unique<Transport>(level->points, height, width, options);
+    const double texels =
+        static_cast<double>(problem_.map_width) * problem_.map_height;
+    finish_seconds_ = std::min(
+        kFinishPerTransport * (Elapsed() - start) *
+            (static_cast<double>(full_->points.size()) / level->points.size()) *
+            std::max(1.0, texels / (static_cast<double>(width) * height)),
+        kMostFinishShare * Budget());
+  }
+  return *level->transport;
+}
+
+Estimator::LevelObjective Estimator::ObjectiveOn(Level* level) {
+  LevelObjective out;
+  JointTerms terms;
+  terms.observed = &level->observed;
+  terms.likelihood = likelihood_;
+  if (lobes_unknown()) {
+    terms.transport = &TransportOf(level);
+    terms.lobes = lobes_.get();
+    terms.lobe_prior = lobe_prior_;
+  } else {
+    out.known_brdf = std::make_unique<LightOperator>(
+        TransportOf(level).ByLight(*problem_.known_brdf));
+    terms.known_brdf = out.known_brdf.get();
+  }
+  if (light_unknown()) {
+    terms.illumination = light_.get();
+    terms.light_mean = light_mean_;
+    for (const auto& prior : light_priors_) {
+      terms.light_priors.push_back(prior.get());
+    }
+  } else {
+    terms.known_map = problem_.known_map->rgb;
+  }
+  out.objective = std::make_unique<JointObjective>(std::move(terms));
+  return out;
+}
+
+TraceEntry Estimator::Entry(const std::string& stage, const Level& level,
+                            const JointState& state,
+                            const JointCost& cost) const {
+  TraceEntry entry;
+  entry.stage = stage;
+  entry.scale = likelihood_.scale;
+  entry.pixels = level.observed.num_valid;
+  entry.likelihood = cost.likelihood;
+  entry.reflectance_prior =
+      light_unknown() ? cost.reflectance_prior
+                      : materials_.Cost(VectorOf(state.lobes), nullptr);
+  entry.illumination_prior = cost.illumination_prior;
+  entry.cost =
+      entry.likelihood + entry.reflectance_prior + entry.illumination_prior;
+  entry.misfit = cost.misfit;
+  entry.seconds = Elapsed();
+  return entry;
+}
+
+TraceEntry Estimator::Evaluate(const std::string& stage, Level* level,
+                               const JointState& state) {
+  const LevelObjective on = ObjectiveOn(level);
+  return Entry(stage, *level, state, on.objective->Evaluate(state));
+}
+
+void Estimator::Report(const TraceEntry& entry) {
+  trace_.push_back(entry);
+  VLOG(1) << entry.stage << " " << entry.seconds << " s misfit " << entry.misfit
+          << " cost " << entry.cost;
+  if (progress_) progress_(entry, std::min(entry.seconds / Budget(), 1.0));
+}
+
+void Estimator::Report(const std::string& stage, Level* level,
+                       const JointState& state) {
+  Report(Evaluate(stage, level, state));
+}
+
+}  // namespace ibrdf

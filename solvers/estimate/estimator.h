@@ -1,0 +1,143 @@
+// One run of SolveInverseRendering: what its stages share, a file per subject.
+// Internal.
+#pragma once
+#include <Eigen/Core>
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ibrdf/brdf/lobe_model.h"
+#include "solvers/estimate/image_levels.h"
+#include "solvers/illumination_model.h"
+#include "solvers/inverse_rendering.h"
+#include "solvers/joint/joint_method.h"
+#include "solvers/joint/joint_objective.h"
+#include "solvers/marginal/reflectance_search.h"
+#include "solvers/material_prior.h"
+
+namespace ibrdf {
+
+// To be run once. What it is given must outlive it; `stop` may be null.
+class Estimator {
+ public:
+  Estimator(const InverseProblem& problem, const SolveProgress& progress,
+            const std::atomic<bool>* stop);
+
+  StatusOr<Estimate> Run();
+
+ private:
+  // estimator.cc: clock, objective and trace.
+  double Elapsed() const;
+  double Budget() const { return problem_.solver.seconds; }
+  bool Interrupted() const { return stop_ != nullptr && stop_->load(); }
+  bool lobes_unknown() const { return !problem_.known_brdf.has_value(); }
+  bool light_unknown() const { return !problem_.known_map.has_value(); }
+  // Of the time left from now on but for what Finish takes.
+  std::function<bool()> StopAfter(double share) const;
+  // kInvalidInput if no pixel can be used.
+  Status Prepare();
+  // Built at first use, for the present map's size.
+  const Transport& TransportOf(Level* level);
+  // The objective on a level, at the current scale and light mean. It must not
+  // outlive the next change of either.
+  struct LevelObjective {
+    std::unique_ptr<LightOperator> known_brdf;
+    std::unique_ptr<JointObjective> objective;
+  };
+  LevelObjective ObjectiveOn(Level* level);
+  // At the image's pixels under known light the materials' prior stands in for
+  // the one of the joint maximum.
+  TraceEntry Entry(const std::string& stage, const Level& level,
+                   const JointState& state, const JointCost& cost) const;
+  TraceEntry Evaluate(const std::string& stage, Level* level,
+                      const JointState& state);
+  void Report(const TraceEntry& entry);
+  void Report(const std::string& stage, Level* level, const JointState& state);
+  static Eigen::VectorXd VectorOf(const std::vector<double>& v) {
+    return Eigen::Map<const Eigen::VectorXd>(
+        v.data(), static_cast<Eigen::Index>(v.size()));
+  }
+
+  // estimate_reflectance.cc
+  // Fixes the scale between reflectance and light; returns what it added to the
+  // log colours.
+  double MoveToMeanLevel(std::vector<double>* lobes) const;
+  // The reflectance whose posterior is highest with the light integrated out.
+  Status SearchMarginal(JointState* state);
+  // The first of the spread materials.
+  void StartAtMeanMaterial(JointState* state);
+  // The materials under the known light, the best few refined.
+  JointState StartUnderKnownLight();
+  // Some steps of the lobes under the known light, on few_.
+  void LobeSteps(JointState* state) const;
+  // Steps at a falling scale, until they settle or time is up.
+  void KnownLightRounds(JointState* state);
+
+  // estimate_light.cc
+  std::unique_ptr<IlluminationModel> MakeLight() const;
+  // process_prior: it is no part of the model itself.
+  void SetLight(std::unique_ptr<IlluminationModel> light, bool process_prior);
+  // A constant map at the image's level; the light's priors are centred there.
+  void MatchLight(JointState* state);
+  // The same at the level that MatchLight found, for the present model.
+  void StartAtLevel(JointState* state);
+  // Reflectance and map at once, from the mean material.
+  Status EstimateBoth(JointState* state);
+  // The map given the reflectance: as a draw of the light's process first,
+  // whose parameters are as good as whitened and take a tenth of the time of
+  // a network's; then as the network's output, from its fit to that draw.
+  Status EstimateLight(JointState* state);
+
+  // rounds.cc: steps at a falling scale.
+  // Moves scale between the two unknowns; the image stays as it is.
+  void FixGauge(JointState* state);
+  JointMethod MethodFor(JointBlocks blocks) const;
+  // Lowers the objective over the blocks, some steps at a scale, until a share
+  // of the time is spent or a round gains less than the tolerance.
+  Status Rounds(const std::string& stage, JointMethod method,
+                JointBlocks blocks, double share, JointState* state);
+  // Whether another round is not worth its time.
+  bool RoundsSettled(const TraceEntry& before, const TraceEntry& after) const;
+  // The Laplacian's maximum-likelihood scale is the mean magnitude of the
+  // residuals. It only falls, and not at once: with a small scale too early the
+  // robust loss holds on to wrong pixels.
+  double ScaleFor(double misfit) const;
+  void UpdateScale(double misfit);
+
+  // finish.cc
+  // Evaluates the end at every pixel, against the start.
+  StatusOr<Estimate> Finish(JointState best);
+  void AddAlternatives(Estimate* estimate) const;
+
+  const InverseProblem& problem_;
+  const SolveProgress& progress_;
+  const std::atomic<bool>* stop_;
+  const double start_;
+  RobustLogLikelihood likelihood_;
+  // Every pixel; pixels of like normals joined, for the light; some pixels, for
+  // the reflectance under known light.
+  std::unique_ptr<Level> full_, cells_, few_;
+  std::unique_ptr<LobeModel> lobes_;  // null: known
+  LobePrior lobe_prior_;
+  MaterialPrior materials_;
+  std::unique_ptr<IlluminationModel> light_;  // null: known
+  bool has_process_prior_ = false;
+  std::vector<std::unique_ptr<LightPrior>> light_priors_;
+  double level_[3] = {0.0, 0.0, 0.0};  // log radiance of a constant map
+  // Where the prior of the light's parameters is centred: a constant map at the
+  // image's level, whatever the image's unit.
+  std::vector<float> light_mean_, first_mean_;
+  double light_amplitude_ = 1.0;
+  JointState first_;
+  double finish_seconds_ = 0.0;  // predicted
+  std::string start_name_;
+  std::vector<TriedMaterial> tried_;
+  Eigen::MatrixXd covariance_;
+  Image mode_, map_std_;  // of log radiance, at the search's resolution
+  std::vector<TraceEntry> trace_;
+  int iterations_ = 0;
+};
+
+}  // namespace ibrdf

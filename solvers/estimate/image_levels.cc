@@ -1,0 +1,78 @@
+#include "solvers/estimate/image_levels.h"
+
+#include <utility>
+
+#include "solvers/marginal/image_cells.h"
+#include "solvers/mean_cells.h"
+
+namespace ibrdf {
+namespace {
+
+// Points nearer the limb are left out.
+constexpr double kMinCosine = 0.1;
+constexpr size_t kThinPoints = 4000;  // about as many are left
+
+std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points,
+                                 const std::vector<double>& radiance) {
+  auto level = std::make_unique<Level>();
+  level->observed = MakeObservations(radiance);
+  level->points = std::move(points);
+  return level;
+}
+
+std::unique_ptr<Level> MakeThinLevel(const InverseProblem& problem) {
+  int step = 1;
+  while (problem.points.size() >
+         kThinPoints * static_cast<size_t>(step) * step) {
+    ++step;
+  }
+  std::vector<ShadingPoint> thin;
+  for (const ShadingPoint& p : problem.points) {
+    const int x = p.pixel % problem.image.width;
+    const int y = p.pixel / problem.image.width;
+    if (x % step == 0 && y % step == 0) thin.push_back(p);
+  }
+  std::unique_ptr<Level> level =
+      MakeLevel(thin, RadianceOf(problem.image, thin));
+  if (level->observed.num_valid > 0) return level;
+  return MakeLevel(problem.points, RadianceOf(problem.image, problem.points));
+}
+
+}  // namespace
+
+std::vector<double> RadianceOf(const Image& image,
+                               const std::vector<ShadingPoint>& points) {
+  std::vector<double> radiance;
+  for (const ShadingPoint& p : points) {
+    const float* rgb = image.rgb.data() + size_t{3} * p.pixel;
+    radiance.insert(radiance.end(), rgb, rgb + 3);
+  }
+  return radiance;
+}
+
+std::unique_ptr<Level> MakeFullLevel(const InverseProblem& problem) {
+  return MakeLevel(problem.points, RadianceOf(problem.image, problem.points));
+}
+
+std::unique_ptr<Level> MakeCellLevel(const InverseProblem& problem,
+                                     int cells_across) {
+  if (problem.transport.visibility != nullptr) return MakeThinLevel(problem);
+  const std::vector<double> radiance =
+      RadianceOf(problem.image, problem.points);
+  MeanCells cells =
+      JoinLikePoints(problem.points, radiance, cells_across, kMinCosine);
+  if (cells.points.empty()) return MakeLevel(problem.points, radiance);
+  return MakeLevel(std::move(cells.points), cells.radiance);
+}
+
+std::unique_ptr<Level> MakeSampleLevel(const InverseProblem& problem,
+                                       int cells_across) {
+  const std::vector<ShadingPoint> points =
+      GroupByNormal(problem.points, RadianceOf(problem.image, problem.points),
+                    {cells_across, 1, kMinCosine})
+          .points;
+  if (points.empty()) return MakeFullLevel(problem);
+  return MakeLevel(points, RadianceOf(problem.image, points));
+}
+
+}  // namespace ibrdf

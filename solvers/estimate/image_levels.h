@@ -1,0 +1,37 @@
+// The image as sets of points: every pixel, or fewer that say nearly as much.
+// Internal.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "solvers/costs/log_likelihood.h"
+#include "solvers/inverse_rendering.h"
+
+namespace ibrdf {
+
+// A set of points with its observations and transport.
+struct Level {
+  std::vector<ShadingPoint> points;
+  Observations observed;
+  std::unique_ptr<Transport> transport;  // null until first used
+};
+
+// Radiance of the points' pixels, [points * 3].
+std::vector<double> RadianceOf(const Image& image,
+                               const std::vector<ShadingPoint>& points);
+
+// All of the problem's points.
+std::unique_ptr<Level> MakeFullLevel(const InverseProblem& problem);
+
+// Points of like normals joined, cells_across > 0 of the diameter of the disc
+// of normals; all pixels where the image has too few away from the limb. Points
+// in shadow have no like: they are thinned by rows and columns.
+std::unique_ptr<Level> MakeCellLevel(const InverseProblem& problem,
+                                     int cells_across);
+
+// One pixel, as it is, of each cell of like normals; all where there is none
+// away from the limb.
+std::unique_ptr<Level> MakeSampleLevel(const InverseProblem& problem,
+                                       int cells_across);
+
+}  // namespace ibrdf
