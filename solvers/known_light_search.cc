@@ -30,7 +30,7 @@ std::vector<RankedMaterial> RankUnderKnownLight(
   for (size_t m = 0; m < prior.materials.size(); ++m) {
     Eigen::VectorXd x = prior.materials[m].parameters;
     double shift[3] = {0.0, 0.0, 0.0};
-    const auto colour = [&](int k, int c) -> double& {
+    const auto colour = [&](int k, int c) {
       return x[static_cast<Eigen::Index>(k) * lobes.lobe_size() + code_size +
                c];
     };
@@ -49,9 +49,7 @@ std::vector<RankedMaterial> RankUnderKnownLight(
       }
     }
     for (size_t i = 0; i < E.size(); ++i) E[i] *= std::exp(shift[i % 3]);
-    for (int k = 0; k < num_lobes; ++k) {
-      for (int c = 0; c < 3; ++c) colour(k, c) += shift[c];
-    }
+    lobes.ShiftColours(shift, x.data());
     double cost = EvaluateLikelihood(E, observed, likelihood, nullptr).cost +
                   prior.Cost(x, nullptr);
     if (!std::isfinite(cost)) cost = std::numeric_limits<double>::infinity();

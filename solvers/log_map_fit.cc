@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ibrdf/light/environment_map.h"
+#include "solvers/conjugate_gradients.h"
 
 namespace ibrdf {
 namespace {
@@ -57,29 +58,21 @@ class LogMapFit {
       residual[i] -= precision_[i] * (parameters[i] - mean_[i]);
     }
     const Eigen::VectorXd diagonal = (1.0 + damping) * precision_;
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(residual.size());
-    Eigen::VectorXd z = residual.cwiseQuotient(diagonal), p = z;
-    double rz = residual.dot(z);
-    const double stop = kForcing * rz;
-    for (int k = 0; k < max_iterations && rz > stop; ++k) {
+    const auto product = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
       for (size_t i = 0; i < tangent_.size(); ++i) {
-        tangent_[i] = static_cast<float>(p[i]);
+        tangent_[i] = static_cast<float>(v[static_cast<Eigen::Index>(i)]);
       }
       model_->Jvp(tangent_.data(), by_map.data());
       for (size_t i = 0; i < by_map.size(); ++i) {
         by_map[i] = static_cast<float>(weight_[i] * by_map[i]);
       }
-      const Eigen::VectorXd product = Pull(by_map) + diagonal.cwiseProduct(p);
-      const double curvature = p.dot(product);
-      if (!(curvature > 0.0)) break;
-      x += rz / curvature * p;
-      residual -= rz / curvature * product;
-      z = residual.cwiseQuotient(diagonal);
-      const double next = residual.dot(z);
-      p = z + next / rz * p;
-      rz = next;
-    }
-    return x;
+      return Pull(by_map) + diagonal.cwiseProduct(v);
+    };
+    const auto precondition = [&](const Eigen::VectorXd& r) -> Eigen::VectorXd {
+      return r.cwiseQuotient(diagonal);
+    };
+    return ConjugateGradients(product, precondition, residual, max_iterations,
+                              kForcing);
   }
 
  private:

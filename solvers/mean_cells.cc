@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "ibrdf/render/quadrature.h"
+#include "solvers/marginal/image_cells.h"
 
 namespace ibrdf {
 namespace {
@@ -35,20 +35,17 @@ MeanCells JoinLikePoints(const std::vector<ShadingPoint>& points,
   CHECK_EQ(radiance.size(), 3 * points.size());
   CHECK_GT(cells_across, 0);
   const double side = 2.0 / cells_across;
-  // By the normal in the frame of the world's axes but for its depth along the
-  // view, which the other two tell.
   std::map<std::array<int, 5>, Sums> cells;
   for (size_t i = 0; i < points.size(); ++i) {
+    const std::optional<Eigen::Vector2d> in_view =
+        NormalInView(points[i], &radiance[3 * i], min_cosine);
+    if (!in_view.has_value()) continue;
     const Eigen::Map<const Eigen::Array3d> rgb(&radiance[3 * i]);
-    if (!rgb.isFinite().all() || !(rgb > 0.0).all()) continue;
     const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
     const Eigen::Vector3d wo = points[i].wo.cast<double>().normalized();
-    if (n.dot(wo) < min_cosine) continue;
-    Eigen::Vector3d up, across;
-    ViewFrame(wo, Eigen::Vector3d::UnitY(), &up, &across);
     Sums& sums = cells[{Bin(wo.x(), kViewBin), Bin(wo.y(), kViewBin),
-                        Bin(wo.z(), kViewBin), Bin(n.dot(up), side),
-                        Bin(n.dot(across), side)}];
+                        Bin(wo.z(), kViewBin), Bin(in_view->y(), side),
+                        Bin(in_view->x(), side)}];
     if (sums.first == nullptr) sums.first = &points[i];
     sums.normal += n;
     sums.wo += wo;

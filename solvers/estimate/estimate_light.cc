@@ -21,8 +21,8 @@ constexpr double kWorseMisfit = 1.5;
 // Maps are first found at this size or below.
 constexpr int kProcessWidth = 128;
 
-// [3][height][width] of an image [H, W, 3], between its centres bilinearly.
-std::vector<float> Planar(const Image& map, int height, int width) {
+// [3][height][width] of a map of log radiance, bilinear between its centres.
+std::vector<float> Resampled(const Image& map, int height, int width) {
   const size_t texels = static_cast<size_t>(height) * width;
   std::vector<float> out(3 * texels);
   for (size_t t = 0; t < texels; ++t) {
@@ -83,84 +83,87 @@ void Estimator::StartAtLevel(JointState* state) {
       (level_[0] + level_[1] + level_[2]) / 3));
 }
 
+void Estimator::StartLightAt(const JointState& state) {
+  first_.light = state.light;
+  first_mean_ = light_mean_;
+}
+
 Status Estimator::EstimateBoth(JointState* state) {
   StartAtMeanMaterial(state);
   SetLight(MakeLight(), true);
   MatchLight(state);
   FixGauge(state);
-  first_ = *state;
-  first_mean_ = light_mean_;
+  first_.lobes = state->lobes;
+  StartLightAt(*state);
   Report("start", cells_.get(), *state);
   return Rounds("maximum", MethodFor(JointBlocks::kBoth), JointBlocks::kBoth,
                 kMapShare, state);
 }
 
 Status Estimator::EstimateLight(JointState* state) {
+  const JointMethod method = MethodFor(JointBlocks::kLight);
   const bool none = problem_.illumination_prior == IlluminationPrior::kNone;
   if (none || problem_.solver.max_iterations == 0) {
     SetLight(MakeLight(), !none);
     MatchLight(state);
-    first_.light = state->light;
-    first_mean_ = light_mean_;
+    StartLightAt(*state);
     Report("constant map", cells_.get(), *state);
-    return Rounds("map", MethodFor(JointBlocks::kLight), JointBlocks::kLight,
-                  kMapShare, state);
+    return Rounds("map", method, JointBlocks::kLight, kMapShare, state);
   }
-  const bool network = problem_.illumination_prior == IlluminationPrior::kUNet;
   int width = problem_.map_width, height = problem_.map_height;
-  while (network && width > kProcessWidth && width % 4 == 0 &&
-         height % 2 == 0) {
+  if (problem_.illumination_prior == IlluminationPrior::kProcess) {
+    return EstimateDraw(width, height, method, kMapShare, state);
+  }
+  while (width > kProcessWidth && width % 4 == 0 && height % 2 == 0) {
     width /= 2;
     height /= 2;
   }
+  // solver.method is the network's.
+  IBRDF_RETURN_IF_ERROR(EstimateDraw(width, height, JointMethod::kGaussNewton,
+                                     kProcessShare, state));
+  return EstimateNetwork(state);
+}
+
+Status Estimator::EstimateDraw(int width, int height, JointMethod method,
+                               double share, JointState* state) {
   SetLight(
       MakeProcessIllumination(width, height, LightProcess(), light_amplitude_),
       false);
   MatchLight(state);
-  first_.light = state->light;
-  first_mean_ = light_mean_;
+  StartLightAt(*state);
   Report("constant map", cells_.get(), *state);
   if (mode_.num_pixels() > 0) {
     LogMapFitOptions o;
     o.should_stop = StopAfter(kProcessShare / 2);
-    FitLogMap(Planar(mode_, height, width), o, light_.get(), &state->light);
+    FitLogMap(Resampled(mode_, height, width), o, light_.get(), &state->light);
   }
-  // The draw itself has one fitting method; solver.method is the network's.
-  IBRDF_RETURN_IF_ERROR(Rounds(
-      "map",
-      network ? JointMethod::kGaussNewton : MethodFor(JointBlocks::kLight),
-      JointBlocks::kLight, network ? kProcessShare : kMapShare, state));
-  if (!network) return OkStatus();
-  Image log_map(width, height);
-  std::vector<float> planar(light_->num_outputs());
-  light_->Forward(state->light.data(), planar.data());
-  const size_t texels = log_map.num_pixels();
-  for (size_t i = 0; i < 3 * texels; ++i) {
-    log_map.rgb[i] = planar[i % 3 * texels + i / 3];
-  }
+  return Rounds("map", method, JointBlocks::kLight, share, state);
+}
+
+Status Estimator::EstimateNetwork(JointState* state) {
   const double draw_misfit = Evaluate("map", cells_.get(), *state).misfit;
-  const std::vector<float> draw = state->light, draw_mean = light_mean_;
-  const JointState draw_first = first_;
+  const std::vector<float> draw = state->light;
   std::unique_ptr<IlluminationModel> process = std::move(light_);
+  std::vector<float> log_map(process->num_outputs());
+  process->Forward(draw.data(), log_map.data());
   SetLight(MakeLight(), true);
   StartAtLevel(state);
-  first_.light = state->light;
-  first_mean_ = light_mean_;
+  StartLightAt(*state);
   LogMapFitOptions o;
   o.should_stop = StopAfter(kMapShare / 2);
-  FitLogMap(Planar(log_map, problem_.map_height, problem_.map_width), o,
-            light_.get(), &state->light);
+  FitLogMap(Resampled(FromPlanes(log_map, process->width(), process->height()),
+                      light_->height(), light_->width()),
+            o, light_.get(), &state->light);
   Report("network", cells_.get(), *state);
   IBRDF_RETURN_IF_ERROR(Rounds("network", MethodFor(JointBlocks::kLight),
                                JointBlocks::kLight, kMapShare, state));
-  // Out of time before the network came near the draw: the draw it is.
   const double misfit = Evaluate("network", cells_.get(), *state).misfit;
   if (misfit > kWorseMisfit * draw_misfit &&
       process->width() == problem_.map_width) {
     SetLight(std::move(process), false);
+    StartAtLevel(state);
+    StartLightAt(*state);
     state->light = draw;
-    light_mean_ = first_mean_ = draw_mean;
-    first_ = draw_first;
     Report("map again", cells_.get(), *state);
   }
   return OkStatus();

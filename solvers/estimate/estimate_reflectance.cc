@@ -22,18 +22,6 @@ constexpr int kKnownLightSteps = 6;  // of the trust region, each time
 
 }  // namespace
 
-double Estimator::MoveToMeanLevel(std::vector<double>* lobes) const {
-  const double level = LevelShift(problem_.model, materials_, VectorOf(*lobes),
-                                  problem_.num_threads);
-  for (int k = 0; k < lobes_->num_lobes(); ++k) {
-    for (int c = 0; c < 3; ++c) {
-      (*lobes)[static_cast<size_t>(k) * lobes_->lobe_size() +
-               lobes_->code_size() + c] += level;
-    }
-  }
-  return level;
-}
-
 Status Estimator::SearchMarginal(JointState* state) {
   ReflectanceSearchOptions o;
   o.num_threads = problem_.num_threads;
@@ -60,7 +48,8 @@ Status Estimator::SearchMarginal(JointState* state) {
                         RadianceOf(problem_.image, problem_.points), o);
   if (!found.ok()) return found.status();
   state->lobes = found->parameters;
-  const double level = MoveToMeanLevel(&state->lobes);
+  const LevelGauge gauge(problem_.model, materials_, problem_.num_threads);
+  const double level = gauge.Fix(state->lobes.data());
   start_name_ = found->start;
   light_amplitude_ = found->amplitude;
   const auto& materials = materials_.materials;
@@ -69,15 +58,13 @@ Status Estimator::SearchMarginal(JointState* state) {
                    [&](const auto& m) { return m.name == found->start; });
   first_.lobes.assign(start->parameters.data(),
                       start->parameters.data() + start->parameters.size());
-  MoveToMeanLevel(&first_.lobes);
+  gauge.Fix(first_.lobes.data());
   covariance_ = found->covariance;
-  mode_ = map_std_ = Image(found->map_width, found->map_height);
-  const size_t texels = map_std_.num_pixels();
-  for (size_t i = 0; i < 3 * texels; ++i) {
-    const size_t from = i % 3 * texels + i / 3;
-    mode_.rgb[i] = static_cast<float>(found->log_radiance[from] - level);
-    map_std_.rgb[i] = static_cast<float>(found->log_radiance_std[from]);
-  }
+  std::vector<double> log_radiance = found->log_radiance;
+  for (double& v : log_radiance) v -= level;
+  mode_ = FromPlanes(log_radiance, found->map_width, found->map_height);
+  map_std_ =
+      FromPlanes(found->log_radiance_std, found->map_width, found->map_height);
   for (const TriedMaterial& tried : found->tried) {
     if (std::isfinite(tried.cost)) tried_.push_back(tried);
   }

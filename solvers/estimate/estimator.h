@@ -19,6 +19,17 @@
 
 namespace ibrdf {
 
+// The image [H, W, 3] of planes [3][H][W].
+template <typename Real>
+Image FromPlanes(const std::vector<Real>& planes, int width, int height) {
+  Image image(width, height);
+  const size_t texels = image.num_pixels();
+  for (size_t i = 0; i < 3 * texels; ++i) {
+    image.rgb[i] = static_cast<float>(planes[i % 3 * texels + i / 3]);
+  }
+  return image;
+}
+
 // To be run once. What it is given must outlive it; `stop` may be null.
 class Estimator {
  public:
@@ -61,9 +72,6 @@ class Estimator {
   }
 
   // estimate_reflectance.cc
-  // Fixes the scale between reflectance and light; returns what it added to the
-  // log colours.
-  double MoveToMeanLevel(std::vector<double>* lobes) const;
   // The reflectance whose posterior is highest with the light integrated out.
   Status SearchMarginal(JointState* state);
   // The first of the spread materials.
@@ -85,10 +93,17 @@ class Estimator {
   void StartAtLevel(JointState* state);
   // Reflectance and map at once, from the mean material.
   Status EstimateBoth(JointState* state);
-  // The map given the reflectance: as a draw of the light's process first,
-  // whose parameters are as good as whitened and take a tenth of the time of
-  // a network's; then as the network's output, from its fit to that draw.
+  // Makes the state what the end is held against, with its light's mean.
+  void StartLightAt(const JointState& state);
+  // The map given the reflectance, by the prior that the problem asks for.
   Status EstimateLight(JointState* state);
+  // As a draw of the light's process, whose parameters are as good as whitened
+  // and take a tenth of the time of a network's.
+  Status EstimateDraw(int width, int height, JointMethod method, double share,
+                      JointState* state);
+  // As the network's output, from its fit to the draw at hand, which is kept
+  // where the network does not come near it in time.
+  Status EstimateNetwork(JointState* state);
 
   // rounds.cc: steps at a falling scale.
   // Moves scale between the two unknowns; the image stays as it is.

@@ -37,14 +37,8 @@ void Estimator::FixGauge(JointState* state) {
   }
   const std::vector<double> d =
       GaugeShift(*lobes_, lobe_prior_, state->lobes, mean, kLightChromaStd);
-  double back[3];
-  for (int c = 0; c < 3; ++c) {
-    back[c] = -d[c];
-    for (int k = 0; k < lobes_->num_lobes(); ++k) {
-      state->lobes[static_cast<size_t>(k) * lobes_->lobe_size() +
-                   lobes_->code_size() + c] += d[c];
-    }
-  }
+  lobes_->ShiftColours(d.data(), state->lobes.data());
+  const double back[3] = {-d[0], -d[1], -d[2]};
   light_->ShiftChannels(back, state->light.data());
   light_->ShiftChannels(back, light_mean_.data());
 }

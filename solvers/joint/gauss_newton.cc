@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/conjugate_gradients.h"
 #include "solvers/joint/method_run.h"
 
 namespace ibrdf {
@@ -11,6 +12,9 @@ namespace {
 // Damping of the lobes, of their Hessian's diagonal where that of the light is
 // 1: few parameters, whose trust region may start wide.
 constexpr double kLobeDamping = 0.1;
+// Of the squared residual of a step's equations: a tenth, which an inexact
+// Newton method needs no better.
+constexpr double kForcing = 1e-2;
 
 // The damped system (H + damping D) at the objective's point: D the priors'
 // inverse variances in the light, a share of H's diagonal in the lobes.
@@ -48,30 +52,6 @@ class DampedSystem {
   Eigen::LLT<Eigen::MatrixXd> lobe_factor_;
 };
 
-// Solves system . step = -gradient by preconditioned conjugate gradients. Stops
-// at a residual of a tenth, which an inexact Newton method needs no better.
-Eigen::VectorXd ConjugateGradients(const DampedSystem& system,
-                                   const Eigen::VectorXd& gradient,
-                                   int max_iterations) {
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(gradient.size());
-  Eigen::VectorXd r = -gradient, z = system.Precondition(r), p = z;
-  double rz = r.dot(z);
-  const double stop = rz * 1e-2;
-  for (int k = 0; k < max_iterations && rz > stop; ++k) {
-    const Eigen::VectorXd Hp = system.Product(p);
-    const double curvature = p.dot(Hp);
-    if (!(curvature > 0.0)) break;
-    const double alpha = rz / curvature;
-    x += alpha * p;
-    r -= alpha * Hp;
-    z = system.Precondition(r);
-    const double next = r.dot(z);
-    p = z + next / rz * p;
-    rz = next;
-  }
-  return x;
-}
-
 }  // namespace
 
 void GaussNewtonSteps(MethodRun* run, int max_iterations, bool report) {
@@ -86,9 +66,11 @@ void GaussNewtonSteps(MethodRun* run, int max_iterations, bool report) {
       if (!std::isfinite(objective->Linearise(run->best()).total())) return;
       linearised = true;
     }
-    const Eigen::VectorXd step =
-        ConjugateGradients(DampedSystem(objective, damping),
-                           objective->gradient(), options.max_cg_iterations);
+    const DampedSystem system(objective, damping);
+    const Eigen::VectorXd step = ConjugateGradients(
+        [&](const Eigen::VectorXd& v) { return system.Product(v); },
+        [&](const Eigen::VectorXd& r) { return system.Precondition(r); },
+        -objective->gradient(), options.max_cg_iterations, kForcing);
     // Along the step first (cheap: forward passes only), then shorter steps.
     bool accepted = false;
     for (double length = 1.0; length > 0.02; length *= 0.4) {

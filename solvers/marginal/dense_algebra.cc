@@ -21,54 +21,55 @@ void OneThread() {
   std::call_once(once, [] { openblas_set_num_threads(1); });
 }
 
+// C = A op(B), [rows of A][columns].
+void Gemm(const Eigen::Ref<const RowMatrix>& A,
+          const Eigen::Ref<const RowMatrix>& B, CBLAS_TRANSPOSE op,
+          Eigen::Index columns, RowMatrix* C) {
+  OneThread();
+  C->resize(A.rows(), columns);
+  cblas_dgemm(CblasRowMajor, CblasNoTrans, op, static_cast<int>(A.rows()),
+              static_cast<int>(columns), static_cast<int>(A.cols()), 1.0,
+              A.data(), static_cast<int>(A.outerStride()), B.data(),
+              static_cast<int>(B.outerStride()), 0.0, C->data(),
+              static_cast<int>(columns));
+}
+
+// op(A) x, [rows].
+Eigen::VectorXd Gemv(const RowMatrix& A, CBLAS_TRANSPOSE op,
+                     const Eigen::Ref<const Eigen::VectorXd>& x,
+                     Eigen::Index rows) {
+  OneThread();
+  Eigen::VectorXd out(rows);
+  cblas_dgemv(CblasRowMajor, op, static_cast<int>(A.rows()),
+              static_cast<int>(A.cols()), 1.0, A.data(),
+              static_cast<int>(A.cols()), x.data(), 1, 0.0, out.data(), 1);
+  return out;
+}
+
 }  // namespace
 
 void Multiply(const Eigen::Ref<const RowMatrix>& A,
               const Eigen::Ref<const RowMatrix>& B, RowMatrix* C) {
   CHECK_EQ(A.cols(), B.rows());
-  OneThread();
-  C->resize(A.rows(), B.cols());
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans,
-              static_cast<int>(A.rows()), static_cast<int>(B.cols()),
-              static_cast<int>(A.cols()), 1.0, A.data(),
-              static_cast<int>(A.outerStride()), B.data(),
-              static_cast<int>(B.outerStride()), 0.0, C->data(),
-              static_cast<int>(C->cols()));
+  Gemm(A, B, CblasNoTrans, B.cols(), C);
 }
 
 void MultiplyTransposed(const Eigen::Ref<const RowMatrix>& A,
                         const Eigen::Ref<const RowMatrix>& B, RowMatrix* C) {
   CHECK_EQ(A.cols(), B.cols());
-  OneThread();
-  C->resize(A.rows(), B.rows());
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans,
-              static_cast<int>(A.rows()), static_cast<int>(B.rows()),
-              static_cast<int>(A.cols()), 1.0, A.data(),
-              static_cast<int>(A.outerStride()), B.data(),
-              static_cast<int>(B.outerStride()), 0.0, C->data(),
-              static_cast<int>(C->cols()));
+  Gemm(A, B, CblasTrans, B.rows(), C);
 }
 
 Eigen::VectorXd MultiplyVector(const RowMatrix& A,
                                const Eigen::Ref<const Eigen::VectorXd>& x) {
   CHECK_EQ(A.cols(), x.size());
-  OneThread();
-  Eigen::VectorXd out(A.rows());
-  cblas_dgemv(CblasRowMajor, CblasNoTrans, static_cast<int>(A.rows()),
-              static_cast<int>(A.cols()), 1.0, A.data(),
-              static_cast<int>(A.cols()), x.data(), 1, 0.0, out.data(), 1);
-  return out;
+  return Gemv(A, CblasNoTrans, x, A.rows());
 }
 
 Eigen::VectorXd MultiplyTransposedVector(
     const RowMatrix& A, const Eigen::Ref<const Eigen::VectorXd>& x) {
   CHECK_EQ(A.rows(), x.size());
-  OneThread();
-  Eigen::VectorXd out(A.cols());
-  cblas_dgemv(CblasRowMajor, CblasTrans, static_cast<int>(A.rows()),
-              static_cast<int>(A.cols()), 1.0, A.data(),
-              static_cast<int>(A.cols()), x.data(), 1, 0.0, out.data(), 1);
-  return out;
+  return Gemv(A, CblasTrans, x, A.cols());
 }
 
 // A row-major lower triangle is a column-major upper one.

@@ -10,31 +10,36 @@
 
 namespace ibrdf {
 
+std::optional<Eigen::Vector2d> NormalInView(const ShadingPoint& point,
+                                            const double* radiance,
+                                            double min_cosine) {
+  if (!std::all_of(radiance, radiance + 3,
+                   [](double v) { return std::isfinite(v) && v > 0.0; })) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d n = point.normal.cast<double>().normalized();
+  const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
+  if (n.dot(wo) < min_cosine) return std::nullopt;
+  Eigen::Vector3d right, up;
+  ViewFrame(wo, Eigen::Vector3d::UnitY(), &up, &right);
+  return Eigen::Vector2d(n.dot(right), n.dot(up));
+}
+
 ImageCells GroupByNormal(const std::vector<ShadingPoint>& points,
                          const std::vector<double>& radiance,
                          const ImageCellOptions& options) {
   CHECK_EQ(radiance.size(), 3 * points.size());
   CHECK(options.cells_across > 0 && options.points_per_cell > 0);
-  // Normals as seen along each point's own view, up kept upright: for an
-  // orthographic view of a sphere, its image.
+  const auto bin = [&](double x) {
+    return std::clamp(static_cast<int>((0.5 * x + 0.5) * options.cells_across),
+                      0, options.cells_across - 1);
+  };
   std::map<int, std::vector<int>> members;
   for (size_t i = 0; i < points.size(); ++i) {
-    const double* rgb = &radiance[3 * i];
-    if (!std::all_of(rgb, rgb + 3,
-                     [](double v) { return std::isfinite(v) && v > 0.0; })) {
-      continue;
-    }
-    const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
-    const Eigen::Vector3d wo = points[i].wo.cast<double>().normalized();
-    if (n.dot(wo) < options.min_cosine) continue;
-    Eigen::Vector3d right, up;
-    ViewFrame(wo, Eigen::Vector3d::UnitY(), &up, &right);
-    const auto bin = [&](double x) {
-      return std::clamp(
-          static_cast<int>((0.5 * x + 0.5) * options.cells_across), 0,
-          options.cells_across - 1);
-    };
-    members[bin(n.dot(up)) * options.cells_across + bin(n.dot(right))]
+    const std::optional<Eigen::Vector2d> normal =
+        NormalInView(points[i], &radiance[3 * i], options.min_cosine);
+    if (!normal.has_value()) continue;
+    members[bin(normal->y()) * options.cells_across + bin(normal->x())]
         .push_back(static_cast<int>(i));
   }
   ImageCells cells;

@@ -1,5 +1,7 @@
 // A photograph in few numbers: pixels of like normals together.
 #pragma once
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "ibrdf/render/scene.h"
@@ -24,6 +26,14 @@ struct ImageCellOptions {
   // stands badly for its area.
   double min_cosine = 0.2;
 };
+
+// The components, right and up, of a point's normal in its own view, up kept
+// upright: for an orthographic view of a sphere, its image; in [-1, 1]. Empty
+// where the point says nothing: radiance [3] not finite and positive in all
+// channels, or seen at a cosine below min_cosine.
+std::optional<Eigen::Vector2d> NormalInView(const ShadingPoint& point,
+                                            const double* radiance,
+                                            double min_cosine);
 
 // radiance [points][3]; points that are not finite and positive in all channels
 // take no part. A cell's radiance is the mean over exactly the points kept, so

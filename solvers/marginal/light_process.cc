@@ -39,6 +39,12 @@ Eigen::Matrix3d ColourAxes() {
   return axes;
 }
 
+double LightCorrelation(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                        double correlation_degrees) {
+  const double scale = 180.0 / (3.14159265358979323846 * correlation_degrees);
+  return std::exp(-std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * scale);
+}
+
 RowMatrix LightCorrelation(int map_height, int map_width,
                            double correlation_degrees) {
   std::vector<Eigen::Vector3d> directions;
@@ -49,14 +55,14 @@ RowMatrix LightCorrelation(int map_height, int map_width,
     }
   }
   const auto n = static_cast<Eigen::Index>(directions.size());
-  const double scale = 180.0 / (3.14159265358979323846 * correlation_degrees);
   RowMatrix correlation(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j <= i; ++j) {
-      const double cosine = directions[i].dot(directions[j]);
-      const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+      // Rounding would leave a texel a little apart from itself.
       correlation(i, j) = correlation(j, i) =
-          i == j ? 1.0 : std::exp(-angle * scale);
+          i == j ? 1.0
+                 : LightCorrelation(directions[i], directions[j],
+                                    correlation_degrees);
     }
   }
   return correlation;

@@ -34,7 +34,11 @@ struct LightProcess {
 // and Level().
 Eigen::Matrix3d ColourAxes();
 
-// exp(-angle / correlation) between the texels of a map, [H W][H W].
+// exp(-angle / correlation) between two unit directions.
+double LightCorrelation(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                        double correlation_degrees);
+
+// The same between the texels of a map, [H W][H W].
 RowMatrix LightCorrelation(int map_height, int map_width,
                            double correlation_degrees);
 

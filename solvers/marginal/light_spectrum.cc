@@ -2,10 +2,10 @@
 
 #include <glog/logging.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "ibrdf/light/environment_map.h"
+#include "solvers/marginal/light_process.h"
 
 namespace ibrdf {
 namespace {
@@ -26,7 +26,6 @@ LightSpectrum::LightSpectrum(int height, int width, double correlation_degrees)
                      (j % 2 == 1 || j == 0 ? std::cos(angle) : std::sin(angle));
     }
   }
-  const double scale = 180.0 / (kPi * correlation_degrees);
   blocks_.assign(num_frequencies(), RowMatrix(height, height));
   RowMatrix cosines(num_frequencies(), width);
   for (int k = 0; k < num_frequencies(); ++k) {
@@ -39,9 +38,9 @@ LightSpectrum::LightSpectrum(int height, int width, double correlation_degrees)
     const Eigen::Vector3d from = MapDirection(a + 0.5, 0.5, height, width);
     for (int b = 0; b <= a; ++b) {
       for (int c = 0; c < width; ++c) {
-        const double cosine =
-            from.dot(MapDirection(b + 0.5, c + 0.5, height, width));
-        row[c] = std::exp(-std::acos(std::clamp(cosine, -1.0, 1.0)) * scale);
+        row[c] = LightCorrelation(from,
+                                  MapDirection(b + 0.5, c + 0.5, height, width),
+                                  correlation_degrees);
       }
       if (a == b) row[0] = 1.0;
       const Eigen::VectorXd by_frequency = cosines * row;

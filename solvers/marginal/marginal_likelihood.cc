@@ -29,8 +29,8 @@ constexpr double kMotionTolerance = 1e-10;
 constexpr Eigen::Index kTileRows = 48;
 
 // C = A B over tiles of rows.
-void MultiplyInTiles(const RowMatrix& A, const RowMatrix& B, int num_threads,
-                     RowMatrix* C) {
+void MultiplyInTiles(const Eigen::Ref<const RowMatrix>& A, const RowMatrix& B,
+                     int num_threads, RowMatrix* C) {
   C->resize(A.rows(), B.cols());
   const Eigen::Index tiles = (A.rows() + kTileRows - 1) / kTileRows;
   ParallelFor(tiles, num_threads, [&](int64_t tile, int) {

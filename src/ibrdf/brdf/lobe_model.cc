@@ -43,6 +43,14 @@ LobeModel::LobeModel(const NeuralBrdfModel& model, int num_lobes,
   }
 }
 
+void LobeModel::ShiftColours(const double* shift, double* parameters) const {
+  for (int k = 0; k < num_lobes_; ++k) {
+    double* const colour =
+        parameters + static_cast<size_t>(k) * lobe_size() + code_size();
+    for (int c = 0; c < 3; ++c) colour[c] += shift[c];
+  }
+}
+
 void LobeModel::Tabulate(const double* parameters, bool derivatives,
                          std::vector<float>* fields) const {
   const size_t n = grid_.num_nodes();

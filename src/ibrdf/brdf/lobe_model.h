@@ -29,6 +29,9 @@ class LobeModel {
   const NeuralBrdfModel& model() const { return model_; }
   const BrdfGridShape& grid_shape() const { return grid_; }
 
+  // Adds shift [3] to the log colours of every lobe.
+  void ShiftColours(const double* shift, double* parameters) const;
+
   // Lobe shapes s_k = q^exponent at the nodes, [num_lobes][nodes]; with
   // `derivatives`, each followed by its code_size derivatives d s_k / d z_k:
   // [num_lobes][1 + code_size][nodes].
