@@ -26,8 +26,7 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
   problem.AddResidualBlock(prior, nullptr, parameters->data());
   ceres::Solver::Options o;
   o.linear_solver_type = ceres::DENSE_QR;
-  // Few parameters: the trust region may start wide.
-  o.initial_trust_region_radius = 10.0;
+  o.initial_trust_region_radius = options.trust_region_radius;
   o.max_num_iterations = options.max_iterations;
   o.function_tolerance = options.tolerance;
   o.logging_type = ceres::SILENT;

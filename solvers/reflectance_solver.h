@@ -17,6 +17,8 @@ struct ReflectanceStepOptions {
   const MaterialPrior* materials = nullptr;
   int max_iterations = 10;
   double tolerance = 1e-4;  // relative decrease of the cost to stop at
+  // Of Ceres' trust region. Few parameters: it may start wide.
+  double trust_region_radius = 10.0;
   std::function<bool()> should_stop;
 };
 

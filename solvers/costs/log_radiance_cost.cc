@@ -29,23 +29,23 @@ void ScaleRows(const std::vector<double>& dr_dE, const std::vector<double>& dE,
   }
 }
 
-}  // namespace
-
-bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
-                     const double* parameters, const float* map,
-                     std::vector<double>* E, std::vector<double>* dE) {
+// As RenderLobeModel; render(fields, num_fields, out) as
+// Transport::RenderLobes of `points` points.
+template <typename Render>
+bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
+                  const double* parameters, std::vector<double>* E,
+                  std::vector<double>* dE) {
   const int lobe_size = lobes.lobe_size(), codes = lobes.code_size();
   const int stride = dE != nullptr ? 1 + codes : 1;
   const int num_fields = stride * lobes.num_lobes();
   const int columns = lobes.num_parameters();
-  const int points = transport.num_points();
   std::vector<float> fields;
   lobes.Tabulate(parameters, dE != nullptr, &fields);
   const size_t nodes = lobes.grid_shape().num_nodes();
   std::vector<const float*> pointers(num_fields);
   for (int f = 0; f < num_fields; ++f) pointers[f] = fields.data() + f * nodes;
   std::vector<float> out(static_cast<size_t>(points) * num_fields * 3);
-  transport.RenderLobes(pointers.data(), num_fields, map, out.data());
+  render(pointers.data(), num_fields, out.data());
   E->assign(static_cast<size_t>(points) * 3, 0.0);
   if (dE != nullptr) dE->assign(E->size() * columns, 0.0);
   bool finite = true;
@@ -75,6 +75,18 @@ bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
   return finite;
 }
 
+}  // namespace
+
+bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
+                     const double* parameters, const float* map,
+                     std::vector<double>* E, std::vector<double>* dE) {
+  return CombineLobes(
+      [&](const float* const* fields, int num_fields, float* out) {
+        transport.RenderLobes(fields, num_fields, map, out);
+      },
+      transport.num_points(), lobes, parameters, E, dE);
+}
+
 LobeRadianceCost::LobeRadianceCost(const Transport* transport,
                                    const LobeModel* lobes,
                                    std::vector<float> map,
@@ -85,6 +97,9 @@ LobeRadianceCost::LobeRadianceCost(const Transport* transport,
       map_(std::move(map)),
       observed_(observed),
       likelihood_(likelihood) {
+  if (transport->num_points() <= kMaxStoredPoints) {
+    operator_.emplace(transport->ByReflectance(map_.data()));
+  }
   mutable_parameter_block_sizes()->push_back(lobes->num_parameters());
   set_num_residuals(transport->num_points() * 3);
 }
@@ -93,8 +108,16 @@ bool LobeRadianceCost::Evaluate(double const* const* parameters,
                                 double* residuals, double** jacobians) const {
   const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
   std::vector<double> E, dE, dr_dE;
-  if (!RenderLobeModel(*transport_, *lobes_, parameters[0], map_.data(), &E,
-                       wanted ? &dE : nullptr)) {
+  const auto render = [this](const float* const* fields, int num_fields,
+                             float* out) {
+    if (operator_) {
+      operator_->Apply(fields, num_fields, out);
+    } else {
+      transport_->RenderLobes(fields, num_fields, map_.data(), out);
+    }
+  };
+  if (!CombineLobes(render, transport_->num_points(), *lobes_, parameters[0],
+                    &E, wanted ? &dE : nullptr)) {
     return false;
   }
   if (!FillResiduals(E, *observed_, likelihood_, residuals,

@@ -3,6 +3,7 @@
 #include <ceres/cost_function.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ibrdf/brdf/lobe_model.h"
@@ -37,7 +38,9 @@ class LogRadianceCost final : public ceres::CostFunction {
   const RobustLogLikelihood likelihood_;
 };
 
-// The same residuals for a fixed map [H, W, 3]: one block, the lobes.
+// The same residuals for a fixed map [H, W, 3]: one block, the lobes. Of few
+// points, the light that each gathers is stored at the start (some 40 kB per
+// point) and serves every evaluation.
 class LobeRadianceCost final : public ceres::CostFunction {
  public:
   LobeRadianceCost(const Transport* transport, const LobeModel* lobes,
@@ -48,9 +51,12 @@ class LobeRadianceCost final : public ceres::CostFunction {
                 double** jacobians) const override;
 
  private:
+  static constexpr int kMaxStoredPoints = 4000;
+
   const Transport* transport_;
   const LobeModel* lobes_;
   const std::vector<float> map_;
+  std::optional<ReflectanceOperator> operator_;
   const Observations* observed_;
   const RobustLogLikelihood likelihood_;
 };

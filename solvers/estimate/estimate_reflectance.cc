@@ -18,7 +18,14 @@ constexpr double kSearchShare = 0.4;
 // learn from.
 constexpr int kKnownLightCells = 26;
 constexpr int kKnownLightStarts = 4;
-constexpr int kKnownLightSteps = 6;  // of the trust region, each time
+constexpr int kKnownLightFinalists = 2;
+// Of the trust region: of every start, of a finalist, and of a round.
+constexpr int kStartSteps = 3;
+constexpr int kFinalistSteps = 3;
+constexpr int kRoundSteps = 6;
+// Far from the optimum, where steps fail, and near it.
+constexpr double kStartRadius = 10.0;
+constexpr double kRoundRadius = 300.0;
 
 }  // namespace
 
@@ -90,34 +97,58 @@ JointState Estimator::StartUnderKnownLight() {
                           problem_.known_map->rgb, few_->observed, likelihood_);
   first_.lobes = ranked.front().parameters;
   start_name_ = ranked.front().name;
-  JointState best = first_;
-  TraceEntry least = Evaluate("start " + start_name_, few_.get(), first_);
-  Report(least);
-  if (problem_.solver.max_iterations == 0) return best;
+  const TraceEntry first = Evaluate("rank " + start_name_, few_.get(), first_);
+  Report(first);
+  if (problem_.solver.max_iterations == 0) return first_;
+  const std::function<bool()> stop = StopAfter(kSearchShare);
+  struct Candidate {
+    std::string name;
+    JointState state;
+    double cost = 0.0;
+  };
+  // The first as it is, too, should no step lower its cost.
+  std::vector<Candidate> candidates = {{start_name_, first_, first.cost}};
+  const auto step = [&](const std::string& name, const JointState& from,
+                        int steps) {
+    Candidate next{name, from, 0.0};
+    LobeSteps(steps, kStartRadius, &next.state);
+    const TraceEntry entry = Evaluate("start " + name, few_.get(), next.state);
+    next.cost = entry.cost;
+    Report(entry);
+    candidates.push_back(std::move(next));
+  };
   const int starts =
       std::min<int>(kKnownLightStarts, static_cast<int>(ranked.size()));
-  const std::function<bool()> stop = StopAfter(kSearchShare);
-  for (int k = 0; k < starts; ++k) {
-    if (k > 0 && stop()) break;
+  for (int k = 0; k < starts && !(k > 0 && stop()); ++k) {
     JointState state;
     state.lobes = ranked[k].parameters;
-    LobeSteps(&state);
-    const TraceEntry entry =
-        Evaluate("start " + ranked[k].name, few_.get(), state);
-    Report(entry);
-    if (!(entry.cost < least.cost)) continue;
-    least = entry;
-    best = state;
-    start_name_ = ranked[k].name;
+    step(ranked[k].name, state, kStartSteps);
   }
-  return best;
+  const auto sort = [&candidates] {
+    std::stable_sort(
+        candidates.begin(), candidates.end(),
+        [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  };
+  sort();
+  const std::vector<Candidate> finalists(
+      candidates.begin(),
+      candidates.begin() +
+          std::min<size_t>(kKnownLightFinalists, candidates.size()));
+  for (const Candidate& c : finalists) {
+    if (!stop()) step(c.name, c.state, kFinalistSteps);
+  }
+  sort();
+  start_name_ = candidates.front().name;
+  return candidates.front().state;
 }
 
-void Estimator::LobeSteps(JointState* state) const {
+void Estimator::LobeSteps(int max_steps, double radius,
+                          JointState* state) const {
   ReflectanceStepOptions o;
   o.likelihood = likelihood_;
   o.materials = &materials_;
-  o.max_iterations = kKnownLightSteps;
+  o.max_iterations = max_steps;
+  o.trust_region_radius = radius;
   o.tolerance = problem_.solver.tolerance;
   o.should_stop = StopAfter(1.0);
   SolveReflectance(*few_->transport, *lobes_, problem_.known_map->rgb,
@@ -131,7 +162,7 @@ void Estimator::KnownLightRounds(JointState* state) {
     UpdateScale(before.misfit);
     before = Evaluate("refine", few_.get(), *state);
     JointState next = *state;
-    LobeSteps(&next);
+    LobeSteps(kRoundSteps, kRoundRadius, &next);
     const TraceEntry after =
         Evaluate("refine round " + std::to_string(round + 1), few_.get(), next);
     ++iterations_;

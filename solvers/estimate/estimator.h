@@ -78,8 +78,9 @@ class Estimator {
   void StartAtMeanMaterial(JointState* state);
   // The materials under the known light, the best few refined.
   JointState StartUnderKnownLight();
-  // Some steps of the lobes under the known light, on few_.
-  void LobeSteps(JointState* state) const;
+  // Steps of the lobes under the known light, on few_: at most so many, from
+  // a trust region of so large a radius.
+  void LobeSteps(int max_steps, double radius, JointState* state) const;
   // Steps at a falling scale, until they settle or time is up.
   void KnownLightRounds(JointState* state);
 

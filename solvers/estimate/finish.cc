@@ -1,6 +1,8 @@
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "ibrdf/base/parallel_for.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "solvers/estimate/estimator.h"
 
@@ -53,15 +55,24 @@ StatusOr<Estimate> Estimator::Finish(JointState best) {
 }
 
 void Estimator::AddAlternatives(Estimate* estimate) const {
+  std::vector<MerlTable> tables;
   for (const TriedMaterial& tried : tried_) {
-    Alternative a;
-    a.start = tried.name;
-    a.cost = tried.cost - tried_.front().cost;
-    const StatusOr<BrdfMetrics> difference =
-        CompareBrdfs(lobes_->ToMerl(tried.parameters.data()), estimate->brdf);
-    if (!difference.ok()) continue;
-    a.brdf_log_difference = difference->log_rmse_aligned;
-    estimate->alternatives.push_back(a);
+    tables.push_back(lobes_->ToMerl(tried.parameters.data()));
+  }
+  std::vector<std::optional<Alternative>> compared(tried_.size());
+  ParallelFor(static_cast<int64_t>(tried_.size()), problem_.num_threads,
+              [&](int64_t i, int) {
+                const StatusOr<BrdfMetrics> difference =
+                    CompareBrdfs(tables[i], estimate->brdf);
+                if (!difference.ok()) return;
+                Alternative a;
+                a.start = tried_[i].name;
+                a.cost = tried_[i].cost - tried_.front().cost;
+                a.brdf_log_difference = difference->log_rmse_aligned;
+                compared[i] = a;
+              });
+  for (const std::optional<Alternative>& a : compared) {
+    if (a) estimate->alternatives.push_back(*a);
   }
 }
 

@@ -47,6 +47,28 @@ TEST(EnvironmentMap, PositionInvertsDirection) {
   }
 }
 
+TEST(EnvironmentMap, FastPositionIsThePosition) {
+  std::mt19937 rng(7);
+  std::normal_distribution<double> gauss;
+  std::vector<Eigen::Vector3d> directions = {
+      {0, 1, 0},       {0, -1, 0},       {0, 0, 1},         {0, 0, -1},
+      {-1e-320, 0, 1}, {1e-9, 1, -1e-9}, {-1e-17, 0.5, 1.0}};
+  for (int i = 0; i < 2000; ++i) {
+    directions.push_back({gauss(rng), gauss(rng), gauss(rng)});
+  }
+  for (const Eigen::Vector3d& d : directions) {
+    double row = 0.0, column = 0.0, r = -1.0, c = -1.0;
+    MapPosition(d, 64, 128, &row, &column);
+    FastMapPosition(d, 64, 128, &r, &c);
+    EXPECT_NEAR(row, r, 64 * 2e-9) << d.transpose();
+    // The seam's two sides are one place.
+    EXPECT_NEAR(0.0, std::remainder(column - c, 128), 128 * 2e-9)
+        << d.transpose();
+    EXPECT_GE(c, 0.0);
+    EXPECT_LT(c, 128.0);
+  }
+}
+
 TEST(EnvironmentMap, PositionStaysInRangeAtPolesAndSeam) {
   for (const Eigen::Vector3d& d :
        {Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, -1, 0),

@@ -165,6 +165,11 @@ TEST_F(TransportTest, LobesAddUpToTheRender) {
     std::vector<float> lobes(points_.size() * 3 * num_fields);
     transport_.RenderLobes(pointers.data(), num_fields, map.rgb.data(),
                            lobes.data());
+    const ReflectanceOperator op = transport_.ByReflectance(map.rgb.data());
+    EXPECT_EQ(transport_.num_points(), op.num_points());
+    std::vector<float> applied(lobes.size());
+    op.Apply(pointers.data(), num_fields, applied.data());
+    EXPECT_EQ(lobes, applied);
     for (size_t i = 0; i < points_.size(); ++i) {
       for (int c = 0; c < 3; ++c) {
         double total = 0.0, size = 0.0;
@@ -184,7 +189,7 @@ TEST_F(TransportTest, SameBitsForAnyNumberOfThreads) {
   const Image map = RandomMap(64, 128, 6);
   struct Results {
     std::vector<double> E, applied;
-    std::vector<float> light, grid, lobes;
+    std::vector<float> light, grid, lobes, reflected;
   };
   const auto compute = [&](int threads) {
     TransportOptions options;
@@ -203,6 +208,8 @@ TEST_F(TransportTest, SameBitsForAnyNumberOfThreads) {
     t.GridGradient(map.rgb.data(), r.E.data(), r.grid.data());
     const float* fields[] = {glossy_.Channel(0), glossy_.Channel(1)};
     t.RenderLobes(fields, 2, map.rgb.data(), r.lobes.data());
+    r.reflected.resize(r.lobes.size());
+    t.ByReflectance(map.rgb.data()).Apply(fields, 2, r.reflected.data());
     return r;
   };
   const Results one = compute(1);
@@ -213,6 +220,7 @@ TEST_F(TransportTest, SameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(one.light, many.light);
     EXPECT_EQ(one.grid, many.grid);
     EXPECT_EQ(one.lobes, many.lobes);
+    EXPECT_EQ(one.reflected, many.reflected);
   }
 }
 

@@ -10,6 +10,24 @@ constexpr double kPi = 3.14159265358979323846;
 int Floor(double x, int n) {
   return std::clamp(static_cast<int>(std::floor(x)), 0, n - 1);
 }
+
+// Of the bins' centres: a table has 1.5 million.
+struct BinTrigonometry {
+  BinTrigonometry() {
+    for (int i = 0; i < kMerlThetaH; ++i) {
+      cos_h[i] = std::cos(MerlThetaH(i));
+      sin_h[i] = std::sin(MerlThetaH(i));
+    }
+    for (int j = 0; j < kMerlThetaD; ++j) {
+      cos_d[j] = std::cos(MerlThetaD(j));
+      sin_d[j] = std::sin(MerlThetaD(j));
+    }
+    for (int k = 0; k < kMerlPhiD; ++k) cos_p[k] = std::cos(MerlPhiD(k));
+  }
+  double cos_h[kMerlThetaH], sin_h[kMerlThetaH];
+  double cos_d[kMerlThetaD], sin_d[kMerlThetaD];
+  double cos_p[kMerlPhiD];
+};
 }  // namespace
 
 double MerlThetaH(int i) {
@@ -19,10 +37,15 @@ double MerlThetaH(int i) {
 double MerlThetaD(int j) { return (j + 0.5) / kMerlThetaD * (kPi / 2); }
 double MerlPhiD(int k) { return (k + 0.5) / kMerlPhiD * kPi; }
 
+double MerlBinLowestCosine(int theta_h, int theta_d, int phi_d) {
+  static const BinTrigonometry t;
+  // The two cosines are the sum and the difference of these.
+  return t.cos_h[theta_h] * t.cos_d[theta_d] -
+         std::abs(t.sin_h[theta_h] * t.sin_d[theta_d] * t.cos_p[phi_d]);
+}
+
 bool MerlBinAboveHorizon(int theta_h, int theta_d, int phi_d) {
-  const double th = MerlThetaH(theta_h), td = MerlThetaD(theta_d);
-  return std::cos(th) * std::cos(td) >
-         std::sin(th) * std::sin(td) * std::abs(std::cos(MerlPhiD(phi_d)));
+  return MerlBinLowestCosine(theta_h, theta_d, phi_d) > 0.0;
 }
 
 Eigen::Array3d LookUpMerl(const MerlTable& table, double theta_h,
@@ -51,8 +74,8 @@ Eigen::Array3d InterpolateMerl(const MerlTable& table, double theta_h,
   double weights = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const int di = corner & 1, dj = (corner >> 1) & 1, dk = corner >> 2;
-    const double w = (di ? fx : 1 - fx) * (dj ? fy : 1 - fy) *
-                     (dk ? fz : 1 - fz);
+    const double w =
+        (di ? fx : 1 - fx) * (dj ? fy : 1 - fy) * (dk ? fz : 1 - fz);
     if (w <= 0.0) continue;
     const int i = std::clamp(static_cast<int>(x0) + di, 0, kMerlThetaH - 1);
     const int j = std::clamp(static_cast<int>(y0) + dj, 0, kMerlThetaD - 1);

@@ -37,6 +37,9 @@ double MerlThetaH(int i);
 double MerlThetaD(int j);
 double MerlPhiD(int k);
 
+// Smaller one of the cosines of the two directions of a bin's centre.
+double MerlBinLowestCosine(int theta_h, int theta_d, int phi_d);
+
 // Whether both directions of the bin's centre are above the horizon.
 bool MerlBinAboveHorizon(int theta_h, int theta_d, int phi_d);
 

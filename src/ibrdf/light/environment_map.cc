@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/base/fast_atan2.h"
+
 namespace ibrdf {
 namespace {
 constexpr double kPi = 3.14159265358979323846;
@@ -48,6 +50,21 @@ std::vector<double> ColumnEdges(int width) {
   for (int c = 0; c <= width; ++c) edges[c] = static_cast<double>(c) / width;
   return edges;
 }
+template <typename Atan2>
+void PositionBy(const Atan2& atan2, const Eigen::Vector3d& direction,
+                int height, int width, double* row, double* column) {
+  // atan2 keeps full precision beside the poles, where acos loses half of it.
+  const double theta = atan2(
+      std::sqrt(direction.x() * direction.x() + direction.z() * direction.z()),
+      direction.y());
+  double turn = atan2(direction.x(), direction.z()) / (2.0 * kPi);
+  if (turn < 0.0) turn += 1.0;
+  if (turn >= 1.0) turn = 0.0;
+  *row = std::clamp(theta / kPi, 0.0, 1.0) * height;
+  *column = turn * width;
+  if (*column >= width) *column = 0.0;
+}
+
 }  // namespace
 
 Eigen::Vector3d MapDirection(double row, double column, int height, int width) {
@@ -59,17 +76,13 @@ Eigen::Vector3d MapDirection(double row, double column, int height, int width) {
 
 void MapPosition(const Eigen::Vector3d& direction, int height, int width,
                  double* row, double* column) {
-  // atan2 keeps full precision beside the poles, where acos loses half of it.
-  const double theta =
-      std::atan2(std::sqrt(direction.x() * direction.x() +
-                           direction.z() * direction.z()),
-                 direction.y());
-  double turn = std::atan2(direction.x(), direction.z()) / (2.0 * kPi);
-  if (turn < 0.0) turn += 1.0;
-  if (turn >= 1.0) turn = 0.0;
-  *row = std::clamp(theta / kPi, 0.0, 1.0) * height;
-  *column = turn * width;
-  if (*column >= width) *column = 0.0;
+  PositionBy([](double y, double x) { return std::atan2(y, x); }, direction,
+             height, width, row, column);
+}
+
+void FastMapPosition(const Eigen::Vector3d& direction, int height, int width,
+                     double* row, double* column) {
+  PositionBy(FastAtan2<double>, direction, height, width, row, column);
 }
 
 double TexelSolidAngle(int row, int height, int width) {

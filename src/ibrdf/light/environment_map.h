@@ -18,6 +18,9 @@ Eigen::Vector3d MapDirection(double row, double column, int height, int width);
 // column in [0, W).
 void MapPosition(const Eigen::Vector3d& direction, int height, int width,
                  double* row, double* column);
+// The same to within 2e-9 of the sizes, for inner loops.
+void FastMapPosition(const Eigen::Vector3d& direction, int height, int width,
+                     double* row, double* column);
 
 // Solid angle of a texel of `row`, sr; over the whole map they add to 4 pi.
 double TexelSolidAngle(int row, int height, int width);
@@ -26,7 +29,7 @@ double TexelSolidAngle(int row, int height, int width);
 // and last row of centres the texel across the pole (column + W/2) is the
 // other neighbour.
 struct MapTaps {
-  int texel[4];     // row * W + column
+  int texel[4];      // row * W + column
   double weight[4];  // >= 0, sum 1
 };
 MapTaps BilinearTaps(const Eigen::Vector3d& direction, int height, int width);

@@ -17,11 +17,8 @@ constexpr size_t kEntries = size_t{3} * kMerlBins;
 }  // namespace
 
 bool MerlBinBelow80(int theta_h, int theta_d, int phi_d) {
-  const double th = MerlThetaH(theta_h), td = MerlThetaD(theta_d);
-  // Cosines of the two directions: sum and difference of these.
-  const double along = std::cos(th) * std::cos(td);
-  const double across = std::sin(th) * std::sin(td) * std::cos(MerlPhiD(phi_d));
-  return along - std::abs(across) >= std::cos(80.0 / 180.0 * kPi);
+  static const double kCos80 = std::cos(80.0 / 180.0 * kPi);
+  return MerlBinLowestCosine(theta_h, theta_d, phi_d) >= kCos80;
 }
 
 StatusOr<BrdfMetrics> CompareBrdfs(const MerlTable& estimate,

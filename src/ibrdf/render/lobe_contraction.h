@@ -1,14 +1,15 @@
-// Inner loop of Transport::RenderLobes.
+// Inner loop of Transport::RenderLobes and ReflectanceOperator.
 #pragma once
+#include <cstdint>
 
 namespace ibrdf {
 
 // Floats per node in the fields' array are a multiple of this.
 inline constexpr int kLobeStride = 16;
 
-// out[k * 3 + c] = sum_i fields[nodes[i] * stride + k] g[nodes[i] * 4 + c],
+// out[k * 3 + c] = sum_i fields[nodes[i] * stride + k] g[i * 4 + c],
 // k < stride, c < 3, summed over i in order. stride: multiple of kLobeStride.
-using ContractLobesFunction = void (*)(const int* nodes, int count,
+using ContractLobesFunction = void (*)(const uint32_t* nodes, int count,
                                        const float* g, const float* fields,
                                        int stride, float* out);
 
@@ -16,15 +17,15 @@ using ContractLobesFunction = void (*)(const int* nodes, int count,
 ContractLobesFunction ContractLobes();
 
 namespace portable {
-void ContractLobes(const int* nodes, int count, const float* g,
+void ContractLobes(const uint32_t* nodes, int count, const float* g,
                    const float* fields, int stride, float* out);
 }
 namespace avx2 {
-void ContractLobes(const int* nodes, int count, const float* g,
+void ContractLobes(const uint32_t* nodes, int count, const float* g,
                    const float* fields, int stride, float* out);
 }
 namespace avx512 {
-void ContractLobes(const int* nodes, int count, const float* g,
+void ContractLobes(const uint32_t* nodes, int count, const float* g,
                    const float* fields, int stride, float* out);
 }
 

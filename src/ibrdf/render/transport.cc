@@ -7,7 +7,6 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/light/environment_map.h"
-#include "ibrdf/render/lobe_contraction.h"
 #include "ibrdf/render/map_sources.h"
 #include "ibrdf/render/transport_taps.h"
 
@@ -21,8 +20,7 @@ namespace {
 constexpr int kMaxChunks = 32;
 
 uint16_t Quantise(double fraction) {
-  return static_cast<uint16_t>(
-      std::lround(std::clamp(fraction, 0.0, 1.0) * 65535.0));
+  return static_cast<uint16_t>(std::clamp(fraction, 0.0, 1.0) * 65535.0 + 0.5);
 }
 
 }  // namespace
@@ -102,7 +100,7 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
       NearPair pair{};
       set_cell(s, &pair);
       double row = 0.0, column = 0.0;
-      MapPosition(s.wi, map_height_, map_width_, &row, &column);
+      FastMapPosition(s.wi, map_height_, map_width_, &row, &column);
       const double y0 = std::floor(row - 0.5), x0 = std::floor(column - 0.5);
       const int x = (static_cast<int>(x0) + map_width_) % map_width_;
       pair.texel = static_cast<uint32_t>(
@@ -199,86 +197,6 @@ void Transport::Render(const BrdfGrid& grid, const float* map,
           }
           for (int c = 0; c < 3; ++c) {
             E[3 * static_cast<size_t>(chunk.begin + i) + c] = sum[c];
-          }
-        }
-      });
-}
-
-void Transport::RenderLobes(const float* const* fields, int num_fields,
-                            const float* map, float* out) const {
-  if (num_fields <= 0) return;
-  const BrdfGridShape& s = options_.grid;
-  const int stride = (num_fields + kLobeStride - 1) / kLobeStride * kLobeStride;
-  const int num_nodes = PaddedNodes();
-  std::vector<float> by_node(static_cast<size_t>(num_nodes) * stride, 0.0f);
-  ParallelFor(s.h, options_.num_threads, [&](int64_t ih, int) {
-    for (int hd = static_cast<int>(ih) * s.d; hd < (ih + 1) * s.d; ++hd) {
-      for (int p = 0; p <= s.p; ++p) {
-        float* to =
-            &by_node[(static_cast<size_t>(hd) * (s.p + 1) + p) * stride];
-        for (int k = 0; k < num_fields; ++k) {
-          to[k] = fields[k][hd * s.p + p % s.p];
-        }
-      }
-    }
-  });
-
-  const std::vector<float> texels = PadMap(map),
-                           blocks =
-                               SumBlocks(map, map_height_, map_width_, block_);
-  const Corners corners(s);
-  const int row = map_width_ + 1;
-  const ContractLobesFunction contract = ContractLobes();
-  // Per worker: light gathered at every node, all zero between points; which
-  // nodes the point touched, in order of first touch; contracted sums.
-  struct Scratch {
-    std::vector<float> light;
-    std::vector<uint8_t> touched;
-    std::vector<int> nodes;
-    std::vector<float> sums;
-  };
-  const int num_workers =
-      options_.num_threads > 0 ? options_.num_threads : HardwareThreads();
-  std::vector<Scratch> scratch(num_workers);
-  ParallelFor(
-      static_cast<int64_t>(chunks_.size()), options_.num_threads,
-      [&](int64_t index, int worker) {
-        Scratch& w = scratch[worker];
-        w.light.resize(size_t{4} * num_nodes, 0.0f);
-        w.touched.resize(num_nodes, 0);
-        w.sums.resize(size_t{3} * stride);
-        const auto scatter = [&](const auto& pair, Float4 light) {
-          float weight[8];
-          TrilinearWeights(pair, weight);
-          for (int k = 0; k < 8; ++k) {
-            const int node = static_cast<int>(pair.node) + corners.offset[k];
-            if (w.touched[node] == 0) {
-              w.touched[node] = 1;
-              w.nodes.push_back(node);
-            }
-            Add4(&w.light[size_t{4} * node], weight[k] * light);
-          }
-        };
-        const Chunk& chunk = chunks_[index];
-        size_t far = 0, near = 0;
-        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
-          w.nodes.clear();
-          for (; far < chunk.far_end[i]; ++far) {
-            const FarPair& pair = chunk.far[far];
-            scatter(pair, pair.weight * Load4(&blocks[size_t{4} * pair.block]));
-          }
-          for (; near < chunk.near_end[i]; ++near) {
-            const NearPair& pair = chunk.near[near];
-            scatter(pair, pair.weight * LookUp(pair, row, texels.data()));
-          }
-          contract(w.nodes.data(), static_cast<int>(w.nodes.size()),
-                   w.light.data(), by_node.data(), stride, w.sums.data());
-          std::copy_n(
-              w.sums.data(), 3 * num_fields,
-              out + static_cast<size_t>(chunk.begin + i) * 3 * num_fields);
-          for (const int node : w.nodes) {
-            std::fill_n(&w.light[size_t{4} * node], 4, 0.0f);
-            w.touched[node] = 0;
           }
         }
       });

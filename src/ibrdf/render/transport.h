@@ -33,6 +33,7 @@ struct TransportOptions {
 };
 
 class LightOperator;
+class ReflectanceOperator;
 
 // Immutable after construction; its functions may be called from one thread at
 // a time (they are parallel inside).
@@ -59,6 +60,9 @@ class Transport {
   // f_c = sum_k colour_kc s_k has E_ic = sum_k colour_kc out_ikc.
   void RenderLobes(const float* const* fields, int num_fields, const float* map,
                    float* out) const;
+
+  // The linear map from fields to out of RenderLobes, for a fixed map.
+  ReflectanceOperator ByReflectance(const float* map) const;
 
   // Transpose of Render in the grid: gradient [3, nodes] of sum adjoint.E.
   void GridGradient(const float* map, const double* adjoint,
@@ -100,6 +104,21 @@ class Transport {
   // A far sample whose block is hidden in part, as pairs with its texels.
   void SplitBlock(const uint64_t* hidden, const Eigen::Vector3d& n, int block,
                   const NearPair& sample, std::vector<NearPair>* pairs) const;
+  // Of one worker: the light that a point gathers at every node of the padded
+  // grid, four floats each, all zero between points, and which nodes it
+  // touched, in order of first touch.
+  struct GatheredLight {
+    std::vector<float> by_node;
+    std::vector<uint8_t> touched;
+    std::vector<uint32_t> nodes;
+  };
+  // Calls use(point, nodes, light) for every point of a chunk in order: nodes
+  // [count] of the padded grid and the light [count, 4] that they reflect per
+  // unit of BRDF. `texels`, `blocks`: PadMap, SumBlocks.
+  template <typename Use>
+  void GatherLight(const Chunk& chunk, const std::vector<float>& texels,
+                   const std::vector<float>& blocks, GatheredLight* scratch,
+                   const Use& use) const;
   // See PaddedTexels; four floats per entry, the last one 0.
   std::vector<float> PadMap(const float* map) const;
   std::vector<float> PadGrid(const BrdfGrid& grid) const;
@@ -113,6 +132,35 @@ class Transport {
   int map_width_ = 0;
   int block_ = 1;  // side in texels
   int num_blocks_ = 0;
+  std::vector<Chunk> chunks_;
+};
+
+// Some 40 kB per point: for few points. Holds what it needs: it may outlive its
+// transport. Thread rules as above.
+class ReflectanceOperator {
+ public:
+  int num_points() const { return num_points_; }
+  // out [points, num_fields, 3] from fields[k] = [nodes], as
+  // Transport::RenderLobes, with the same bits.
+  void Apply(const float* const* fields, int num_fields, float* out) const;
+
+  size_t MemoryBytes() const;
+
+ private:
+  friend class Transport;
+  ReflectanceOperator() = default;
+
+  // Consecutive points: the nodes that each sees and their light.
+  struct Chunk {
+    int begin = 0, end = 0;
+    std::vector<size_t> entry_end;  // [end - begin]
+    std::vector<uint32_t> node;     // of the padded grid
+    std::vector<float> light;       // [entry, 4]
+  };
+
+  BrdfGridShape grid_;
+  int num_points_ = 0;
+  int num_threads_ = 0;
   std::vector<Chunk> chunks_;
 };
 
