@@ -81,6 +81,9 @@ struct Estimate {
   double scale = 0.0;  // b used at the end
   double epsilon = 0.0;
   double misfit = 0.0;
+  // Of the start and of this estimate, both with `scale` on all pixels:
+  // end_cost <= start_cost.
+  double start_cost = 0.0, end_cost = 0.0;
   double seconds = 0.0;
   int64_t pixels_used = 0;
   std::string

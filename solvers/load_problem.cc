@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -78,6 +79,11 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   if (problem.illumination.known()) {
     const StatusOr<Image> map = LoadKnownIllumination(problem.illumination);
     if (!map.ok()) return map.status();
+    if (std::none_of(map->rgb.begin(), map->rgb.end(),
+                     [](float v) { return v > 0.0f; })) {
+      return InvalidInput(problem.path + ": illumination.known",
+                          "expected light from somewhere, found a black map");
+    }
     inverse.known_map =
         map->width == inverse.map_width && map->height == inverse.map_height
             ? *map

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "ibrdf/base/version.h"
@@ -198,20 +197,21 @@ const char* StatusName(const Status& status) {
   }
 }
 
-// log E - log I with the likelihood's epsilon; NaN outside and where the pixel
-// took no part.
+// log E - log I with the likelihood's epsilon; 0 outside and where the pixel
+// took no part: other programs sum over the file.
 Image Residual(const InverseProblem& inverse, const Estimate& estimate) {
   Image residual(inverse.image.width, inverse.image.height);
-  std::fill(residual.rgb.begin(), residual.rgb.end(),
-            std::numeric_limits<float>::quiet_NaN());
   for (const ShadingPoint& p : inverse.points) {
+    const float* const observed = &inverse.image.rgb[size_t{3} * p.pixel];
+    if (!std::all_of(observed, observed + 3,
+                     [](float v) { return std::isfinite(v) && v > 0.0f; })) {
+      continue;
+    }
     for (int c = 0; c < 3; ++c) {
       const size_t at = size_t{3} * p.pixel + c;
-      const double observed = inverse.image.rgb[at];
-      if (!(std::isfinite(observed) && observed > 0.0)) continue;
       residual.rgb[at] = static_cast<float>(
           std::log(estimate.render.rgb[at] + estimate.epsilon) -
-          std::log(observed + estimate.epsilon));
+          std::log(observed[c] + estimate.epsilon));
     }
   }
   return residual;
@@ -293,6 +293,9 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
       {"pixels_of_object", inverse.points.size()},
       {"likelihood",
        {{"scale", estimate.scale}, {"epsilon", estimate.epsilon}}},
+      {"cost",
+       {{"start", Metric(estimate.start_cost)},
+        {"end", Metric(estimate.end_cost)}}},
       {"metrics", metrics},
       {"trace", TraceJson(estimate)}};
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(path("result.json"), Text(result)));

@@ -47,6 +47,8 @@ StatusOr<Estimate> Estimator::Finish(JointState best) {
   estimate.scale = likelihood_.scale;
   estimate.epsilon = likelihood_.epsilon;
   estimate.misfit = end.misfit;
+  estimate.start_cost = start.cost;
+  estimate.end_cost = end.cost;
   estimate.pixels_used = full_->observed.num_valid;
   estimate.start = start_name_;
   estimate.trace = std::move(trace_);

@@ -131,6 +131,41 @@ TEST_P(InverseRenderingTest, ThreadsDoNotChangeBits) {
   EXPECT_EQ(one.misfit, two.misfit);
 }
 
+TEST_P(InverseRenderingTest, UnitsOfRadianceScaleRadianceAlone) {
+  SetKind(GetParam());
+  problem_.epsilon = 1e-4;
+  const Estimate one = Solve();
+  const Image image = problem_.image;
+  for (const int exponent : {-100, -3, 100}) {
+    const auto scaled = [exponent](std::vector<float> rgb) {
+      for (float& v : rgb) v = std::ldexp(v, exponent);
+      return rgb;
+    };
+    problem_.image.rgb = scaled(image.rgb);
+    problem_.epsilon = std::ldexp(1e-4, exponent);
+    if (problem_.known_map) problem_.known_map->rgb = scaled(map_.rgb);
+    const Estimate other = Solve();
+    EXPECT_EQ(one.lobe_parameters, other.lobe_parameters) << exponent;
+    EXPECT_EQ(one.brdf.raw, other.brdf.raw) << exponent;
+    EXPECT_EQ(scaled(one.map.rgb), other.map.rgb) << exponent;
+    EXPECT_EQ(scaled(one.render.rgb), other.render.rgb) << exponent;
+    EXPECT_EQ(std::ldexp(one.epsilon, exponent), other.epsilon);
+    EXPECT_EQ(one.misfit, other.misfit) << exponent;
+    EXPECT_EQ(one.end_cost, other.end_cost) << exponent;
+  }
+}
+
+TEST_P(InverseRenderingTest, RadianceAtTheEndsOfFloatStaysFinite) {
+  SetKind(GetParam());
+  const Image image = problem_.image;
+  for (const double factor : {1e-37, 1e36}) {
+    for (size_t i = 0; i < image.rgb.size(); ++i) {
+      problem_.image.rgb[i] = static_cast<float>(image.rgb[i] * factor);
+    }
+    ExpectWhole(Solve());
+  }
+}
+
 TEST_P(InverseRenderingTest, StopFlagLeavesAWholeEstimate) {
   SetKind(GetParam());
   const std::atomic<bool> stop{true};

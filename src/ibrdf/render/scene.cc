@@ -276,9 +276,11 @@ StatusOr<Scene> Scene::FromNormalMap(const Image& normals) {
   bool any = false;
   for (size_t i = 0; i < normals.num_pixels(); ++i) {
     Eigen::Map<Eigen::Vector3f> n(impl->normals.rgb.data() + 3 * i);
-    const float length = n.norm();
-    if (std::isfinite(length) && length > 1e-6f) {
-      n /= length;
+    // In double: squares of floats may be beyond them.
+    const Eigen::Vector3d exact = n.cast<double>();
+    const double length = exact.norm();
+    if (std::isfinite(length) && length > 1e-6) {
+      n = (exact / length).cast<float>();
       any = true;
     } else {
       n.setZero();

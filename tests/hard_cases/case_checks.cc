@@ -1,0 +1,148 @@
+#include "tests/hard_cases/case_checks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "io/exr.h"
+#include "io/merl.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+std::vector<std::string> FilesIn(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    files.push_back(entry.path().filename().string());
+  }
+  return files;
+}
+
+void ExpectFinite(const Json& json, const std::string& where) {
+  // NaN and infinities are written as null.
+  if (json.is_number()) {
+    EXPECT_TRUE(std::isfinite(json.get<double>())) << where;
+  } else if (json.is_structured()) {
+    for (const auto& [key, value] : json.items()) {
+      ExpectFinite(value, where + "/" + key);
+    }
+  }
+}
+
+void ExpectWholeFiles(const std::string& folder, Json* result) {
+  for (const std::string& file : FilesIn(folder)) {
+    const std::string path = folder + "/" + file;
+    const std::string extension = fs::path(file).extension().string();
+    EXPECT_GT(fs::file_size(path), 0u) << file;
+    if (extension == ".exr") {
+      const StatusOr<Image> image = ReadExr(path);
+      ASSERT_TRUE(image.ok()) << image.status().message();
+      EXPECT_TRUE(std::all_of(image->rgb.begin(), image->rgb.end(),
+                              [](float v) { return std::isfinite(v); }))
+          << file;
+    } else if (extension == ".binary") {
+      const StatusOr<MerlTable> table = ReadMerl(path);
+      EXPECT_TRUE(table.ok()) << table.status().message();
+    } else if (extension == ".json") {
+      const Json json = Json::parse(ReadBytes(path), nullptr, false);
+      ASSERT_FALSE(json.is_discarded()) << file;
+      ExpectFinite(json, file);
+      if (file == "result.json") *result = json;
+    } else {
+      EXPECT_TRUE(extension == ".png" || extension == ".html")
+          << "left behind: " << file;
+    }
+  }
+  for (const char* file : {"result.json", "illumination.exr", "render.exr",
+                           "residual.exr", "overview.png", "report.html"}) {
+    EXPECT_TRUE(fs::exists(folder + "/" + file)) << file;
+  }
+}
+
+void ExpectCostNotRisen(const Json& result) {
+  const Json start = result.value("/cost/start"_json_pointer, Json());
+  const Json end = result.value("/cost/end"_json_pointer, Json());
+  ASSERT_TRUE(start.is_number() && end.is_number())
+      << result.value("cost", Json());
+  EXPECT_LE(end.get<double>(), start.get<double>());
+}
+
+void ExpectRange(const std::string& path, const YAML::Node& range) {
+  const StatusOr<Image> image = ReadExr(path);
+  ASSERT_TRUE(image.ok()) << image.status().message();
+  float low = std::numeric_limits<float>::infinity(), high = -low;
+  const bool skip_zero = path.find("render.exr") != std::string::npos;
+  for (const float v : image->rgb) {
+    if (skip_zero && v == 0) continue;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  EXPECT_GE(low, range[0].as<double>()) << path;
+  EXPECT_LE(high, range[1].as<double>()) << path;
+}
+
+}  // namespace
+
+void CheckRun(const YAML::Node& holds, const CaseRun& run) {
+  std::vector<int> allowed;
+  if (holds["exit"].IsSequence()) {
+    allowed = holds["exit"].as<std::vector<int>>();
+  } else {
+    allowed = {holds["exit"].as<int>()};
+  }
+  ASSERT_TRUE(std::find(allowed.begin(), allowed.end(), run.exit_status) !=
+              allowed.end())
+      << "exit status " << run.exit_status << "\n"
+      << run.terminal;
+  EXPECT_EQ(std::string::npos, run.terminal.find("Sanitizer"));
+  EXPECT_EQ(std::string::npos, run.terminal.find("runtime error"))
+      << run.terminal;
+  for (const YAML::Node& word : holds["says"]) {
+    EXPECT_NE(std::string::npos, run.terminal.find(word.as<std::string>()))
+        << word << " is not in:\n"
+        << run.terminal;
+  }
+  if (run.exit_status == 2) {
+    EXPECT_EQ(0u, run.terminal.find("error: ")) << run.terminal;
+    EXPECT_EQ(run.terminal.size() - 1, run.terminal.find('\n'))
+        << "not one line:\n"
+        << run.terminal;
+    EXPECT_TRUE(FilesIn(run.folder).empty());
+    return;
+  }
+  Json result;
+  ExpectWholeFiles(run.folder, &result);
+  if (testing::Test::HasFatalFailure()) return;
+  ExpectCostNotRisen(result);
+  for (const auto& entry : holds["values"]) {
+    const std::string pointer = entry.first.as<std::string>();
+    const Json value = result.value(Json::json_pointer(pointer), Json());
+    ASSERT_TRUE(value.is_number()) << pointer << " is " << value;
+    EXPECT_GE(value.get<double>(), entry.second[0].as<double>()) << pointer;
+    EXPECT_LE(value.get<double>(), entry.second[1].as<double>()) << pointer;
+  }
+  for (const auto& entry : holds["equals"]) {
+    const std::string pointer = entry.first.as<std::string>();
+    const Json value = result.value(Json::json_pointer(pointer), Json());
+    EXPECT_EQ(entry.second.as<std::string>(),
+              value.is_string() ? value.get<std::string>() : value.dump())
+        << pointer;
+  }
+  if (holds["map"]) {
+    ExpectRange(run.folder + "/illumination.exr", holds["map"]);
+  }
+  if (holds["image"]) {
+    ExpectRange(run.folder + "/render.exr", holds["image"]);
+  }
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,30 @@
+// What must hold of every run, and what one case asks for besides.
+#pragma once
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+
+namespace ibrdf {
+
+struct CaseRun {
+  int exit_status = 0;   // 128 + signal where a signal ended it
+  std::string terminal;  // standard output and error
+  std::string folder;    // of the results
+};
+
+// Every run: ends by itself, with no sanitizer's report. With 0 or 3, all
+// files are whole, every number in them is finite, and the cost at the end is
+// not above that at the start. With 2, one line that starts with "error:", and
+// no file at all.
+//
+// `holds` of the case:
+//   exit: 2 or [0, 3]            required
+//   says: [words]                on the terminal
+//   values: {pointer: [a, b]}    numbers of result.json, by JSON pointer
+//   equals: {pointer: text}
+//   map: [a, b]                  range of illumination.exr
+//   image: [a, b]                range of render.exr on the object
+// Reports by googletest.
+void CheckRun(const YAML::Node& holds, const CaseRun& run);
+
+}  // namespace ibrdf

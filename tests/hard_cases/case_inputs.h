@@ -1,0 +1,38 @@
+// The files that a hard case needs, made from the recipes of its `inputs`.
+#pragma once
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+
+#include "ibrdf/base/status.h"
+
+namespace ibrdf {
+
+// Makes the file `name` in `folder`. Recipes, by their first key:
+//
+//   text: |                      the bytes themselves
+//   scene: {...}                 .exr: what ibrdf_render makes of these keys,
+//                                at preview quality
+//   constant: [r, g, b]          .exr of size: [w, h]
+//   light: {kind: sun, ...}      .exr map of size: [w, h]; see MakeLight
+//   normals: sphere              .exr normal map of size: [w, h]; or facing,
+//                                zero, away, long, grazing
+//   mask: disc                   .png of size: [w, h]; or all, none, pixel,
+//                                corner
+//   brdf: {specular: s, ...}     .binary; see MakeBrdf
+//   model: 2                     .ibrdf of so many random materials;
+//                                curvature: of its splines; code_norm: of its
+//                                codes
+//   sphere_mesh: 12              .obj of so many rings; see MakeSphereMesh
+//
+// Images and maps take `edit`, a list of changes in order:
+//   {set: v}                     v: a number, nan, inf, -inf or denormal
+//   {scale: v}  {clip: v}        clip: at this radiance
+// each with `pixel: [x, y]`, or `every: n` (each n-th pixel), or `rows: [a,
+// b)`, else all; and `channel: c`, else all three.
+//
+// A recipe that is not understood is an error: a case must test what it says.
+Status MakeInput(const YAML::Node& recipe, const std::string& folder,
+                 const std::string& name);
+
+}  // namespace ibrdf

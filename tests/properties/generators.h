@@ -1,0 +1,79 @@
+// Random inputs of the properties: ordinary and extreme ones.
+#pragma once
+#include <rapidcheck.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "ibrdf/flow/neural_brdf_model.h"
+#include "ibrdf/image/image.h"
+#include "tests/support/tiny_model.h"
+
+namespace ibrdf {
+
+// In [0, 1], both ends among them.
+inline rc::Gen<double> Unit() {
+  return rc::gen::map(rc::gen::inRange(0, 1 << 20 | 1),
+                      [](int i) { return i / static_cast<double>(1 << 20); });
+}
+
+inline rc::Gen<double> Between(double low, double high) {
+  return rc::gen::map(Unit(), [=](double u) { return low + (high - low) * u; });
+}
+
+// Magnitudes evenly over the orders between, both > 0.
+inline rc::Gen<double> Magnitude(double low, double high) {
+  return rc::gen::map(Between(std::log(low), std::log(high)),
+                      [](double x) { return std::exp(x); });
+}
+
+// Unit vectors with z >= least; a share of them at the limb and the pole.
+inline Eigen::Vector3d AnyDirectionAbove(double least) {
+  const double z = *rc::gen::oneOf(Between(least, 1.0),
+                                   Between(least, std::min(1.0, least + 1e-3)),
+                                   Between(1.0 - 1e-9, 1.0));
+  const double phi = *Between(-3.14159265358979, 3.14159265358979);
+  const double s = std::sqrt(std::max(0.0, 1.0 - z * z));
+  return {s * std::cos(phi), s * std::sin(phi), z};
+}
+
+// A map of any radiance >= 0: dim, bright, with black texels.
+inline Image AnyMap(int height, int width) {
+  Image map(width, height);
+  const double scale = *Magnitude(1e-12, 1e12);
+  const double range = *Magnitude(1.0, 1e6);
+  const auto texels = *rc::gen::container<std::vector<double>>(
+      map.rgb.size(),
+      rc::gen::weightedOneOf<double>(
+          {{9, Magnitude(1.0, range + 1e-9)}, {1, rc::gen::just(0.0)}}));
+  for (size_t i = 0; i < map.rgb.size(); ++i) {
+    map.rgb[i] = static_cast<float>(scale * texels[i]);
+  }
+  return map;
+}
+
+// A model of three random materials, from nearly flat to steep.
+inline NeuralBrdfModel AnyModel() {
+  return TinyModel(3, *rc::gen::inRange<uint64_t>(1, 1000),
+                   static_cast<float>(*Between(0.0, 30.0)));
+}
+
+// Lobe parameters with codes inside, on and beyond the unit sphere.
+inline std::vector<double> AnyLobes(const NeuralBrdfModel& model, int lobes) {
+  const int size = model.shape.code_size();
+  std::vector<double> parameters;
+  for (int k = 0; k < lobes; ++k) {
+    Eigen::VectorXd z(size);
+    for (int d = 0; d < size; ++d) z[d] = *Between(-1.0, 1.0);
+    const double norm = *rc::gen::oneOf(Between(0.0, 1.0), rc::gen::just(1.0),
+                                        Between(1.0, 1.5));
+    if (z.norm() > 0.0) z *= norm / z.norm();
+    parameters.insert(parameters.end(), z.data(), z.data() + size);
+    for (int c = 0; c < 3; ++c) parameters.push_back(*Between(-20.0, 12.0));
+  }
+  return parameters;
+}
+
+}  // namespace ibrdf
