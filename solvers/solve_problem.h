@@ -6,6 +6,7 @@
 #include "ibrdf/base/status.h"
 #include "io/problem.h"
 #include "solvers/inverse_rendering.h"
+#include "solvers/truth.h"
 
 namespace ibrdf {
 
@@ -14,12 +15,16 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
                                             uint64_t default_seed,
                                             int num_threads);
 
+// Makes `folder` where need be; kInvalidInput where nothing can be written to
+// it. Call it before a solve.
+Status PrepareFolder(const std::string& folder);
+
 // Writes result.json, brdf.binary, brdf.json, illumination.exr,
 // illumination_log_std.exr (joint problems), render.exr, residual.exr, the PNG
 // previews and, last, report.html into `folder`, making it; each file whole or
 // absent. `metrics_text`, where given, receives the metrics, one a line.
 Status WriteResults(const Problem& problem, const InverseProblem& inverse,
-                    const Estimate& estimate, const std::string& folder,
-                    std::string* metrics_text);
+                    const Truth& truth, const Estimate& estimate,
+                    const std::string& folder, std::string* metrics_text);
 
 }  // namespace ibrdf

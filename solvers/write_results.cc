@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -5,13 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "ibrdf/base/version.h"
-#include "ibrdf/light/environment_map.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/metrics/illumination_metrics.h"
 #include "ibrdf/metrics/image_metrics.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"
-#include "io/image_file.h"
 #include "io/merl.h"
 #include "io/problem_json.h"
 #include "io/result_preview.h"
@@ -22,11 +22,6 @@ namespace ibrdf {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct Truth {
-  MerlTable brdf;
-  Image illumination;
-};
 
 Json Metric(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -56,22 +51,6 @@ Mask ObjectMask(const InverseProblem& inverse) {
   Mask mask(inverse.image.width, inverse.image.height, 0);
   for (const ShadingPoint& p : inverse.points) mask.inside[p.pixel] = 1;
   return mask;
-}
-
-Status LoadTruth(const Problem& problem, const InverseProblem& inverse,
-                 Truth* truth) {
-  if (!problem.truth.brdf.empty()) {
-    StatusOr<MerlTable> table = ReadMerl(problem.truth.brdf);
-    if (!table.ok()) return table.status();
-    truth->brdf = std::move(table).value();
-  }
-  if (!problem.truth.illumination.empty()) {
-    StatusOr<Image> map = ReadImage(problem.truth.illumination);
-    if (!map.ok()) return map.status();
-    truth->illumination =
-        ResizeMap(*map, inverse.map_height, inverse.map_width);
-  }
-  return OkStatus();
 }
 
 Status AddMetrics(const InverseProblem& inverse, const Estimate& estimate,
@@ -231,14 +210,20 @@ std::vector<std::string> MetricLines(const Json& metrics) {
 
 }  // namespace
 
-Status WriteResults(const Problem& problem, const InverseProblem& inverse,
-                    const Estimate& estimate, const std::string& folder,
-                    std::string* metrics_text) {
+Status PrepareFolder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return InvalidInput(folder, error.message());
-  Truth truth;
-  IBRDF_RETURN_IF_ERROR(LoadTruth(problem, inverse, &truth));
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    return InvalidInput(folder, "expected a folder that can be written to");
+  }
+  return OkStatus();
+}
+
+Status WriteResults(const Problem& problem, const InverseProblem& inverse,
+                    const Truth& truth, const Estimate& estimate,
+                    const std::string& folder, std::string* metrics_text) {
+  IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
   Json metrics = Json::object();
   IBRDF_RETURN_IF_ERROR(AddMetrics(inverse, estimate, truth, &metrics));
 

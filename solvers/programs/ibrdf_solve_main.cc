@@ -36,6 +36,11 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
                 inverse->effects.words.c_str());
   }
   if (explain) return OkStatus();
+  // What the end needs, before time is spent.
+  const StatusOr<Truth> truth =
+      LoadTruth(problem->truth, inverse->map_width, inverse->map_height);
+  if (!truth.ok()) return truth.status();
+  IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
   const SolveProgress progress = [&](const TraceEntry& e, double share) {
     if (flags.quiet) return;
     std::printf("%s%7.1f s  %3.0f %%  %-32s misfit %.4f  cost %.1f%s",
@@ -49,7 +54,7 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
   if (!estimate.ok()) return estimate.status();
   std::string metrics;
   IBRDF_RETURN_IF_ERROR(
-      WriteResults(*problem, *inverse, *estimate, folder, &metrics));
+      WriteResults(*problem, *inverse, *truth, *estimate, folder, &metrics));
   if (!flags.quiet) {
     std::printf("%sresults in %s; look at %s/report.html\n", metrics.c_str(),
                 folder.c_str(), folder.c_str());

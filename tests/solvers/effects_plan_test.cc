@@ -133,9 +133,9 @@ TEST_F(EffectsPlanTest, SolveUsesShadowsAndReportsThem) {
     ASSERT_TRUE(estimate.ok()) << estimate.status().message();
     misfit[shadows ? 1 : 0] = estimate->misfit;
     if (!shadows) continue;
-    ASSERT_TRUE(
-        WriteResults(*problem, *inverse, *estimate, dir_.File("out"), nullptr)
-            .ok());
+    ASSERT_TRUE(WriteResults(*problem, *inverse, {}, *estimate,
+                             dir_.File("out"), nullptr)
+                    .ok());
     const nlohmann::json result =
         nlohmann::json::parse(ReadBytes(dir_.File("out/result.json")));
     EXPECT_EQ(inverse->effects.words, result["effects"].get<std::string>());

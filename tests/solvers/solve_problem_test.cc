@@ -61,6 +61,7 @@ class SolveProblemTest : public ::testing::Test {
     problem_ = *problem;
     return LoadInverseProblem(problem_, 5, 1);
   }
+  Truth TheTruth() const { return LoadTruth(problem_.truth, 16, 8).value(); }
   void ExpectRefused(const std::vector<std::string>& overrides,
                      const std::string& word) {
     const Status s = Load(overrides).status();
@@ -142,7 +143,8 @@ TEST_F(SolveProblemTest, ResultsAreWholeAndReadBack) {
   ASSERT_TRUE(e.ok()) << e.status().message();
   const std::string out = dir_.File("out/deep");
   std::string text;
-  const Status written = WriteResults(problem_, inverse, *e, out, &text);
+  const Status written =
+      WriteResults(problem_, inverse, TheTruth(), *e, out, &text);
   ASSERT_TRUE(written.ok()) << written.message();
 
   const char* names[] = {"result.json",      "brdf.binary", "brdf.json",
@@ -209,7 +211,8 @@ TEST_F(SolveProblemTest, ResultsOfAKnownReflectanceHoldNoBrdf) {
   const StatusOr<Estimate> e = SolveInverseRendering(inverse, nullptr, nullptr);
   ASSERT_TRUE(e.ok()) << e.status().message();
   const std::string out = dir_.File("out");
-  ASSERT_TRUE(WriteResults(problem_, inverse, *e, out, nullptr).ok());
+  ASSERT_TRUE(
+      WriteResults(problem_, inverse, TheTruth(), *e, out, nullptr).ok());
   EXPECT_TRUE(std::filesystem::exists(out + "/result.json"));
   EXPECT_FALSE(std::filesystem::exists(out + "/brdf.binary"));
   EXPECT_FALSE(std::filesystem::exists(out + "/brdf.json"));
@@ -227,10 +230,39 @@ TEST_F(SolveProblemTest, NamesInOtherEncodingsAreWritten) {
   ASSERT_TRUE(e.ok());
   problem_.image.file = file;
   const std::string out = dir_.File("out");
-  ASSERT_TRUE(WriteResults(problem_, inverse, *e, out, nullptr).ok());
+  ASSERT_TRUE(
+      WriteResults(problem_, inverse, TheTruth(), *e, out, nullptr).ok());
   EXPECT_TRUE(nlohmann::json::accept(ReadBytes(out + "/result.json")));
   EXPECT_NE(std::string::npos,
             ReadBytes(out + "/report.html").find("b\xEF\xBF\xBDr.exr"));
+}
+
+// What no metric can be taken against must be known before a solve.
+TEST_F(SolveProblemTest, TruthThatCannotServeIsRefused) {
+  const auto expect_refused = [](const TruthSpec& truth,
+                                 const std::string& word) {
+    const Status s = LoadTruth(truth, 16, 8).status();
+    EXPECT_EQ(StatusCode::kInvalidInput, s.code()) << word;
+    EXPECT_NE(std::string::npos, s.message().find(word)) << s.message();
+  };
+  EXPECT_TRUE(LoadTruth({}, 16, 8).ok());
+  expect_refused({dir_.File("gone.binary"), ""}, "gone.binary");
+  expect_refused({"", dir_.File("gone.exr")}, "gone.exr");
+  MerlTable nothing;
+  nothing.raw.assign(size_t{3} * kMerlBins, -1.0);
+  ASSERT_TRUE(WriteMerl(nothing, dir_.File("nothing.binary")).ok());
+  expect_refused({dir_.File("nothing.binary"), ""}, "nothing.binary");
+  ASSERT_TRUE(WriteExr(ConstantMap(8, 16, 2.0f), dir_.File("even.exr")).ok());
+  expect_refused({"", dir_.File("even.exr")}, "even.exr");
+}
+
+TEST_F(SolveProblemTest, FolderIsPreparedOrNamed) {
+  EXPECT_TRUE(PrepareFolder(dir_.File("a/b")).ok());
+  EXPECT_TRUE(std::filesystem::is_directory(dir_.File("a/b")));
+  EXPECT_TRUE(PrepareFolder(dir_.File("a/b")).ok());
+  const Status s = PrepareFolder(dir_.File("input.exr"));
+  EXPECT_EQ(StatusCode::kInvalidInput, s.code());
+  EXPECT_NE(std::string::npos, s.message().find("input.exr"));
 }
 
 TEST_F(SolveProblemTest, FolderThatCannotBeMadeIsNamed) {
@@ -239,7 +271,7 @@ TEST_F(SolveProblemTest, FolderThatCannotBeMadeIsNamed) {
   const StatusOr<Estimate> e = SolveInverseRendering(*p, nullptr, nullptr);
   ASSERT_TRUE(e.ok());
   const std::string out = dir_.File("input.exr") + "/out";
-  const Status s = WriteResults(problem_, *p, *e, out, nullptr);
+  const Status s = WriteResults(problem_, *p, {}, *e, out, nullptr);
   EXPECT_EQ(StatusCode::kInvalidInput, s.code());
   EXPECT_NE(std::string::npos, s.message().find(out));
 }
