@@ -47,10 +47,8 @@ def statistics(radiance, width):
     log = np.log(m + 1e-6 * m.max())
     sine = np.sin(np.pi * (np.arange(height) + 0.5) / height)
     weight = (sine / sine.mean())[:, None, None]
-    step = (np.roll(log, -1, 1) - log) / np.sqrt(2 * np.pi / width * sine)[:, None, None]
     mean = (log * weight).mean((0, 1))
-    return ((np.abs(step) * weight).mean(), np.sqrt((step ** 2 * weight).mean()), mean[0] - mean[1], mean[2] - mean[1],
-            np.sqrt((((log - mean) ** 2) * weight).mean()))
+    return mean[0] - mean[1], mean[2] - mean[1], np.sqrt((((log - mean) ** 2) * weight).mean())
 
 
 ANGLES = np.array([8, 14, 20, 30, 45, 60, 80, 100, 130, 180.01])
@@ -84,15 +82,15 @@ def main():
     args = ap.parse_args()
     left_out = set(args.leave_out.split(","))
     rows = []
-    print(f"{'map':28s} {'mean |step|':>12s} {'rms step':>9s} {'red-green':>10s} {'blue-green':>11s} {'std':>6s}")
+    print(f"{'map':28s} {'red-green':>10s} {'blue-green':>11s} {'std':>6s}")
     for path in sorted(args.maps.glob("*.hdr")):
         if path.stem in left_out:
             continue
         rows.append(statistics(read_rgbe(path), args.width))
-        print(f"{path.stem:28s} {rows[-1][0]:12.2f} {rows[-1][1]:9.2f} {rows[-1][2]:10.2f} {rows[-1][3]:11.2f} {rows[-1][4]:6.2f}")
+        print(f"{path.stem:28s} {rows[-1][0]:10.2f} {rows[-1][1]:11.2f} {rows[-1][2]:6.2f}")
     r = np.array(rows)
-    print(f"{'mean (chroma: rms)':28s} {r[:, 0].mean():12.2f} {r[:, 1].mean():9.2f} {np.sqrt((r[:, 2] ** 2).mean()):10.2f} "
-          f"{np.sqrt((r[:, 3] ** 2).mean()):11.2f} {r[:, 4].mean():6.2f}")
+    print(f"{'mean (chroma: rms)':28s} {np.sqrt((r[:, 0] ** 2).mean()):10.2f} "
+          f"{np.sqrt((r[:, 1] ** 2).mean()):11.2f} {r[:, 2].mean():6.2f}")
     mean = np.mean([semivariograms(read_rgbe(p)) for p in sorted(args.maps.glob("*.hdr")) if p.stem not in left_out], 0)
     middle = (ANGLES[:-1] + ANGLES[1:]) / 2
     print("angle, degrees         " + "".join(f"{a:7.0f}" for a in middle))

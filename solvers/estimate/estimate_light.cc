@@ -164,7 +164,7 @@ Status Estimator::EstimateNetwork(JointState* state) {
     StartAtLevel(state);
     StartLightAt(*state);
     state->light = draw;
-    Report("map again", cells_.get(), *state);
+    Report("map: network unfinished", cells_.get(), *state);
   }
   return OkStatus();
 }
