@@ -16,6 +16,9 @@ namespace {
 constexpr double kShrinkage = 0.2;
 // Log colour of lobes beyond a material's own, relative to its last lobe's.
 constexpr double kExtraLobe = -3.0;
+// Their codes start within so many of the prior's standard deviations, in each
+// dimension's mean: a narrow prior would otherwise start at an infinite cost.
+constexpr double kExtraDeviations = 2.0;
 
 // Lobes of every material: those of its fit, or one of its mean code.
 std::vector<MaterialPrior::Material> FittedMaterials(
@@ -99,6 +102,10 @@ MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,
       m.parameters.conservativeResize(n + lobe_size);
       m.parameters.tail(lobe_size) =
           m.parameters.segment(n - lobe_size, lobe_size);
+      auto code = m.parameters.segment(n, size);
+      const double most =
+          kExtraDeviations * code_sigma * std::sqrt(static_cast<double>(size));
+      if (code.norm() > most) code *= most / code.norm();
       m.parameters.tail(3).array() += kExtraLobe;
     }
   }

@@ -40,13 +40,10 @@ StatusOr<Estimate> Estimator::Run() {
   if (!light_unknown()) {
     state = StartUnderKnownLight();
     if (problem_.solver.max_iterations > 0) KnownLightRounds(&state);
-  } else if (lobes_unknown() &&
-             problem_.solver.estimator == SolverEstimator::kMarginal) {
-    IBRDF_RETURN_IF_ERROR(SearchMarginal(&state));
-    IBRDF_RETURN_IF_ERROR(EstimateLight(&state));
-  } else if (lobes_unknown()) {
+  } else if (joint_maximum()) {
     IBRDF_RETURN_IF_ERROR(EstimateBoth(&state));
   } else {
+    if (lobes_unknown()) IBRDF_RETURN_IF_ERROR(SearchMarginal(&state));
     IBRDF_RETURN_IF_ERROR(EstimateLight(&state));
   }
   return Finish(state);
@@ -144,8 +141,9 @@ TraceEntry Estimator::Entry(const std::string& stage, const Level& level,
   entry.pixels = level.observed.num_valid;
   entry.likelihood = cost.likelihood;
   entry.reflectance_prior =
-      light_unknown() ? cost.reflectance_prior
-                      : materials_.Cost(VectorOf(state.lobes), nullptr);
+      lobes_unknown() && !joint_maximum()
+          ? materials_.Cost(VectorOf(state.lobes), nullptr)
+          : cost.reflectance_prior;
   entry.illumination_prior = cost.illumination_prior;
   entry.cost =
       entry.likelihood + entry.reflectance_prior + entry.illumination_prior;

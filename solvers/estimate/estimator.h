@@ -45,6 +45,10 @@ class Estimator {
   bool Interrupted() const { return stop_ != nullptr && stop_->load(); }
   bool lobes_unknown() const { return !problem_.known_brdf.has_value(); }
   bool light_unknown() const { return !problem_.known_map.has_value(); }
+  bool joint_maximum() const {
+    return lobes_unknown() && light_unknown() &&
+           problem_.solver.estimator == SolverEstimator::kMaximum;
+  }
   // Of the time left from now on but for what Finish takes.
   std::function<bool()> StopAfter(double share) const;
   // kInvalidInput if no pixel can be used.
@@ -58,8 +62,8 @@ class Estimator {
     std::unique_ptr<JointObjective> objective;
   };
   LevelObjective ObjectiveOn(Level* level);
-  // At the image's pixels under known light the materials' prior stands in for
-  // the one of the joint maximum.
+  // The reflectance's prior is the materials', as in the searches, except for
+  // the joint maximum, whose objective has the paper's.
   TraceEntry Entry(const std::string& stage, const Level& level,
                    const JointState& state, const JointCost& cost) const;
   TraceEntry Evaluate(const std::string& stage, Level* level,
