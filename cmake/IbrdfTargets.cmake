@@ -9,7 +9,9 @@ if(IBRDF_WARNINGS_AS_ERRORS)
 endif()
 if(IBRDF_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer
-                      -fno-sanitize-recover=undefined)
+                      -fno-sanitize-recover=undefined
+                      # GCC: instrumented code gives false positives
+                      -Wno-maybe-uninitialized)
   add_link_options(-fsanitize=address,undefined)
 endif()
 if(IBRDF_BUILD_FUZZERS)

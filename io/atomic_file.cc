@@ -1,12 +1,17 @@
 #include "io/atomic_file.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace ibrdf {
 namespace {
@@ -24,16 +29,52 @@ Status Flush(const std::string& path) {
   return OkStatus();
 }
 
+// Of this machine: process numbers of others in a shared folder mean nothing.
+std::string TemporaryPrefix() {
+  char host[256] = {};
+  ::gethostname(host, sizeof(host) - 1);
+  std::string prefix = ".tmp-";
+  for (const char* c = host; *c != '\0'; ++c) {
+    if (std::isalnum(static_cast<unsigned char>(*c)) != 0) prefix += *c;
+  }
+  return prefix + "-";
+}
+
+// What writers of the same file left that were killed on this machine.
+void RemoveLeftovers(const std::string& folder, const std::string& name) {
+  namespace fs = std::filesystem;
+  const std::string prefix = TemporaryPrefix(), suffix = "-" + name;
+  std::error_code ignored;
+  fs::directory_iterator entry(folder.empty() ? "." : folder, ignored);
+  while (!ignored && entry != fs::directory_iterator()) {
+    const std::string file = entry->path().filename().string();
+    if (file.size() > prefix.size() + suffix.size() &&
+        file.compare(0, prefix.size(), prefix) == 0 &&
+        file.compare(file.size() - suffix.size(), suffix.size(), suffix) == 0) {
+      const std::string number = file.substr(
+          prefix.size(), file.size() - prefix.size() - suffix.size());
+      char* end = nullptr;
+      const long pid = std::strtol(number.c_str(), &end, 10);
+      if (*end == '\0' && pid > 0 && ::kill(static_cast<pid_t>(pid), 0) != 0 &&
+          errno == ESRCH) {
+        std::remove(entry->path().c_str());
+      }
+    }
+    entry.increment(ignored);
+  }
+}
+
 }  // namespace
 
 Status WriteAtomically(const std::string& path,
                        const std::function<Status(const std::string&)>& write) {
-  // The extension stays last: some writers choose the format by it.
   const size_t slash = path.find_last_of('/');
   const size_t base = slash == std::string::npos ? 0 : slash + 1;
-  const std::string temporary = path.substr(0, base) + ".tmp-" +
-                                std::to_string(::getpid()) + "-" +
-                                path.substr(base);
+  const std::string folder = path.substr(0, base), name = path.substr(base);
+  RemoveLeftovers(folder, name);
+  // The extension stays last: some writers choose the format by it.
+  const std::string temporary =
+      folder + TemporaryPrefix() + std::to_string(::getpid()) + "-" + name;
   Status status = write(temporary);
   if (status.ok()) status = Flush(temporary);
   if (status.ok() && std::rename(temporary.c_str(), path.c_str()) != 0) {

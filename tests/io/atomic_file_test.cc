@@ -1,6 +1,9 @@
 #include "io/atomic_file.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <string>
 
@@ -51,6 +54,42 @@ TEST(AtomicFile, TemporaryNameIsBesideAndKeepsTheExtension) {
   EXPECT_EQ(0u, used.find(dir.path() + "/"));
   EXPECT_EQ(".exr", used.substr(used.size() - 4));
   EXPECT_NE(path, used);
+}
+
+TEST(AtomicFile, WhatAKilledWriterLeftGoesWithTheNextWrite) {
+  const TempDir dir;
+  const std::string path = dir.File("a.exr");
+  WriteBytes(dir.File(".tmp-elsewhere-1-a.exr"), "of another machine");
+  const pid_t killed = ::fork();
+  if (killed == 0) {
+    const Status never =
+        WriteAtomically(path, [](const std::string& temporary) {
+          WriteBytes(temporary, "half");
+          ::kill(::getpid(), SIGKILL);
+          return OkStatus();
+        });
+    ::_exit(never.ok() ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(killed, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ASSERT_EQ(2, dir.CountFiles());
+  ASSERT_TRUE(WriteFileAtomically(dir.File("b-a.exr"), "other").ok());
+  EXPECT_EQ(3, dir.CountFiles());
+  // What another process is writing at the time stays.
+  ASSERT_TRUE(WriteAtomically(path, [&](const std::string& temporary) {
+                WriteBytes(temporary, "whole");
+                const pid_t quicker = ::fork();
+                if (quicker == 0) {
+                  ::_exit(WriteFileAtomically(path, "quicker").ok() ? 0 : 1);
+                }
+                int code = -1;
+                ::waitpid(quicker, &code, 0);
+                EXPECT_EQ(0, code);
+                return OkStatus();
+              }).ok());
+  EXPECT_EQ("whole", ReadBytes(path));
+  EXPECT_EQ(3, dir.CountFiles());
 }
 
 TEST(AtomicFile, UnwritableTargetsLeaveNothing) {

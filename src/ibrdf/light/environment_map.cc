@@ -82,7 +82,8 @@ void MapPosition(const Eigen::Vector3d& direction, int height, int width,
 
 void FastMapPosition(const Eigen::Vector3d& direction, int height, int width,
                      double* row, double* column) {
-  PositionBy(FastAtan2<double>, direction, height, width, row, column);
+  PositionBy([](double y, double x) { return FastAtan2(y, x); }, direction,
+             height, width, row, column);
 }
 
 double TexelSolidAngle(int row, int height, int width) {
