@@ -27,6 +27,16 @@ if(IBRDF_BUILD_FUZZERS)
 endif()
 add_compile_definitions($<$<CONFIG:Debug>:EIGEN_INITIALIZE_MATRICES_BY_NAN>)
 
+# The headers that most files of `target` read, in place of once for each file,
+# where half of the time to compile it goes. Files include what they use all the
+# same: the preset `tidy` compiles them without.
+function(ibrdf_precompile_headers target)
+  if(IBRDF_PRECOMPILE_HEADERS)
+    target_precompile_headers(${target} PRIVATE <algorithm> <cmath>
+      <functional> <map> <memory> <optional> <string> <vector> ${ARGN})
+  endif()
+endfunction()
+
 # Compiles each file of ARGN (named *_kernels.cc) into `target` once per
 # instruction set, in the namespaces ibrdf::portable, ibrdf::avx2 and
 # ibrdf::avx512; the caller picks one by ActiveSimdLevel().
@@ -72,5 +82,6 @@ function(ibrdf_add_tests folder)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE
     IBRDF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  ibrdf_precompile_headers(${name} <Eigen/Dense> <gtest/gtest.h>)
   gtest_discover_tests(${name} TEST_PREFIX ${folder}/ DISCOVERY_TIMEOUT 60)
 endfunction()
