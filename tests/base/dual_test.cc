@@ -11,11 +11,15 @@ namespace {
 template <typename T>
 T Formula(const T& a, const T& b) {
   using std::abs;
+  using std::atan2;
+  using std::cos;
   using std::exp;
   using std::log;
+  using std::sin;
   using std::sqrt;
   T sum = a * b - b / a + T(2.0) * a;
   sum += exp(-a) * log(b + 3.0) / sqrt(a * a + 1.0);
+  sum += sin(a * b) * cos(a - b) + atan2(b, a) * atan2(a, T(2.0));
   return sum - abs(b) * abs(a) + 1.0 / b;
 }
 
@@ -44,6 +48,17 @@ TEST(Dual, ConstantsHaveNoDerivatives) {
   EXPECT_EQ(-1.0, (Dual(2.0) - x).derivatives[0]);
   EXPECT_EQ(1.0, (x - Dual(2.0)).derivatives[0]);
   EXPECT_DOUBLE_EQ(-2.0 / 9.0, (Dual(2.0) / x).derivatives[0]);
+}
+
+TEST(Dual, OfLongDoubleKeepsItsPrecision) {
+  using Long = BasicDual<long double>;
+  const Long value = Formula(Long(0.4L, 2, 0), Long(5.0L, 2, 1));
+  EXPECT_EQ(Formula(0.4L, 5.0L), value.value);
+  // Differences at the best step leave 1e-12: no double carries that far.
+  constexpr long double kStep = 1e-6L, kTolerance = 1e-11L;
+  const long double by_b =
+      (Formula(0.4L, 5.0L + kStep) - Formula(0.4L, 5.0L - kStep)) / (2 * kStep);
+  EXPECT_LT(std::abs(by_b - value.derivatives[1]), kTolerance);
 }
 
 TEST(Dual, ComparesValues) {

@@ -42,18 +42,23 @@ inline constexpr double kBoundRounding = 1e-6;
 // x_p likewise where not null.
 template <typename T>
 void ColumnFeatures(T x_d, T x_p, T* features, T* by_d, T* by_p) {
+  using std::abs;
+  using std::atan2;
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
   const T quarter = T(M_PI / 2);
-  const T sine_d = std::sin(quarter * x_d), cosine_d = std::cos(quarter * x_d);
-  const T sine_p = std::sin(T(M_PI) * x_p), cosine_p = std::cos(T(M_PI) * x_p);
-  const T c = std::sqrt(cosine_p * cosine_p + T(kCosineRounding));
+  const T sine_d = sin(quarter * x_d), cosine_d = cos(quarter * x_d);
+  const T sine_p = sin(T(M_PI) * x_p), cosine_p = cos(T(M_PI) * x_p);
+  const T c = sqrt(cosine_p * cosine_p + T(kCosineRounding));
   // Zero only at x_d = 1, and not in floating point.
-  const T b = std::atan2(std::abs(cosine_d), c * sine_d) / quarter;
-  const T root_b = std::sqrt(b + T(kBoundRounding)), root_c = std::sqrt(c);
+  const T b = atan2(abs(cosine_d), c * sine_d) / quarter;
+  const T root_b = sqrt(b + T(kBoundRounding)), root_c = sqrt(c);
   features[0] = 2 * x_d - 1;
   features[1] = 2 * root_b - 1;
   features[2] = 2 * b - 1;
-  features[3] = std::cos(T(2 * M_PI) * x_p);
-  features[4] = std::sin(T(2 * M_PI) * x_p);
+  features[3] = cos(T(2 * M_PI) * x_p);
+  features[4] = sin(T(2 * M_PI) * x_p);
   features[5] = 2 * root_c - 1;
   if (by_d == nullptr || by_p == nullptr) return;
   const T norm = cosine_d * cosine_d + c * c * sine_d * sine_d;
