@@ -204,6 +204,25 @@ TEST(IlluminationUnet, AgreesWithTheDoubleReferenceAtEverySimdLevel) {
   }
 }
 
+TEST(IlluminationUnet, LevelDoubleIsTheReferenceRoundedOnce) {
+  const IlluminationUnetOptions options = ManyOptions().front();
+  const IlluminationUnet any(options);
+  const IlluminationUnet unet(options, any.noise(), SimdLevel::kDouble);
+  const auto reference = Reference(unet);
+  const Floats weights = PriorDraw(unet, 1), v = PriorDraw(unet, 2);
+  const Floats u = RandomNormal<float>(unet.num_outputs(), 3);
+  const auto pass = reference.Forward(ToDouble(weights));
+  const auto rounded = [](const Doubles& x) {
+    return Floats(x.begin(), x.end());
+  };
+  const FastPasses passes = RunFast(unet, weights, v, u);
+  EXPECT_EQ(rounded(pass.log_radiance()), passes.log_radiance);
+  EXPECT_EQ(rounded(reference.Jvp(ToDouble(weights), ToDouble(v), pass)),
+            passes.jvp);
+  EXPECT_EQ(rounded(reference.Vjp(ToDouble(weights), ToDouble(u), pass)),
+            passes.vjp);
+}
+
 TEST(IlluminationUnet, VjpIsTheAdjointOfJvp) {
   for (const auto& options : ManyOptions()) {
     const IlluminationUnet unet(options);

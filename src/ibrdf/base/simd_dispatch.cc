@@ -9,6 +9,7 @@ bool SimdLevelSupported(SimdLevel level) {
 #if defined(IBRDF_HAVE_X86_KERNELS)
   switch (level) {
     case SimdLevel::kPortable:
+    case SimdLevel::kDouble:
       return true;
     case SimdLevel::kAvx2:
       return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
@@ -21,7 +22,7 @@ bool SimdLevelSupported(SimdLevel level) {
   }
   return false;
 #else
-  return level == SimdLevel::kPortable;
+  return level == SimdLevel::kPortable || level == SimdLevel::kDouble;
 #endif
 }
 
@@ -33,6 +34,8 @@ const char* SimdLevelName(SimdLevel level) {
       return "avx2";
     case SimdLevel::kAvx512:
       return "avx512";
+    case SimdLevel::kDouble:
+      return "double";
   }
   return "unknown";
 }
@@ -40,6 +43,10 @@ const char* SimdLevelName(SimdLevel level) {
 SimdLevel ActiveSimdLevel() {
   static const SimdLevel level = [] {
     const char* wanted = std::getenv("IBRDF_SIMD");
+    if (wanted != nullptr &&
+        std::string(wanted) == SimdLevelName(SimdLevel::kDouble)) {
+      return SimdLevel::kDouble;
+    }
     for (const SimdLevel candidate :
          {SimdLevel::kAvx512, SimdLevel::kAvx2, SimdLevel::kPortable}) {
       if (!SimdLevelSupported(candidate)) continue;

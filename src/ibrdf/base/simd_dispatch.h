@@ -3,19 +3,22 @@
 // A kernel file is compiled once per instruction set by the CMake function
 // ibrdf_add_simd_kernels(), each time with another IBRDF_SIMD_NAMESPACE
 // (portable, avx2, avx512), and a caller picks a table of function pointers by
-// ActiveSimdLevel(). Kernels agree between levels to float rounding.
+// ActiveSimdLevel(). Kernels agree between levels to float rounding
+// (experiments/precision).
 #pragma once
 
 namespace ibrdf {
 
-enum class SimdLevel { kPortable = 0, kAvx2 = 1, kAvx512 = 2 };
+// kDouble, for checks: tables of the flow, and the illumination's network, by
+// their plain references in double precision, slow; else as kPortable.
+enum class SimdLevel { kPortable = 0, kAvx2 = 1, kAvx512 = 2, kDouble = 3 };
 
-// The best level of this machine, or the one named by the environment variable
-// IBRDF_SIMD (portable, avx2, avx512) where the machine has it. Fixed at first
-// call.
+// The best instruction set of this machine, or the level named by the
+// environment variable IBRDF_SIMD (portable, avx2, avx512, double) where the
+// machine has it. Fixed at first call.
 SimdLevel ActiveSimdLevel();
 
-// The levels this machine can run, ascending; kPortable is always one.
+// The levels this machine can run; kPortable and kDouble are always two.
 bool SimdLevelSupported(SimdLevel level);
 
 const char* SimdLevelName(SimdLevel level);

@@ -1,6 +1,7 @@
 #include "ibrdf/flow/brdf_flow.h"
 
 #include "ibrdf/flow/coupling_flow.h"
+#include "ibrdf/flow/double_flow.h"
 #include "ibrdf/flow/triangular_flow.h"
 
 namespace ibrdf {
@@ -36,6 +37,10 @@ void FlowColumns::CopyColumn(int column, const FlowColumns& other, int from) {
 std::unique_ptr<BrdfFlow> BrdfFlow::Create(const FlowShape& shape,
                                            const std::vector<float>& weights,
                                            SimdLevel level) {
+  if (level == SimdLevel::kDouble) {
+    return std::make_unique<DoubleFlow>(
+        shape, weights, Create(shape, weights, SimdLevel::kPortable));
+  }
   if (shape.architecture == FlowArchitecture::kTriangular) {
     return std::make_unique<TriangularFlow>(shape.triangular, weights, level);
   }

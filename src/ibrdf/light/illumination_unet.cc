@@ -77,6 +77,13 @@ double ActivationPower() {
   return power / total;
 }
 
+std::vector<double> ToDouble(const float* from, size_t count) {
+  return std::vector<double>(from, from + count);
+}
+void ToFloat(const std::vector<double>& from, float* to) {
+  for (size_t i = 0; i < from.size(); ++i) to[i] = static_cast<float>(from[i]);
+}
+
 std::vector<float> DrawNoise(const IlluminationUnetOptions& options) {
   std::vector<float> noise(static_cast<size_t>(options.noise_channels) *
                            options.height * options.width);
@@ -96,7 +103,11 @@ IlluminationUnet::IlluminationUnet(const IlluminationUnetOptions& options,
       plan_(MakeUnetPlan(options)),
       noise_(std::move(noise)),
       engine_(std::make_unique<UnetEngine>(plan_, noise_, options.num_threads,
-                                           GetUnetKernels(level))) {}
+                                           GetUnetKernels(level))),
+      plain_(level != SimdLevel::kDouble
+                 ? nullptr
+                 : std::make_unique<UnetReference<double>>(
+                       plan_, ToDouble(noise_.data(), noise_.size()))) {}
 
 IlluminationUnet::~IlluminationUnet() = default;
 
@@ -136,17 +147,38 @@ IlluminationUnet::Workspace& IlluminationUnet::Workspace::operator=(
 
 void IlluminationUnet::Forward(const float* weights, Workspace* workspace,
                                float* log_radiance) const {
+  if (plain_ != nullptr) {
+    UnetBuffers& b = *workspace->buffers_;
+    b.plain_weights = ToDouble(weights, num_weights());
+    b.plain = plain_->Forward(b.plain_weights);
+    ToFloat(b.plain.log_radiance(), log_radiance);
+    return;
+  }
   engine_->Forward(weights, workspace->buffers_.get(), log_radiance);
 }
 
 void IlluminationUnet::Jvp(const float* tangent, const Workspace& workspace,
                            Scratch* scratch, float* d_log_radiance) const {
+  if (plain_ != nullptr) {
+    const UnetBuffers& b = *workspace.buffers_;
+    ToFloat(
+        plain_->Jvp(b.plain_weights, ToDouble(tangent, num_weights()), b.plain),
+        d_log_radiance);
+    return;
+  }
   engine_->Jvp(tangent, *workspace.buffers_, scratch->buffers_.get(),
                d_log_radiance);
 }
 
 void IlluminationUnet::Vjp(const float* adjoint, const Workspace& workspace,
                            Scratch* scratch, float* weight_gradient) const {
+  if (plain_ != nullptr) {
+    const UnetBuffers& b = *workspace.buffers_;
+    ToFloat(
+        plain_->Vjp(b.plain_weights, ToDouble(adjoint, num_outputs()), b.plain),
+        weight_gradient);
+    return;
+  }
   engine_->Vjp(adjoint, *workspace.buffers_, scratch->buffers_.get(),
                weight_gradient);
 }

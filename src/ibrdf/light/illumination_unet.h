@@ -17,6 +17,8 @@ namespace ibrdf {
 
 class UnetEngine;
 struct UnetBuffers;
+template <typename T>
+class UnetReference;
 
 // Immutable after construction: const methods may run at the same time in many
 // threads, each with its own Workspace and Scratch.
@@ -85,6 +87,8 @@ class IlluminationUnet {
   const UnetPlan plan_;
   const std::vector<float> noise_;
   const std::unique_ptr<const UnetEngine> engine_;
+  // In place of the engine's passes at SimdLevel::kDouble, else null.
+  const std::unique_ptr<const UnetReference<double>> plain_;
 };
 
 }  // namespace ibrdf

@@ -8,6 +8,7 @@
 
 #include "ibrdf/light/illumination_unet_kernels.h"
 #include "ibrdf/light/illumination_unet_plan.h"
+#include "ibrdf/light/illumination_unet_reference.h"
 
 namespace ibrdf {
 
@@ -61,6 +62,9 @@ struct UnetBuffers {
   UnetBuffer transposed;                      // packed
   UnetBuffer gradient;                        // packed
   uint64_t owner = 0;  // id of the engine that sized them
+  // Of SimdLevel::kDouble, in place of all that.
+  UnetReferencePass<double> plain;
+  std::vector<double> plain_weights;
 };
 
 class UnetEngine {

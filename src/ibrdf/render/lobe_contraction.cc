@@ -12,6 +12,7 @@ ContractLobesFunction ContractLobes() {
     case SimdLevel::kAvx2:
       return avx2::ContractLobes;
     case SimdLevel::kPortable:
+    case SimdLevel::kDouble:
       break;
   }
 #endif

@@ -16,6 +16,7 @@ const ReferenceKernels& ActiveReferenceKernels() {
     case SimdLevel::kAvx2:
       return avx2::kReferenceKernels;
     case SimdLevel::kPortable:
+    case SimdLevel::kDouble:
       break;
   }
 #endif
