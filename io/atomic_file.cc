@@ -75,7 +75,13 @@ Status WriteAtomically(const std::string& path,
   // The extension stays last: some writers choose the format by it.
   const std::string temporary =
       folder + TemporaryPrefix() + std::to_string(::getpid()) + "-" + name;
-  Status status = write(temporary);
+  Status status;
+  try {
+    status = write(temporary);
+  } catch (...) {  // no memory
+    std::remove(temporary.c_str());
+    throw;
+  }
   if (status.ok()) status = Flush(temporary);
   if (status.ok() && std::rename(temporary.c_str(), path.c_str()) != 0) {
     status = SystemError(path, "cannot rename the temporary file");

@@ -8,9 +8,9 @@
 namespace ibrdf {
 
 // Calls write(temporary) with a name beside `path`, then flushes the file to
-// disk and renames it to `path`. The temporary file is removed when write or
-// the rename fails; what a writer of the same path left that was killed on this
-// machine is removed too. The message names `path`.
+// disk and renames it to `path`. The temporary file is removed when write
+// throws or fails, or the rename fails; what a writer of the same path left
+// that was killed on this machine is removed too. The message names `path`.
 Status WriteAtomically(const std::string& path,
                        const std::function<Status(const std::string&)>& write);
 

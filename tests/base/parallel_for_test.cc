@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <new>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 namespace ibrdf {
@@ -33,6 +35,26 @@ TEST(ParallelFor, NestedCallRunsInItsOwnThread) {
     });
   });
   EXPECT_EQ(std::vector<int>(8, 45), sums);
+}
+
+TEST(ParallelFor, ThrowsOnWhatABodyThrewWhenAllThreadsAreDone) {
+  for (const int threads : {1, 2, 8}) {
+    for (const int64_t bad : {0, 1, 500, 999}) {
+      std::atomic<int> inside{0};
+      const auto body = [&](int64_t i, int) {
+        ++inside;
+        std::this_thread::yield();
+        --inside;
+        if (i == bad) throw std::bad_alloc();
+      };
+      EXPECT_THROW(ParallelFor(1000, threads, body), std::bad_alloc);
+      EXPECT_EQ(0, inside);
+    }
+    // The pool goes on.
+    std::atomic<int> visits{0};
+    ParallelFor(1000, threads, [&](int64_t, int) { ++visits; });
+    EXPECT_EQ(1000, visits);
+  }
 }
 
 }  // namespace

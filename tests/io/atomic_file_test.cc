@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <new>
 #include <string>
 
 #include "tests/support/temp_dir.h"
@@ -40,6 +41,17 @@ TEST(AtomicFile, FailedWriteKeepsTheOldFile) {
   EXPECT_FALSE(status.ok());
   EXPECT_EQ("old", ReadBytes(path));
   EXPECT_EQ(1, dir.CountFiles());
+}
+
+TEST(AtomicFile, ThrowingWriterLeavesNothing) {
+  const TempDir dir;
+  const auto write = [](const std::string& temporary) -> Status {
+    WriteBytes(temporary, "half");
+    throw std::bad_alloc();
+  };
+  EXPECT_THROW(static_cast<void>(WriteAtomically(dir.File("a"), write)),
+               std::bad_alloc);
+  EXPECT_EQ(0, dir.CountFiles());
 }
 
 TEST(AtomicFile, TemporaryNameIsBesideAndKeepsTheExtension) {

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <memory>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace ibrdf {
@@ -25,15 +29,11 @@ class Pool {
   void Run(int64_t count, int num_threads,
            const std::function<void(int64_t, int)>& body) {
     const std::lock_guard<std::mutex> one_loop(loop_mutex_);
-    const int helpers =
-        static_cast<int>(std::min<int64_t>(num_threads, count)) - 1;
+    int helpers = static_cast<int>(std::min<int64_t>(num_threads, count)) - 1;
     {
       const std::lock_guard<std::mutex> lock(mutex_);
-      while (static_cast<int>(threads_.size()) < helpers) {
-        const int worker = static_cast<int>(threads_.size()) + 1;
-        threads_.emplace_back([this, worker] { Wait(worker); });
-        threads_.back().detach();
-      }
+      AddThreads(helpers);
+      helpers = std::min(helpers, static_cast<int>(threads_.size()));
       body_ = &body;
       count_ = count;
       next_.store(0);
@@ -46,13 +46,35 @@ class Pool {
     std::unique_lock<std::mutex> lock(mutex_);
     done_.wait(lock, [this] { return running_ == 0; });
     body_ = nullptr;
+    if (const std::exception_ptr thrown = std::exchange(thrown_, nullptr)) {
+      std::rethrow_exception(thrown);
+    }
   }
 
  private:
+  // To `wanted` threads, or as many as the system grants.
+  void AddThreads(int wanted) {
+    try {
+      while (static_cast<int>(threads_.size()) < wanted) {
+        const int worker = static_cast<int>(threads_.size()) + 1;
+        threads_.emplace_back([this, worker] { Wait(worker); });
+        threads_.back().detach();
+      }
+    } catch (const std::system_error&) {  // fewer do
+    } catch (const std::bad_alloc&) {
+    }
+  }
+
   void Work(int worker) {
     inside_parallel_for = true;
-    for (int64_t i = next_.fetch_add(1); i < count_; i = next_.fetch_add(1)) {
-      (*body_)(i, worker);
+    try {
+      for (int64_t i = next_.fetch_add(1); i < count_; i = next_.fetch_add(1)) {
+        (*body_)(i, worker);
+      }
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (thrown_ == nullptr) thrown_ = std::current_exception();
+      next_.store(count_);  // the rest is not wanted
     }
     inside_parallel_for = false;
   }
@@ -80,6 +102,7 @@ class Pool {
   std::condition_variable done_;
   std::vector<std::thread> threads_;
   const std::function<void(int64_t, int)>* body_ = nullptr;
+  std::exception_ptr thrown_;  // by the first body that did
   int64_t count_ = 0;
   std::atomic<int64_t> next_{0};
   int wanted_ = 0;

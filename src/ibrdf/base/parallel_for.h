@@ -13,6 +13,7 @@ int HardwareThreads();
 // worker is in [0, num_threads). Which worker takes an index is not
 // deterministic, so write results to slots that belong to the index and join
 // them in index order. A call from inside a body runs in that thread.
+// What a body throws (no memory) ends the loop and is thrown on by the call.
 void ParallelFor(int64_t count, int num_threads,
                  const std::function<void(int64_t index, int worker)>& body);
 
