@@ -93,13 +93,19 @@ class FreeIllumination final : public IlluminationModel {
 }  // namespace
 
 void ToRadianceMap(const std::vector<float>& log_radiance,
-                   std::vector<float>* map) {
+                   std::vector<float>* map, std::vector<float>* slopes) {
   map->resize(log_radiance.size());
+  if (slopes != nullptr) slopes->resize(log_radiance.size());
   const size_t texels = log_radiance.size() / 3;
   for (size_t t = 0; t < texels; ++t) {
     for (size_t c = 0; c < 3; ++c) {
-      (*map)[3 * t + c] = std::exp(std::clamp(
-          log_radiance[c * texels + t], -kMaxLogRadiance, kMaxLogRadiance));
+      const float l = log_radiance[c * texels + t];
+      const float L =
+          std::exp(std::clamp(l, -kMaxLogRadiance, kMaxLogRadiance));
+      (*map)[3 * t + c] = L;
+      if (slopes != nullptr) {
+        (*slopes)[3 * t + c] = std::abs(l) < kMaxLogRadiance ? L : 0.0f;
+      }
     }
   }
 }

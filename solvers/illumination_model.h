@@ -38,9 +38,11 @@ class IlluminationModel {
 };
 
 // exp of planar log radiance [3][H][W] as a map [H, W, 3]; clamped so that
-// nothing overflows.
+// nothing overflows. slopes, where not null: its derivatives by log radiance
+// [H, W, 3], the map's values but 0 where it is clamped.
 void ToRadianceMap(const std::vector<float>& log_radiance,
-                   std::vector<float>* map);
+                   std::vector<float>* map,
+                   std::vector<float>* slopes = nullptr);
 
 std::unique_ptr<IlluminationModel> MakeUnetIllumination(
     const IlluminationUnetOptions& options);

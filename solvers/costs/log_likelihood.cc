@@ -7,6 +7,13 @@
 #include <limits>
 
 namespace ibrdf {
+namespace {
+
+// E + epsilon counts as no less: its logarithm and the square of its inverse
+// stay finite.
+constexpr double kLeastRadiance = 1e-100;
+
+}  // namespace
 
 Observations MakeObservations(const std::vector<double>& radiance) {
   Observations o;
@@ -42,7 +49,8 @@ LikelihoodValue EvaluateLikelihood(const std::vector<double>& E,
       value.cost = value.misfit = std::numeric_limits<double>::quiet_NaN();
       return value;
     }
-    const double e = std::max(E[i], 0.0) + l.epsilon;
+    const double sum = std::max(E[i], 0.0) + l.epsilon;
+    const double e = std::max(sum, kLeastRadiance);
     const double d = std::log(e) - std::log(observed.radiance[i] + l.epsilon);
     const double t = d / l.scale;
     double dr_dt = 0.0;
@@ -50,7 +58,9 @@ LikelihoodValue EvaluateLikelihood(const std::vector<double>& E,
     value.cost += r * r / 2;
     value.misfit += std::abs(d);
     if (derivatives == nullptr) continue;
-    const double dt = 1.0 / (l.scale * e);
+    // No slope where E counts as another.
+    const bool moves = E[i] >= 0.0 && sum >= kLeastRadiance;
+    const double dt = moves ? 1.0 / (l.scale * e) : 0.0;
     derivatives->residual[i] = r;
     derivatives->d_residual[i] = dr_dt * dt;
     derivatives->weight[i] = dt * dt / std::hypot(t, l.delta);  // rho'(t) / t

@@ -18,7 +18,8 @@ Observations MakeObservations(const std::vector<double>& radiance);
 
 // Per value of E, 0 where the point takes no part:
 //   residual_i = RobustResidual((log(E_i + eps) - log(I_i + eps)) / b),
-// so that sum residual^2 / 2 is the likelihood.
+// so that sum residual^2 / 2 is the likelihood. Negative E counts as 0, and 0
+// without epsilon as 1e-100, both without slope.
 struct LikelihoodDerivatives {
   std::vector<double> residual;
   std::vector<double> d_residual;  // d residual / dE

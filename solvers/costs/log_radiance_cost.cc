@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/illumination_model.h"
+
 namespace ibrdf {
 namespace {
 
@@ -151,12 +153,8 @@ bool LogRadianceCost::Evaluate(double const* const* parameters,
   std::vector<float> planar(unet_->num_outputs());
   IlluminationUnet::Workspace workspace, scratch;
   unet_->Forward(phi.data(), &workspace, planar.data());
-  std::vector<float> map(planar.size());
-  for (int t = 0; t < texels; ++t) {
-    for (int c = 0; c < 3; ++c) {
-      map[3 * t + c] = std::exp(std::min(planar[c * texels + t], 80.0f));
-    }
-  }
+  std::vector<float> map, slopes;
+  ToRadianceMap(planar, &map, &slopes);
   const bool want_lobes = jacobians != nullptr && jacobians[0] != nullptr;
   const bool want_weights = jacobians != nullptr && jacobians[1] != nullptr;
   std::vector<double> E, dE, dr_dE;
@@ -183,7 +181,7 @@ bool LogRadianceCost::Evaluate(double const* const* parameters,
       adjoint[row] = 0.0;
       for (int t = 0; t < texels; ++t) {
         for (int c = 0; c < 3; ++c) {
-          by_output[c * texels + t] = by_map[3 * t + c] * map[3 * t + c];
+          by_output[c * texels + t] = by_map[3 * t + c] * slopes[3 * t + c];
         }
       }
       unet_->Vjp(by_output.data(), workspace, &scratch, by_weight.data());

@@ -43,8 +43,7 @@ double LightBlock::Evaluate(const float* parameters, std::vector<float>* map) {
 double LightBlock::Linearise(const float* parameters, std::vector<float>* map) {
   parameters_.assign(parameters, parameters + num_parameters());
   model_->Linearise(parameters, log_map_.data());
-  ToRadianceMap(log_map_, &map_);
-  *map = map_;
+  ToRadianceMap(log_map_, map, &map_slopes_);
   prior_by_log_.assign(log_map_.size(), 0.0f);
   return PriorCost(parameters, prior_by_log_.data());
 }
@@ -54,23 +53,23 @@ void LightBlock::Jvp(const double* v, std::vector<float>* d_log,
   for (size_t i = 0; i < tangent_.size(); ++i) {
     tangent_[i] = static_cast<float>(v[i]);
   }
-  d_log->resize(map_.size());
-  d_map->resize(map_.size());
+  d_log->resize(map_slopes_.size());
+  d_map->resize(map_slopes_.size());
   model_->Jvp(tangent_.data(), d_log->data());
-  const size_t texels = map_.size() / 3;
+  const size_t texels = map_slopes_.size() / 3;
   for (size_t t = 0; t < texels; ++t) {
     for (size_t c = 0; c < 3; ++c) {
-      (*d_map)[3 * t + c] = map_[3 * t + c] * (*d_log)[c * texels + t];
+      (*d_map)[3 * t + c] = map_slopes_[3 * t + c] * (*d_log)[c * texels + t];
     }
   }
 }
 
 void LightBlock::Pull(const std::vector<float>& by_map,
                       std::vector<float> by_log, double* out) {
-  const size_t texels = map_.size() / 3;
+  const size_t texels = map_slopes_.size() / 3;
   for (size_t t = 0; t < texels; ++t) {
     for (size_t c = 0; c < 3; ++c) {
-      by_log[c * texels + t] += by_map[3 * t + c] * map_[3 * t + c];
+      by_log[c * texels + t] += by_map[3 * t + c] * map_slopes_[3 * t + c];
     }
   }
   model_->Vjp(by_log.data(), by_parameter_.data());
@@ -78,7 +77,7 @@ void LightBlock::Pull(const std::vector<float>& by_map,
 }
 
 void LightBlock::Vjp(const std::vector<float>& by_map, double* gradient) {
-  Pull(by_map, std::vector<float>(map_.size(), 0.0f), gradient);
+  Pull(by_map, std::vector<float>(by_map.size(), 0.0f), gradient);
 }
 
 void LightBlock::Gradient(const std::vector<float>& by_map, double* gradient) {
@@ -91,7 +90,7 @@ void LightBlock::Gradient(const std::vector<float>& by_map, double* gradient) {
 
 void LightBlock::Product(const double* v, const std::vector<float>& d_log,
                          const std::vector<float>& by_map, double* product) {
-  std::vector<float> by_log(map_.size(), 0.0f);
+  std::vector<float> by_log(by_map.size(), 0.0f);
   for (const LightPrior* prior : priors_) {
     prior->AddProduct(d_log.data(), by_log.data());
   }

@@ -42,7 +42,7 @@ class LightBlock {
 
  private:
   double PriorCost(const float* parameters, float* by_log);
-  // out = J^T (by_log + map * by_map)
+  // out = J^T (by_log + slopes of the map * by_map)
   void Pull(const std::vector<float>& by_map, std::vector<float> by_log,
             double* out);
 
@@ -52,7 +52,8 @@ class LightBlock {
   std::vector<double> inverse_variance_;
   std::vector<float> log_map_;
   // The point of the last Linearise.
-  std::vector<float> parameters_, map_, prior_by_log_;
+  std::vector<float> parameters_, prior_by_log_;
+  std::vector<float> map_slopes_;  // of ToRadianceMap
   std::vector<float> tangent_, by_parameter_;
 };
 

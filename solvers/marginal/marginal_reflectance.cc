@@ -119,6 +119,7 @@ MarginalValue MarginalReflectance::Evaluate(
     for (int c = 0; c < 3; ++c) {
       const double colour = Colour(lobe[size + c], c);
       adjoint += (colour * by_matrix.matrices[c]).cast<float>();
+      if (!(lobe[size + c] < LobeModel::kMaxLogColour)) continue;  // clamped
       out[size + c] =
           colour *
           by_matrix.matrices[c].cwiseProduct(shapes[k].cast<double>()).sum();

@@ -140,6 +140,22 @@ TEST(CookTorrance, LogParametersRoundTripAndGradientMatchesDifferences) {
   }
 }
 
+TEST(CookTorrance, GradientIsFiniteWhateverTheRoughness) {
+  for (const double roughness : {-1e4, -400.0, -100.0, 99.0, 400.0, 1e4}) {
+    for (const double theta_h : {0.0, 0.3, 1.57}) {
+      const CookTorranceLog p(-1.0, 0.0, roughness, -3.0);
+      Eigen::Vector4d gradient;
+      const double f = EvaluateCookTorrance(p, theta_h, 0.8, 1.1, &gradient);
+      EXPECT_TRUE(std::isfinite(f)) << roughness << " " << theta_h;
+      EXPECT_TRUE(gradient.allFinite()) << roughness << " " << theta_h;
+      // Constant beyond the clamp.
+      if (std::abs(roughness) > 100.0) {
+        EXPECT_EQ(0.0, gradient[2]);
+      }
+    }
+  }
+}
+
 TEST(CookTorrance, SampledTableReturnsItsValuesAtBinCentres) {
   const CookTorrance brdf;
   const MerlTable table = SampleMerl(brdf.Function());

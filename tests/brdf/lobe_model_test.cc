@@ -194,6 +194,35 @@ TEST_F(LobeModelTest, ColoursBeyondTheLargestAreClamped) {
   for (const float v : Combined(larger).values) EXPECT_TRUE(std::isfinite(v));
 }
 
+// Shapes are clamped at e^80: nodes where they are have no derivative.
+TEST_F(LobeModelTest, ShapesBeyondTheLargestHaveNoDerivative) {
+  NeuralBrdfModel model = TinyModel(1, 3, 4.0f);
+  model.exponent = 200.0;
+  const LobeModel lobes(model, 1, kGrid, 1);
+  const std::vector<double> p = {0.3, -0.4, 0.2, 0.1, 4.0, 4.0, 4.0};
+  std::vector<float> fields, exact;
+  lobes.Tabulate(p.data(), true, &fields);
+  lobes.TabulateReference(p.data(), true, &exact);
+  const float largest = static_cast<float>(std::exp(80.0));
+  const size_t n = kGrid.num_nodes();
+  int clamped = 0, free = 0;
+  for (const std::vector<float>& f : {fields, exact}) {
+    for (size_t i = 0; i < n; ++i) {
+      double size = 0.0;
+      for (size_t d = 1; d <= 4; ++d) size += std::abs(f[d * n + i]);
+      if (f[i] == largest) {
+        ++clamped;
+        EXPECT_EQ(0.0, size) << i;
+      } else if (f[i] > 1e-20f) {
+        ++free;
+        EXPECT_GT(size, 0.0) << i;
+      }
+    }
+  }
+  EXPECT_GT(clamped, 20);
+  EXPECT_GT(free, 20);
+}
+
 TEST_F(LobeModelTest, IsFiniteForExtremeCodesColoursAndWeights) {
   // Weights 50 times the trainer's start drive the splines to their limits.
   const LobeModel wild(TinyModel(1, 3, 50.0f), 2, kGrid, 1);

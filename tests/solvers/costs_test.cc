@@ -185,6 +185,35 @@ TEST(Observations, ZeroNegativeAndNonFinitePointsTakeNoPart) {
   EXPECT_EQ(2, o.num_valid);
 }
 
+TEST(LogLikelihood, NoLightAndNoEpsilonIsFiniteWithoutSlope) {
+  const Observations observed = MakeObservations({1, 1, 1});
+  RobustLogLikelihood likelihood;
+  LikelihoodDerivatives d;
+  const auto cost = [&](double E) {
+    return EvaluateLikelihood({E, 1, 1}, observed, likelihood, &d).cost;
+  };
+  likelihood.epsilon = 0.0;
+  for (const double E : {0.0, 1e-310, 1e-101}) {
+    EXPECT_TRUE(std::isfinite(cost(E))) << E;
+    EXPECT_EQ(cost(0.0), cost(E));
+    EXPECT_LT(d.residual[0], -1.0);
+    EXPECT_EQ(0.0, d.d_residual[0]) << E;
+    EXPECT_EQ(0.0, d.weight[0]) << E;
+  }
+  for (const double E : {1e-99, 1e-45, 1e30, 1e300}) {
+    EXPECT_TRUE(std::isfinite(cost(E))) << E;
+    EXPECT_GT(d.d_residual[0], 0.0) << E;
+    EXPECT_TRUE(std::isfinite(d.d_residual[0])) << E;
+    EXPECT_TRUE(std::isfinite(d.weight[0])) << E;
+  }
+  // Negative radiance counts as none; from 0 on it has a slope again.
+  likelihood.epsilon = 1e-6;
+  const double none = cost(0.0);
+  EXPECT_GT(d.d_residual[0], 0.0);
+  EXPECT_EQ(none, cost(-1.0));
+  EXPECT_EQ(0.0, d.d_residual[0]);
+}
+
 class RadianceCosts : public ::testing::Test {
  protected:
   RadianceCosts() : map_(SmoothMap(8, 16).rgb) { ObserveUnder(map_); }

@@ -73,6 +73,12 @@ TEST(ToRadianceMap, PlanesBecomePixelsWithoutOverflow) {
   EXPECT_FLOAT_EQ(std::exp(1.0f), map[3]);
   EXPECT_FLOAT_EQ(std::exp(2.0f), map[4]);
   EXPECT_FLOAT_EQ(std::exp(3.0f), map[5]);
+  // Slopes are the values but where those are clamped.
+  std::vector<float> again, slopes;
+  ToRadianceMap({0, 1, -1000, 2, 1000, 3}, &again, &slopes);
+  EXPECT_EQ(map, again);
+  map[1] = map[2] = 0.0f;
+  EXPECT_EQ(map, slopes);
 }
 
 }  // namespace

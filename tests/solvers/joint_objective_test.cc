@@ -239,6 +239,37 @@ TEST(JointObjective, KnownBlocksCostTheSameAsHeldOnes) {
   EXPECT_LT(c.misfit, 1e-6);
 }
 
+// Log radiance is clamped: what a texel beyond does not change, it has no
+// derivative in.
+TEST(JointObjective, TexelBeyondTheClampHasNoDerivative) {
+  JointScene scene(false);
+  JointObjective objective(scene.Terms(false));
+  JointState state = scene.State(0.1);
+  for (float& colour : scene.mean) colour = 0.0f;
+  objective.set_light_mean(scene.mean);
+  constexpr int kBright = 40, kDark = 50;  // of red
+  state.light[kBright] = 61.0f;
+  state.light[kDark] = -61.0f;
+  JointState moved = state;
+  moved.light[kBright] = 62.0f;
+  moved.light[kDark] = -62.0f;
+  const double before = objective.Evaluate(state).likelihood;
+  EXPECT_EQ(before, objective.Evaluate(moved).likelihood);
+  ASSERT_TRUE(std::isfinite(before));
+  Eigen::VectorXd reverse;
+  objective.Gradient(state, &reverse);
+  objective.Linearise(state);
+  const Eigen::VectorXd prior = objective.PriorGradient();
+  const int first = objective.num_lobe_parameters();
+  for (const int texel : {kBright, kDark}) {
+    EXPECT_EQ(prior[first + texel], reverse[first + texel]);
+    EXPECT_EQ(prior[first + texel], objective.gradient()[first + texel]);
+    Eigen::VectorXd v = Eigen::VectorXd::Zero(objective.size());
+    v[first + texel] = 1.0;
+    EXPECT_EQ(0.0, objective.RadianceJvp(v).norm());
+  }
+}
+
 TEST(JointObjective, MeanAndScaleMayChange) {
   JointScene scene(true);
   JointObjective objective(scene.Terms(false));

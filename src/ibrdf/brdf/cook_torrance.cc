@@ -10,6 +10,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kMinCosine = 1e-4;
 // Stands for 0 where a logarithm is taken.
 constexpr double kTiny = 1e-12;
+// Log roughnesses beyond +- it count as it, with no slope: f stays finite.
+constexpr double kMaxLogRoughness = 100.0;
 
 // What f takes from the angles alone.
 struct Geometry {
@@ -21,7 +23,9 @@ struct Geometry {
 Geometry GeometryOf(double theta_h, double theta_d, double phi_d) {
   const double nh = std::max(std::cos(theta_h), kMinCosine);
   const double oh = std::max(std::cos(theta_d), kMinCosine);
-  const double along = std::sin(theta_h) * std::sin(theta_d) * std::cos(phi_d);
+  // Not by 1 - c2, which cancels within a mirror's lobe.
+  const double sh = std::sin(theta_h);
+  const double along = sh * std::sin(theta_d) * std::cos(phi_d);
   const double larger = std::max(nh * oh + std::abs(along), kMinCosine);
   const double smaller = std::max(nh * oh - std::abs(along), 0.0);
   // G / (cos_i cos_o), G = min(1, 2 nh cos_i / oh, 2 nh cos_o / oh): written so
@@ -30,7 +34,7 @@ Geometry GeometryOf(double theta_h, double theta_d, double phi_d) {
   if (masking * larger * smaller > 1.0) masking = 1.0 / (larger * smaller);
   const double c2 = nh * nh;
   Geometry g{};
-  g.tan2_h = (1.0 - c2) / c2;
+  g.tan2_h = sh * sh / c2;
   g.lobe_scale = masking / (4.0 * kPi * c2 * c2);
   g.schlick = std::pow(1.0 - oh, 5);
   return g;
@@ -74,14 +78,17 @@ double EvaluateCookTorrance(const CookTorranceLog& parameters, double theta_h,
                             Eigen::Vector4d* gradient) {
   const Geometry g = GeometryOf(theta_h, theta_d, phi_d);
   const double diffuse = std::exp(parameters[0]) / kPi;
-  const double m2 = std::exp(2.0 * parameters[2]);
+  const double m2 = std::exp(
+      2.0 * std::clamp(parameters[2], -kMaxLogRoughness, kMaxLogRoughness));
   const double f0 = 1.0 / (1.0 + std::exp(-parameters[3]));
   const double fresnel = f0 + (1.0 - f0) * g.schlick;
   const double facets =
       std::exp(parameters[1]) * g.lobe_scale * std::exp(-g.tan2_h / m2) / m2;
   const double lobe = facets * fresnel;
   if (gradient != nullptr) {
-    *gradient << diffuse, lobe, lobe * 2.0 * (g.tan2_h / m2 - 1.0),
+    const bool moves = std::abs(parameters[2]) < kMaxLogRoughness;
+    *gradient << diffuse, lobe,
+        moves ? lobe * 2.0 * (g.tan2_h / m2 - 1.0) : 0.0,
         facets * (1.0 - g.schlick) * f0 * (1.0 - f0);
   }
   return diffuse + lobe;

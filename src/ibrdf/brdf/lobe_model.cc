@@ -14,8 +14,16 @@ namespace {
 
 // exp(exponent * log q) without overflow of float: a density above e^80 is no
 // reflectance.
+constexpr double kMaxLogShape = 80.0;
 float Shape(double exponent, double log_density) {
-  return static_cast<float>(std::exp(std::min(exponent * log_density, 80.0)));
+  return static_cast<float>(
+      std::exp(std::min(exponent * log_density, kMaxLogShape)));
+}
+
+// d shape / d log q, from the shape; 0 where that is clamped.
+float ShapeSlope(double exponent, float shape) {
+  static const float kLargest = Shape(1.0, kMaxLogShape);
+  return shape < kLargest ? static_cast<float>(exponent) * shape : 0.0f;
 }
 
 double Colour(double log_colour) {
@@ -67,7 +75,7 @@ void LobeModel::Tabulate(const double* parameters, bool derivatives,
     for (int d = 1; d < stride; ++d) {
       float* derivative = value + d * n;
       for (size_t i = 0; i < n; ++i) {
-        derivative[i] *= static_cast<float>(model_.exponent) * value[i];
+        derivative[i] *= ShapeSlope(model_.exponent, value[i]);
       }
     }
   }
@@ -91,8 +99,8 @@ void LobeModel::TabulateReference(const double* parameters, bool derivatives,
           flow.LogDensity(x, z, derivatives ? dz.data() : nullptr);
       value[i] = Shape(model_.exponent, log_density);
       for (int d = 1; d < stride; ++d) {
-        value[d * n + i] =
-            static_cast<float>(model_.exponent * value[i] * dz[d - 1]);
+        value[d * n + i] = static_cast<float>(
+            ShapeSlope(model_.exponent, value[i]) * dz[d - 1]);
       }
     });
   }
