@@ -16,6 +16,8 @@ namespace ibrdf {
 namespace derivatives {
 namespace {
 
+constexpr Real kLeastShape = 1e-30L;
+
 // Codes and colours of lobes, each lobe that of a random training material
 // moved by `away`, or of another length where `norm` is not negative.
 std::vector<double> RandomLobes(const NeuralBrdfModel& model, double away,
@@ -86,6 +88,8 @@ class LobeStudy {
           found.push_back(fields[begin + d * n + i]);
           right.push_back(exact[begin + d * n + i]);
         }
+        // What underflows has no digits.
+        if (exact[begin + i] < kLeastShape) continue;
         const Eigen::Vector3d x =
             lobes_.grid_shape().NodePoint(static_cast<int>(i));
         table_->Add(name_ + ": lobe field by code, a node", kind,

@@ -31,18 +31,18 @@ using Matrices = std::array<Matrix, 3>;  // T_c [cells][texels]
 class ExactMarginal {
  public:
   ExactMarginal(Vector y, const LightProcess& process, int height, int width,
-                const Eigen::VectorXd& noise, Real level)
+                const Eigen::VectorXd& noise, const LightMode& start)
       : y_(std::move(y)),
         noise_(noise.cast<Real>()),
-        level_(level),
+        level_(start.level),
         local_(process.Local().cast<Real>()),
         flat_(process.Level().cast<Real>()),
         correlation_(
             LightCorrelation(height, width, process.correlation_degrees)
                 .cast<Real>()),
-        mode_(Vector::Zero(3 * correlation_.rows())) {}
+        mode_(start.l.cast<Real>()) {}
 
-  // At exp(log_amplitude); the mode is sought from the last one's.
+  // At exp(log_amplitude); Newton's method from the last mode.
   Real Cost(const Matrices& T, Real log_amplitude) {
     const Eigen::Index t = correlation_.rows(), n = 3 * t, P = T[0].rows();
     Matrix K(n, n);
@@ -90,7 +90,8 @@ class ExactMarginal {
       }
       l += length * step;
       cost = next;
-      if (step.cwiseAbs().maxCoeff() < 1e-14L) break;
+      // Quadratic convergence: what is left is its square.
+      if (step.cwiseAbs().maxCoeff() < 1e-9L) break;
     }
     cost = look(l);
     mode_ = l;
@@ -150,7 +151,7 @@ class MarginalStudy {
         at.data(), noise, log_amplitude, 1e-12, &mode, &by_lobes);
     CHECK(value.ok) << kind;
     const std::vector<Real> exact =
-        Exact(reflectance, at, noise, log_amplitude, mode.level);
+        Exact(reflectance, at, noise, log_amplitude, mode);
     table_->Add(name_ + ": likelihood by lobes", kind, where, by_lobes, exact);
 
     // The whole objective, whose mode is found to kModeTolerance only.
@@ -186,7 +187,7 @@ class MarginalStudy {
   std::vector<Real> Exact(const MarginalReflectance& reflectance,
                           const std::vector<double>& at,
                           const Eigen::VectorXd& noise, double log_amplitude,
-                          double level) const {
+                          const LightMode& mode) const {
     const ImageCells& cells = reflectance.cells();
     TransportOptions options;
     options.grid = resolution_.grid;
@@ -228,15 +229,12 @@ class MarginalStudy {
     Vector y(3 * P);
     for (int i = 0; i < 3 * P; ++i) y[i] = cells.log_radiance[i];
     ExactMarginal marginal(y, LightProcess(), resolution_.map_height,
-                           resolution_.map_width, noise, level);
+                           resolution_.map_width, noise, mode);
     marginal.Cost(T, log_amplitude);
-    // Central differences, extrapolated once: truncation h^4, some 1e-12.
-    const auto differentiate = [&](const auto& cost) {
-      const auto central = [&](Real h) {
-        return (cost(h) - cost(-h)) / (2 * h);
-      };
-      const Real h = 1e-3L;
-      return (4 * central(h / 2) - central(h)) / 3;
+    // Central differences: truncation of some 1e-10.
+    const auto differentiate = [](const auto& cost) {
+      constexpr Real kStep = 1e-5L;
+      return (cost(kStep) - cost(-kStep)) / (2 * kStep);
     };
     std::vector<Real> out;
     for (int i = 0; i < 2 * lobe_size; ++i) {
@@ -285,13 +283,18 @@ void AddStates(const std::string& name, const NeuralBrdfModel& model, int count,
     }
     return p;
   };
+  const std::vector<double> truth = lobes(0.1);
+  std::vector<double> p = truth;
+  // Beyond the clamp of colours.
+  for (int c = 0; c < 3; ++c) p[2 * lobe_size - 3 + c] = 41.0;
+  study.Add("a log colour of 41", "", truth, p, 0.0);
   for (int i = 0; i < count; ++i) {
     study.Add("random", "state " + std::to_string(i), lobes(0.1), lobes(0.1),
               0.3 * normal(*rng));
   }
-  const std::vector<double> truth = lobes(0.1);
+  if (count == 0) return;
   study.Add("at the truth", "", truth, truth, 0.0);
-  std::vector<double> p = lobes(0.0);
+  p = lobes(0.0);
   for (int i = 0; i < 2 * lobe_size; ++i) {
     if (i % lobe_size < size) p[i] = 0.0;
   }
@@ -299,12 +302,10 @@ void AddStates(const std::string& name, const NeuralBrdfModel& model, int count,
   p = truth;
   std::copy_n(p.begin(), lobe_size, p.begin() + lobe_size);
   study.Add("lobes that coincide", "", truth, p, 0.0);
-  // One lobe vanishes; and beyond the clamp of colours.
-  for (const double colour : {-60.0, 41.0}) {
-    p = truth;
-    for (int c = 0; c < 3; ++c) p[2 * lobe_size - 3 + c] = colour;
-    study.Add("a log colour of " + Coordinates({colour}), "", truth, p, 0.0);
-  }
+  // One lobe vanishes.
+  p = truth;
+  for (int c = 0; c < 3; ++c) p[2 * lobe_size - 3 + c] = -60.0;
+  study.Add("a log colour of -60", "", truth, p, 0.0);
 }
 
 }  // namespace
@@ -313,7 +314,7 @@ void StudyMarginal(const NeuralBrdfModel& model, const StudyOptions& options,
                    ErrorTable* table) {
   std::mt19937_64 rng(options.seed);
   AddStates("marginal, random weights", TinyModel(3),
-            std::clamp(options.points / 40, 1, 5), &rng, table);
+            std::min(options.points / 20, 5), &rng, table);
   if (options.points >= 100) {
     AddStates("marginal, default model", model, 1, &rng, table);
   }

@@ -8,6 +8,11 @@
 
 namespace ibrdf {
 namespace derivatives {
+namespace {
+
+constexpr Real kMaxLogShape = 80;  // of LobeModel
+
+}  // namespace
 
 ReferenceFlows::ReferenceFlows(const NeuralBrdfModel& model)
     : code_size_(model.shape.code_size()) {
@@ -72,11 +77,13 @@ std::vector<Real> ReferenceFields(const NeuralBrdfModel& model, int num_lobes,
                        static_cast<float>(p[2])};
     const FlowDerivatives d = flow.ByCode(x, code);
     const Real exponent = model.exponent;
-    const Real shape = std::exp(exponent * d.value);
+    // Shapes are clamped, without slope beyond.
+    const bool moves = exponent * d.value < kMaxLogShape;
+    const Real shape = std::exp(std::min(exponent * d.value, kMaxLogShape));
     Real* out = &fields[lobe * stride * nodes + node];
     out[0] = shape;
     for (int k = 0; k < codes; ++k) {
-      out[(1 + k) * nodes] = shape * exponent * d.by_code[k];
+      out[(1 + k) * nodes] = moves ? shape * exponent * d.by_code[k] : 0;
     }
   });
   return fields;

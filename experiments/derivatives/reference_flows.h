@@ -41,7 +41,7 @@ class ReferenceFlows {
 
 // Shapes s_k = q^exponent at the nodes and their derivatives by the code, as
 // LobeModel::Tabulate: [num_lobes][1 + code_size][nodes]. Nodes are where
-// LobeModel has them, rounded to float. The clamp of LobeModel is not here.
+// LobeModel has them, rounded to float.
 std::vector<Real> ReferenceFields(const NeuralBrdfModel& model, int num_lobes,
                                   const BrdfGridShape& grid,
                                   const std::vector<double>& parameters);
