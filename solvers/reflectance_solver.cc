@@ -1,13 +1,35 @@
 #include "solvers/reflectance_solver.h"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include <Eigen/Dense>
 
+#include "solvers/conditioning.h"
 #include "solvers/costs/material_prior_cost.h"
 #include "solvers/stop_callback.h"
 
 namespace ibrdf {
+namespace {
+
+// Of the problem's normal equations, J^T J, at its parameters' values.
+void LogConditioning(ceres::Problem* problem, double cost) {
+  ceres::CRSMatrix jacobian;
+  if (!problem->Evaluate({}, nullptr, nullptr, nullptr, &jacobian)) return;
+  Eigen::MatrixXd J =
+      Eigen::MatrixXd::Zero(jacobian.num_rows, jacobian.num_cols);
+  for (int row = 0; row < jacobian.num_rows; ++row) {
+    for (int i = jacobian.rows[row]; i < jacobian.rows[row + 1]; ++i) {
+      J(row, jacobian.cols[i]) = jacobian.values[i];
+    }
+  }
+  VLOG(1) << "reflectance: cost " << cost
+          << ", condition of the normal equations, columns scaled, "
+          << ScaledCondition(J.transpose() * J);
+}
+
+}  // namespace
+
 double SolveReflectance(const Transport& transport, const LobeModel& lobes,
                         const std::vector<float>& map,
                         const Observations& observed,
@@ -34,6 +56,7 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
   o.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(o, &problem, &summary);
+  if (VLOG_IS_ON(1)) LogConditioning(&problem, summary.final_cost);
   return summary.final_cost;
 }
 
