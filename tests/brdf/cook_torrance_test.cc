@@ -109,6 +109,18 @@ TEST(CookTorrance, IsFiniteAndPositiveAtTheEdgesOfTheAngles) {
   }
 }
 
+TEST(CookTorrance, KeepsItsDigitsInTheLobeOfAMirror) {
+  // 1 - cos^2(theta_h) would have four digits here.
+  CookTorrance brdf;
+  brdf.diffuse.setZero();
+  brdf.roughness.setConstant(1e-6);
+  const Eigen::Array3d peak = brdf.Evaluate(0.0, 0.8, 1.1);
+  const Eigen::Array3d f = brdf.Evaluate(1e-6, 0.8, 1.1);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(std::exp(-1.0), f[c] / peak[c], 1e-11);
+  }
+}
+
 TEST(CookTorrance, LogParametersRoundTripAndGradientMatchesDifferences) {
   CookTorrance brdf;
   brdf.diffuse = {0.1, 0.2, 0.3};
