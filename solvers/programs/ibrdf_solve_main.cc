@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/problem_file.h"
+#include "solvers/programs/blas_memory.h"
 #include "solvers/programs/common_flags.h"
 #include "solvers/solve_problem.h"
 
@@ -41,6 +42,7 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
       LoadTruth(problem->truth, inverse->map_width, inverse->map_height);
   if (!truth.ok()) return truth.status();
   IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
+  IBRDF_RETURN_IF_ERROR(ReserveBlasMemory(flags.threads));
   const SolveProgress progress = [&](const TraceEntry& e, double share) {
     if (flags.quiet) return;
     std::printf("%s%7.1f s  %3.0f %%  %-32s misfit %.4f  cost %.1f%s",
