@@ -22,7 +22,9 @@ Status PrepareFolder(const std::string& folder);
 // Writes result.json, brdf.binary, brdf.json, illumination.exr,
 // illumination_log_std.exr (joint problems), render.exr, residual.exr, the PNG
 // previews and, last, report.html into `folder`, making it; each file whole or
-// absent. `metrics_text`, where given, receives the metrics, one a line.
+// absent. result.json and report.html of an earlier run go first: where one is,
+// all else is of its run. `metrics_text`, where given, receives the metrics,
+// one a line.
 Status WriteResults(const Problem& problem, const InverseProblem& inverse,
                     const Truth& truth, const Estimate& estimate,
                     const std::string& folder, std::string* metrics_text);

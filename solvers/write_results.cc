@@ -228,6 +228,11 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
   IBRDF_RETURN_IF_ERROR(AddMetrics(inverse, estimate, truth, &metrics));
 
   const auto path = [&](const char* name) { return folder + "/" + name; };
+  // Of an earlier run, these would speak for what a run that is cut off leaves.
+  for (const char* name : {"result.json", "report.html"}) {
+    std::error_code ignored;
+    std::filesystem::remove(path(name), ignored);
+  }
   Json brdf;
   if (!estimate.brdf.raw.empty()) {
     IBRDF_RETURN_IF_ERROR(WriteMerl(estimate.brdf, path("brdf.binary")));

@@ -5,6 +5,9 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#if defined(__linux__)
+#include <sys/prctl.h>
+#endif
 
 #include <algorithm>
 #include <cerrno>
@@ -32,6 +35,17 @@ long ResidentPeak(pid_t child) {
   return 0;
 }
 
+// In the child: ends with its parent, also where that one is killed. One that
+// goes on would share folder and machine with the child of the next try.
+void DieWithParent(pid_t parent) {
+#if defined(__linux__)
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(127);  // gone before the call
+#else
+  (void)parent;
+#endif
+}
+
 }  // namespace
 
 StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
@@ -48,8 +62,10 @@ StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
   rusage own{};
   ::getrusage(RUSAGE_SELF, &own);
   const Stopwatch watch;
+  const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child == 0) {
+    DieWithParent(parent);
     ::dup2(output, STDOUT_FILENO);
     ::dup2(output, STDERR_FILENO);
     ::execv(arguments[0], arguments.data());

@@ -18,7 +18,8 @@ struct ChildResult {
 // Runs argv[0] with the arguments argv and both outputs in the file `log`, and
 // waits for it. `stop` (may be null), once true, passes SIGINT on to the child.
 // Fails when the child cannot be started; a program that cannot be executed
-// exits with 127.
+// exits with 127. On Linux the child is killed when the calling thread ends, as
+// it does where this process is killed.
 StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
                                const std::string& log,
                                const std::atomic<bool>* stop);

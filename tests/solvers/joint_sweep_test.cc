@@ -1,8 +1,14 @@
 #include "solvers/bench/joint_sweep.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
 
 #include "solvers/bench/child_process.h"
 #include "tests/solvers/sweep_testing.h"
@@ -106,6 +112,38 @@ TEST(RunChild, SignalsAndMissingPrograms) {
       127,
       RunChild({dir.File("none")}, dir.File("log"), nullptr).value().exit_code);
 }
+
+#if defined(__linux__)
+TEST(RunChild, DoesNotOutliveAKilledParent) {
+  const TempDir dir;
+  const std::string number = dir.File("number");
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    static_cast<void>(
+        RunChild({"/bin/sh", "-c",
+                  "echo $$ > '" + number + ".new'; mv '" + number + ".new' '" +
+                      number + "'; exec sleep 60"},
+                 dir.File("log"), nullptr));
+    ::_exit(0);
+  }
+  const auto wait_for = [](const std::function<bool()>& condition) {
+    for (int i = 0; i < 500 && !condition(); ++i) ::usleep(20000);
+    return condition();
+  };
+  ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(number); }));
+  const pid_t child = std::stoi(ReadBytes(number));
+  ASSERT_EQ(0, ::kill(child, 0));
+  ::kill(parent, SIGKILL);
+  int status = 0;
+  ::waitpid(parent, &status, 0);
+  // Gone, or dead and not yet waited for by whom it was left to.
+  EXPECT_TRUE(wait_for([&] {
+    std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
+    std::string pid, name, state;
+    return !(stat >> pid >> name >> state) || state == "Z";
+  }));
+}
+#endif
 
 }  // namespace
 }  // namespace ibrdf

@@ -218,6 +218,28 @@ TEST_F(SolveProblemTest, ResultsOfAKnownReflectanceHoldNoBrdf) {
   EXPECT_FALSE(std::filesystem::exists(out + "/brdf.json"));
 }
 
+// What speaks for a folder is not there before all that it speaks of.
+TEST_F(SolveProblemTest, NothingOfAnEarlierRunSpeaksForTheNext) {
+  const StatusOr<InverseProblem> p =
+      Load({"problem=illumination", "reflectance={known: {lambertian: 0.5}}"});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  const StatusOr<Estimate> e = SolveInverseRendering(*p, nullptr, nullptr);
+  ASSERT_TRUE(e.ok()) << e.status().message();
+  const std::string out = dir_.File("out");
+  std::filesystem::create_directories(out + "/render.exr/in_the_way");
+  for (const char* name : {"result.json", "report.html"}) {
+    WriteBytes(out + "/" + name, "of an earlier run");
+  }
+  ASSERT_FALSE(WriteResults(problem_, *p, TheTruth(), *e, out, nullptr).ok());
+  EXPECT_FALSE(std::filesystem::exists(out + "/result.json"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/report.html"));
+  std::filesystem::remove_all(out + "/render.exr");
+  const Status written =
+      WriteResults(problem_, *p, TheTruth(), *e, out, nullptr);
+  ASSERT_TRUE(written.ok()) << written.message();
+  EXPECT_TRUE(nlohmann::json::accept(ReadBytes(out + "/result.json")));
+}
+
 // A path need not be UTF-8; JSON and HTML must be.
 TEST_F(SolveProblemTest, NamesInOtherEncodingsAreWritten) {
   const std::string file = dir_.File("b\xE4r.exr");
