@@ -5,23 +5,18 @@
 #include <utility>
 
 namespace ibrdf {
-namespace {
-
-// The mode is taken as found where a step gains less, nats: derivatives are
-// then good to its root.
-constexpr double kModeTolerance = 1e-3;
-
-}  // namespace
 
 MarginalObjective::MarginalObjective(const MarginalReflectance* reflectance,
                                      const MaterialPrior* prior,
                                      double log_amplitude_std,
-                                     Eigen::VectorXd noise, LightMode* mode)
+                                     Eigen::VectorXd noise, LightMode* mode,
+                                     double mode_tolerance)
     : reflectance_(reflectance),
       prior_(prior),
       log_amplitude_std_(log_amplitude_std),
       noise_(std::move(noise)),
-      mode_(mode) {
+      mode_(mode),
+      mode_tolerance_(mode_tolerance) {
   CHECK_EQ(reflectance->lobes().num_parameters(), prior->num_parameters());
 }
 
@@ -56,7 +51,7 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
   // A trial that a line search turns down must not move the mode's start.
   LightMode mode = *mode_;
   const MarginalValue value = reflectance_->Evaluate(
-      lobes.data(), noise_, LogAmplitudeOf(y), kModeTolerance, &mode,
+      lobes.data(), noise_, LogAmplitudeOf(y), mode_tolerance_, &mode,
       gradient != nullptr ? &by_lobes : nullptr);
   if (!value.ok) return false;
   last_value_ = value;

@@ -16,10 +16,15 @@ namespace ibrdf {
 // gradient is kept as the next one's start.
 class MarginalObjective final : public ceres::FirstOrderFunction {
  public:
+  // The light's mode is taken as found where a step gains less, nats:
+  // derivatives are then good to its root.
+  static constexpr double kModeTolerance = 1e-3;
+
   // All must outlive *this.
   MarginalObjective(const MarginalReflectance* reflectance,
                     const MaterialPrior* prior, double log_amplitude_std,
-                    Eigen::VectorXd noise, LightMode* mode);
+                    Eigen::VectorXd noise, LightMode* mode,
+                    double mode_tolerance = kModeTolerance);
 
   int NumParameters() const override;
   bool Evaluate(const double* y, double* cost, double* gradient) const override;
@@ -37,6 +42,7 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   const double log_amplitude_std_;
   const Eigen::VectorXd noise_;
   LightMode* mode_;
+  const double mode_tolerance_;
   mutable MarginalValue last_value_;
 };
 

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "ibrdf/base/parallel_for.h"
+#include "solvers/conditioning.h"
 #include "solvers/marginal/marginal_objective.h"
 #include "solvers/stop_callback.h"
 
@@ -24,8 +25,14 @@ constexpr double kRankingTolerance = 0.5;
 constexpr double kFirstSigma = 0.15;
 // Of a refinement, relative: a twentieth of a nat in a thousand.
 constexpr double kFunctionTolerance = 5e-5;
-// Step of the differences of gradients, in prior standard deviations.
+// Step of the differences of gradients, in prior standard deviations, and how
+// well the light's mode must be known there, nats: an error of its root over
+// the step is the Hessian's.
 constexpr double kHessianStep = 0.02;
+constexpr double kHessianModeTolerance = 1e-7;
+// Least precision of a posterior, in the prior's: the Laplacian's likelihood is
+// not concave everywhere, and an end need not be a minimum to the last digit.
+constexpr double kLeastPrecision = 0.25;
 
 // A search at one resolution.
 class Level {
@@ -54,10 +61,11 @@ class Level {
     return likelihood.NoiseVariance(matrices, options_.sigma, *mode);
   }
 
-  MarginalObjective Objective(const Eigen::VectorXd& noise,
-                              LightMode* mode) const {
+  MarginalObjective Objective(
+      const Eigen::VectorXd& noise, LightMode* mode,
+      double mode_tolerance = MarginalObjective::kModeTolerance) const {
     return MarginalObjective(&reflectance_, &prior_, options_.log_amplitude_std,
-                             noise, mode);
+                             noise, mode, mode_tolerance);
   }
 
   // -log posterior at amplitude 1; infinite where it has none.
@@ -111,7 +119,7 @@ class Level {
   }
 
   // Inverse of the Hessian at y by central differences of gradients, mapped to
-  // lobe parameters. Empty where it is not positive definite or time ran out.
+  // lobe parameters. Empty where time ran out.
   Eigen::MatrixXd Covariance(const End& end) const {
     const auto n = static_cast<Eigen::Index>(end.y.size());
     Eigen::MatrixXd hessian(n, n);
@@ -123,7 +131,8 @@ class Level {
         std::vector<double> y = end.y;
         y[i] += s == 0 ? kHessianStep : -kHessianStep;
         LightMode at = end.mode;
-        const MarginalObjective objective = Objective(end.noise, &at);
+        const MarginalObjective objective =
+            Objective(end.noise, &at, kHessianModeTolerance);
         double cost = 0.0;
         side[s].resize(n);
         if (!objective.Evaluate(y.data(), &cost, side[s].data())) return;
@@ -133,11 +142,18 @@ class Level {
     });
     if (std::find(done.begin(), done.end(), 0) != done.end()) return {};
     const Eigen::MatrixXd symmetric = 0.5 * (hessian + hessian.transpose());
-    const Eigen::LLT<Eigen::MatrixXd> llt(symmetric);
-    if (llt.info() != Eigen::Success) return {};
+    VLOG(1) << "marginal posterior: condition of the Hessian, scaled, "
+            << ScaledCondition(symmetric);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);
+    if (eigen.info() != Eigen::Success) return {};
     const Eigen::Index lobes = prior_.num_parameters();
-    const Eigen::MatrixXd inverse =
-        llt.solve(Eigen::MatrixXd::Identity(n, n)).topLeftCorner(lobes, lobes);
+    const Eigen::MatrixXd inverse = (eigen.eigenvectors() *
+                                     eigen.eigenvalues()
+                                         .cwiseMax(kLeastPrecision)
+                                         .cwiseInverse()
+                                         .asDiagonal() *
+                                     eigen.eigenvectors().transpose())
+                                        .topLeftCorner(lobes, lobes);
     const Eigen::MatrixXd factor = prior_.factor.triangularView<Eigen::Lower>();
     return factor * inverse * factor.transpose();
   }
@@ -152,6 +168,179 @@ std::vector<double> ToVector(const Eigen::VectorXd& v) {
   return {v.data(), v.data() + v.size()};
 }
 
+Eigen::VectorXd ToEigen(const std::vector<double>& v) {
+  return Eigen::Map<const Eigen::VectorXd>(v.data(),
+                                           static_cast<Eigen::Index>(v.size()));
+}
+
+// The search from stage to stage: what was tried, and the best end so far.
+class Search {
+ public:
+  Search(const NeuralBrdfModel& model, const MaterialPrior& prior,
+         const std::vector<ShadingPoint>& points,
+         const std::vector<double>& radiance,
+         const ReflectanceSearchOptions& options)
+      : options_(options),
+        screen_(model, prior, points, radiance, options.screen, options),
+        coarse_(model, prior, points, radiance, options.coarse, options),
+        make_fine_([&] {
+          return std::make_unique<Level>(model, prior, points, radiance,
+                                         options.fine, options);
+        }) {
+    for (const MaterialPrior::Material& m : prior.materials) {
+      tried_.push_back(
+          {m.name, kInfinity, 0.0, kInfinity, ToVector(m.parameters)});
+    }
+  }
+
+  // Ranks the materials and refines the best; false where none explains the
+  // image.
+  bool Start() {
+    const auto count = static_cast<int64_t>(tried_.size());
+    const int64_t kept = std::min<int64_t>(options_.kept, count);
+    Rank(screen_, count);
+    // Costs of the two resolutions do not compare.
+    for (int64_t i = kept; i < count; ++i) tried_[i].first_cost = kInfinity;
+    Rank(coarse_, kept);
+    Report("rank " + std::to_string(count) + " materials",
+           tried_.front().first_cost, tried_.front().first_misfit);
+    for (int k = 0; k < std::min<int64_t>(options_.starts, kept); ++k) {
+      if (std::isfinite(tried_[k].first_cost)) {
+        from_.push_back({k, ToEigen(tried_[k].parameters), 0.0, 0.0});
+      }
+    }
+    return Refine("refine ", coarse_, options_.coarse_iterations);
+  }
+
+  // Compares the ends at the fine resolution and finishes the best.
+  void Finish() {
+    if (options_.fine_iterations == 0 || Stopped()) return;
+    fine_ = make_fine_();
+    if (!Refine("", *fine_, 0)) return;
+    from_.erase(std::find_if(from_.begin(), from_.end(),
+                             [&](const Candidate& c) {
+                               return c.cost >
+                                      from_.front().cost + options_.margin;
+                             }),
+                from_.end());
+    from_.resize(std::min<size_t>(from_.size(), options_.finalists));
+    Refine("finish ", *fine_, options_.fine_iterations);
+  }
+
+  ReflectanceSearchResult Result() {
+    ReflectanceSearchResult result;
+    const MarginalObjective objective =
+        best_level_->Objective(best_.noise, &best_.mode);
+    const double log_amplitude = objective.LogAmplitudeOf(best_.y.data());
+    result.parameters = ToVector(objective.LobesOf(best_.y.data()));
+    result.start = tried_[best_tried_].name;
+    result.cost = best_.cost;
+    result.misfit = best_.value.misfit;
+    result.amplitude = std::exp(log_amplitude);
+    if (options_.covariance && !Stopped()) {
+      result.covariance = best_level_->Covariance(best_);
+    }
+    const MarginalReflectance& reflectance = best_level_->reflectance();
+    result.map_width = reflectance.resolution().map_width;
+    result.map_height = reflectance.resolution().map_height;
+    result.log_radiance =
+        ToVector((best_.mode.l.array() + best_.mode.level).matrix());
+    result.log_radiance_std = ToVector(
+        reflectance.likelihood()
+            .LightVariance(reflectance.Matrices(result.parameters.data()),
+                           best_.noise, log_amplitude, best_.mode)
+            .cwiseSqrt());
+    std::stable_sort(tried_.begin(), tried_.end(),
+                     [](const TriedMaterial& a, const TriedMaterial& b) {
+                       return a.cost < b.cost;
+                     });
+    result.tried = std::move(tried_);
+    return result;
+  }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  // Where a refinement begins, of tried_[tried].
+  struct Candidate {
+    int tried = 0;
+    Eigen::VectorXd lobes;
+    double log_amplitude = 0.0;
+    double cost = 0.0;
+  };
+
+  bool Stopped() const {
+    return options_.should_stop && options_.should_stop();
+  }
+  void Report(const std::string& stage, double cost, double misfit) const {
+    if (options_.report) options_.report(stage, cost, misfit);
+  }
+
+  // Whole materials in parallel: what each does inside then runs in its thread.
+  void Rank(const Level& level, int64_t count) {
+    ParallelFor(count, options_.num_threads, [&](int64_t i, int) {
+      TriedMaterial& tried = tried_[i];
+      if (i > 0 && Stopped()) return;
+      tried.first_cost =
+          level.Rank(ToEigen(tried.parameters), &tried.first_misfit);
+    });
+    std::stable_sort(tried_.begin(), tried_.begin() + count,
+                     [](const TriedMaterial& a, const TriedMaterial& b) {
+                       return a.first_cost < b.first_cost;
+                     });
+  }
+
+  // Whole refinements of from_ in parallel, joined in order. The candidates
+  // that come to something take their places, the best first; false where none
+  // does, which leaves all as it was.
+  bool Refine(const std::string& what, const Level& level, int iterations) {
+    std::vector<Level::End> ends(from_.size());
+    ParallelFor(static_cast<int64_t>(from_.size()), options_.num_threads,
+                [&](int64_t k, int) {
+                  if (k > 0 && Stopped()) return;
+                  ends[k] = level.Refine(from_[k].lobes, from_[k].log_amplitude,
+                                         iterations);
+                });
+    std::vector<Candidate> reached;
+    for (size_t k = 0; k < ends.size(); ++k) {
+      Level::End& end = ends[k];
+      if (!end.ok) continue;
+      // Costs of two resolutions do not compare.
+      if (best_level_ != &level) {
+        for (TriedMaterial& tried : tried_) tried.cost = kInfinity;
+      }
+      TriedMaterial& tried = tried_[from_[k].tried];
+      const MarginalObjective objective = level.Objective(end.noise, &end.mode);
+      reached.push_back({from_[k].tried, objective.LobesOf(end.y.data()),
+                         objective.LogAmplitudeOf(end.y.data()), end.cost});
+      tried.cost = end.cost;
+      tried.parameters = ToVector(reached.back().lobes);
+      if (!what.empty()) Report(what + tried.name, end.cost, end.value.misfit);
+      if (best_level_ != &level || end.cost < best_.cost) {
+        best_level_ = &level;
+        best_ = std::move(end);
+        best_tried_ = from_[k].tried;
+      }
+    }
+    if (reached.empty()) return false;
+    std::stable_sort(
+        reached.begin(), reached.end(),
+        [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+    from_ = std::move(reached);
+    return true;
+  }
+
+  const ReflectanceSearchOptions& options_;
+  const Level screen_, coarse_;
+  const std::function<std::unique_ptr<Level>()> make_fine_;
+  std::unique_ptr<Level> fine_;
+  std::vector<TriedMaterial> tried_;
+  std::vector<Candidate> from_;
+  const Level* best_level_ = nullptr;
+  Level::End best_;
+  int best_tried_ = 0;
+};
+
 }  // namespace
 
 StatusOr<ReflectanceSearchResult> SearchReflectance(
@@ -165,119 +354,13 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
                         "no pixel of the object, limb aside, is finite and "
                         "positive in all three channels");
   }
-  const auto stopped = [&] {
-    return options.should_stop && options.should_stop();
-  };
-  const auto report = [&](const std::string& stage, double cost,
-                          double misfit) {
-    if (options.report) options.report(stage, cost, misfit);
-  };
-  ReflectanceSearchResult result;
-  const auto count = static_cast<int64_t>(prior.materials.size());
-  for (const MaterialPrior::Material& m : prior.materials) {
-    result.tried.push_back({m.name, std::numeric_limits<double>::infinity(),
-                            0.0, std::numeric_limits<double>::infinity(),
-                            ToVector(m.parameters)});
-  }
-  // Whole materials in parallel: what each does inside then runs in its thread.
-  const auto rank = [&](const Level& level, int64_t first_count) {
-    ParallelFor(first_count, options.num_threads, [&](int64_t i, int) {
-      TriedMaterial& tried = result.tried[i];
-      if (i > 0 && stopped()) return;
-      tried.first_cost =
-          level.Rank(Eigen::Map<const Eigen::VectorXd>(
-                         tried.parameters.data(),
-                         static_cast<Eigen::Index>(tried.parameters.size())),
-                     &tried.first_misfit);
-    });
-    std::stable_sort(result.tried.begin(), result.tried.begin() + first_count,
-                     [](const TriedMaterial& a, const TriedMaterial& b) {
-                       return a.first_cost < b.first_cost;
-                     });
-  };
-  rank(Level(model, prior, points, radiance, options.screen, options), count);
-  const Level coarse(model, prior, points, radiance, options.coarse, options);
-  // Costs of the two resolutions do not compare.
-  const int64_t kept = std::min<int64_t>(options.kept, count);
-  for (int64_t i = kept; i < count; ++i) {
-    result.tried[i].first_cost = std::numeric_limits<double>::infinity();
-  }
-  rank(coarse, kept);
-  report("rank " + std::to_string(count) + " materials",
-         result.tried.front().first_cost, result.tried.front().first_misfit);
-  Level::End best;
-  std::string best_name = result.tried.front().name;
-  // Whole refinements in parallel, as the rankings; joined in order.
-  const int starts = std::min<int>(options.starts, static_cast<int>(kept));
-  std::vector<Level::End> ends(starts);
-  ParallelFor(starts, options.num_threads, [&](int64_t k, int) {
-    const TriedMaterial& tried = result.tried[k];
-    if ((k > 0 && stopped()) || !std::isfinite(tried.first_cost)) return;
-    ends[k] =
-        coarse.Refine(Eigen::Map<const Eigen::VectorXd>(
-                          tried.parameters.data(),
-                          static_cast<Eigen::Index>(tried.parameters.size())),
-                      0.0, options.coarse_iterations);
-  });
-  for (int k = 0; k < starts; ++k) {
-    Level::End& end = ends[k];
-    if (!end.ok) continue;
-    TriedMaterial& tried = result.tried[k];
-    LightMode unused;
-    tried.cost = end.cost;
-    tried.parameters =
-        ToVector(coarse.Objective(end.noise, &unused).LobesOf(end.y.data()));
-    report("refine " + tried.name, end.cost, end.value.misfit);
-    if (end.cost < best.cost) {
-      best = std::move(end);
-      best_name = tried.name;
-    }
-  }
-  if (!best.ok) {
+  Search search(model, prior, points, radiance, options);
+  if (!search.Start()) {
     return Status(StatusCode::kNoImprovement,
                   "no training material explains the image at all");
   }
-  std::stable_sort(result.tried.begin(), result.tried.end(),
-                   [](const TriedMaterial& a, const TriedMaterial& b) {
-                     return a.cost < b.cost;
-                   });
-  const Level* level = &coarse;
-  std::unique_ptr<Level> fine;
-  LightMode unused;
-  if (options.fine_iterations > 0 && !stopped()) {
-    fine = std::make_unique<Level>(model, prior, points, radiance, options.fine,
-                                   options);
-    const MarginalObjective objective = coarse.Objective(best.noise, &unused);
-    Level::End end = fine->Refine(objective.LobesOf(best.y.data()),
-                                  objective.LogAmplitudeOf(best.y.data()),
-                                  options.fine_iterations);
-    if (end.ok) {
-      level = fine.get();
-      best = std::move(end);
-      report("finish " + best_name, best.cost, best.value.misfit);
-    }
-  }
-  const MarginalObjective objective = level->Objective(best.noise, &unused);
-  const double log_amplitude = objective.LogAmplitudeOf(best.y.data());
-  result.parameters = ToVector(objective.LobesOf(best.y.data()));
-  result.start = best_name;
-  result.cost = best.cost;
-  result.misfit = best.value.misfit;
-  result.amplitude = std::exp(log_amplitude);
-  if (options.covariance && !stopped()) {
-    result.covariance = level->Covariance(best);
-  }
-  const MarginalReflectance& reflectance = level->reflectance();
-  result.map_width = reflectance.resolution().map_width;
-  result.map_height = reflectance.resolution().map_height;
-  result.log_radiance =
-      ToVector((best.mode.l.array() + best.mode.level).matrix());
-  result.log_radiance_std = ToVector(
-      reflectance.likelihood()
-          .LightVariance(reflectance.Matrices(result.parameters.data()),
-                         best.noise, log_amplitude, best.mode)
-          .cwiseSqrt());
-  return result;
+  search.Finish();
+  return search.Result();
 }
 
 }  // namespace ibrdf

@@ -1,5 +1,6 @@
 // The reflectance of highest posterior probability with the light integrated
-// out: many materials cheaply, the best few refined, the best one finished.
+// out: many materials cheaply, the best few refined, the best of those
+// finished.
 #pragma once
 #include <Eigen/Core>
 #include <functional>
@@ -23,6 +24,11 @@ struct ReflectanceSearchOptions {
   int kept = 20;
   int starts = 4;              // that are refined at the coarse resolution
   int coarse_iterations = 20;  // of BFGS, each start
+  // Of those, at most so many are finished at the fine resolution: the ones
+  // whose costs there come within the margin, nats, of the lowest. Costs of two
+  // ends differ by some ten nats from one resolution to the next.
+  int finalists = 3;
+  double margin = 12.0;
   int fine_iterations = 30;
   // Standard deviation of log radiance between model and image, of a cell. Not
   // the pixels' noise, which a cell averages out, but what no lobes of the
@@ -40,11 +46,14 @@ struct ReflectanceSearchOptions {
       report;
 };
 
-// A start and where it led, costs in nats at the coarse resolution.
+// A start and where it led, costs in nats. Those of several resolutions do not
+// compare; those that are compared have the same.
 struct TriedMaterial {
   std::string name;
-  double first_cost = 0.0;
+  double first_cost = 0.0;    // coarse
   double first_misfit = 0.0;  // mean |log E - log I| over cells
+  // At the finest resolution at which it was compared with the end that was
+  // chosen, on a scale on which that one's is ReflectanceSearchResult::cost.
   double cost = 0.0;
   std::vector<double> parameters;  // at the end
 };

@@ -130,22 +130,54 @@ TEST_F(MarginalReflectanceTest, SearchLowersTheCostWhateverTheThreads) {
   ASSERT_TRUE(one.ok()) << one.status().message();
   ASSERT_EQ(14u, one->parameters.size());
   ASSERT_EQ(4u, one->tried.size());
-  EXPECT_LT(one->tried[0].cost, one->tried[0].first_cost);
-  EXPECT_LE(one->tried[0].cost, one->tried[1].cost);
+  EXPECT_EQ(one->tried[0].cost, one->cost);
+  EXPECT_EQ(one->tried[0].name, one->start);
+  EXPECT_EQ(one->tried[0].parameters, one->parameters);
+  for (size_t i = 1; i < one->tried.size(); ++i) {
+    EXPECT_LE(one->tried[i - 1].cost, one->tried[i].cost);
+  }
   EXPECT_LT(one->misfit, 0.1);
   for (const double s : one->log_radiance_std) {
     EXPECT_TRUE(std::isfinite(s) && s >= 0.0);
   }
-  if (one->covariance.size() > 0) {
-    EXPECT_EQ(14, one->covariance.rows());
-    EXPECT_GT(one->covariance.diagonal().minCoeff(), 0.0);
-  }
+  ASSERT_EQ(14, one->covariance.rows());
+  EXPECT_LT((one->covariance - one->covariance.transpose()).norm(),
+            1e-9 * one->covariance.norm());
+  const Eigen::LLT<Eigen::MatrixXd> llt(one->covariance);
+  EXPECT_EQ(Eigen::Success, llt.info());
+  // The image tells something: no direction is wider than the prior's twice.
+  const Eigen::VectorXd prior_variance =
+      (prior.factor * prior.factor.transpose()).diagonal();
+  EXPECT_LT(one->covariance.trace(), prior_variance.sum());
   options.num_threads = 2;
   const StatusOr<ReflectanceSearchResult> two =
       SearchReflectance(model_, prior, points_, radiance_, options);
   ASSERT_TRUE(two.ok());
   EXPECT_EQ(one->parameters, two->parameters);
   EXPECT_EQ(one->log_radiance, two->log_radiance);
+}
+
+TEST_F(MarginalReflectanceTest, MoreFinalistsNeverEndAtAHigherCost) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  ReflectanceSearchOptions options = Options();
+  options.covariance = false;
+  options.finalists = 1;
+  const StatusOr<ReflectanceSearchResult> one =
+      SearchReflectance(model_, prior, points_, radiance_, options);
+  options.finalists = 4;
+  options.margin = 1e9;
+  const StatusOr<ReflectanceSearchResult> all =
+      SearchReflectance(model_, prior, points_, radiance_, options);
+  ASSERT_TRUE(one.ok() && all.ok());
+  EXPECT_LE(all->cost, one->cost);
+  // What one finalist left where it was is refined now.
+  double change = 0.0;
+  for (const TriedMaterial& a : one->tried) {
+    for (const TriedMaterial& b : all->tried) {
+      if (a.name == b.name && std::isfinite(a.cost)) change += a.cost - b.cost;
+    }
+  }
+  EXPECT_GT(change, 0.0);
 }
 
 TEST_F(MarginalReflectanceTest, StoppedSearchIsWhole) {
