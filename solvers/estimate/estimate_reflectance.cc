@@ -13,7 +13,7 @@ namespace ibrdf {
 namespace {
 
 // Of the time left, at most: the search for the reflectance.
-constexpr double kSearchShare = 0.4;
+constexpr double kSearchShare = 0.55;
 // Of the disc of normals: what a few dozen parameters under known light can
 // learn from.
 constexpr int kKnownLightCells = 26;
