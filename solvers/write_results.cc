@@ -1,3 +1,4 @@
+#include <glog/logging.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include "io/merl.h"
 #include "io/problem_json.h"
 #include "io/result_preview.h"
+#include "solvers/conditioning.h"
 #include "solvers/report/report_page.h"
 #include "solvers/solve_problem.h"
 
@@ -135,6 +137,11 @@ Json PosteriorJson(const InverseProblem& inverse, const Estimate& estimate) {
     }
     out["lobes"] = lobes;
     out["covariance"] = estimate.lobe_covariance;
+    const auto side = static_cast<Eigen::Index>(n);
+    const double condition = ScaledCondition(Eigen::Map<const Eigen::MatrixXd>(
+        estimate.lobe_covariance.data(), side, side));
+    VLOG(1) << "condition of the posterior's correlations " << condition;
+    out["condition_number"] = Metric(condition);
   }
   Json alternatives = Json::array();
   for (const Alternative& a : estimate.alternatives) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/derivatives/conditioning_study.h"
 #include "experiments/derivatives/studies.h"
 #include "solvers/open_model.h"
 
@@ -49,6 +50,13 @@ int Run(const std::string& csv, const std::string& only,
                 r.worst_point.c_str());
   }
   if (!csv.empty()) std::ofstream(csv) << ToCsv(table.Rows());
+  if (!only.empty() && only != "conditioning") return 0;
+  std::printf("\n%-14s %-16s %10s %10s %10s\n", "material", "lobes", "image",
+              "+ prior", "marginal");
+  for (const ConditioningRow& r : StudyConditioning(model, true)) {
+    std::printf("%-14s %-16s %10.2g %10.2g %10.2g\n", r.material.c_str(),
+                r.lobes.c_str(), r.image, r.with_prior, r.marginal);
+  }
   return 0;
 }
 

@@ -50,13 +50,25 @@ FlowDerivatives ReferenceFlows::At(const Real* x,
   return out;
 }
 
-FlowDerivatives ReferenceFlows::ByCode(const Real* x,
-                                       const std::vector<Real>& code) const {
-  if (coupling_ != nullptr) return At(x, code);
+std::vector<FlowDerivatives> ReferenceFlows::OnColumn(
+    Real x_d, Real x_p, const std::vector<Real>& x_h,
+    const std::vector<Real>& code) const {
+  std::vector<FlowDerivatives> out;
+  if (coupling_ != nullptr) {
+    for (const Real h : x_h) {
+      const Real x[3] = {h, x_d, x_p};
+      out.push_back(At(x, code));
+    }
+    return out;
+  }
   std::vector<RealDual> z;
   for (int k = 0; k < code_size_; ++k) z.emplace_back(code[k], code_size_, k);
-  const RealDual value = codes_->LogDensity(x, z.data());
-  return {value.value, value.derivatives, {}};
+  codes_->LogDensityOnColumn(
+      x_d, x_p, x_h.data(), static_cast<int>(x_h.size()), 1, z.data(),
+      [&out](int, const RealDual& value) {
+        out.push_back({value.value, value.derivatives, {}});
+      });
+  return out;
 }
 
 std::vector<Real> ReferenceFields(const NeuralBrdfModel& model, int num_lobes,
@@ -65,25 +77,33 @@ std::vector<Real> ReferenceFields(const NeuralBrdfModel& model, int num_lobes,
   const ReferenceFlows flow(model);
   const int codes = model.shape.code_size(), stride = 1 + codes;
   const size_t nodes = grid.num_nodes();
+  const int columns = grid.d * grid.p;
+  const Real exponent = model.exponent;
   std::vector<Real> fields(nodes * stride * num_lobes);
-  ParallelFor(static_cast<int64_t>(nodes) * num_lobes, 0, [&](int64_t i, int) {
-    const size_t lobe = i / nodes, node = i % nodes;
+  ParallelFor(int64_t{num_lobes} * columns, 0, [&](int64_t i, int) {
+    const size_t lobe = i / columns;
+    const int column = static_cast<int>(i % columns);
     const double* z = parameters.data() + lobe * (codes + 3);
     // LobeModel gives its flow codes in float.
-    std::vector<Real> code;
+    std::vector<Real> code, x_h;
     for (int k = 0; k < codes; ++k) code.push_back(static_cast<float>(z[k]));
-    const Eigen::Vector3d p = grid.NodePoint(static_cast<int>(node));
-    const Real x[3] = {static_cast<float>(p[0]), static_cast<float>(p[1]),
-                       static_cast<float>(p[2])};
-    const FlowDerivatives d = flow.ByCode(x, code);
-    const Real exponent = model.exponent;
-    // Shapes are clamped, without slope beyond.
-    const bool moves = exponent * d.value < kMaxLogShape;
-    const Real shape = std::exp(std::min(exponent * d.value, kMaxLogShape));
-    Real* out = &fields[lobe * stride * nodes + node];
-    out[0] = shape;
-    for (int k = 0; k < codes; ++k) {
-      out[(1 + k) * nodes] = moves ? shape * exponent * d.by_code[k] : 0;
+    Eigen::Vector3d p = grid.NodePoint(column);
+    for (int h = 0; h < grid.h; ++h) {
+      p = grid.NodePoint(h * columns + column);
+      x_h.push_back(static_cast<float>(p[0]));
+    }
+    const std::vector<FlowDerivatives> at = flow.OnColumn(
+        static_cast<float>(p[1]), static_cast<float>(p[2]), x_h, code);
+    for (int h = 0; h < grid.h; ++h) {
+      // Shapes are clamped, without slope beyond.
+      const FlowDerivatives& d = at[h];
+      const bool moves = exponent * d.value < kMaxLogShape;
+      const Real shape = std::exp(std::min(exponent * d.value, kMaxLogShape));
+      Real* out = &fields[lobe * stride * nodes + h * columns + column];
+      out[0] = shape;
+      for (int k = 0; k < codes; ++k) {
+        out[(1 + k) * nodes] = moves ? shape * exponent * d.by_code[k] : 0;
+      }
     }
   });
   return fields;

@@ -29,8 +29,10 @@ class ReferenceFlows {
 
   // At x [3] and a code. Where a spline has a knot at x: the right side's.
   FlowDerivatives At(const Real* x, const std::vector<Real>& code) const;
-  // Value and by_code alone, which takes less time.
-  FlowDerivatives ByCode(const Real* x, const std::vector<Real>& code) const;
+  // Value and by_code alone, at all x_h of a column, whose networks they share.
+  std::vector<FlowDerivatives> OnColumn(Real x_d, Real x_p,
+                                        const std::vector<Real>& x_h,
+                                        const std::vector<Real>& code) const;
 
  private:
   int code_size_;

@@ -203,6 +203,33 @@ TEST_F(SolveProblemTest, ResultsAreWholeAndReadBack) {
   }
 }
 
+TEST_F(SolveProblemTest, PosteriorSaysHowWellItIsConditioned) {
+  const StatusOr<InverseProblem> p = Load({});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  InverseProblem inverse = *p;
+  inverse.transport = TinyTransportOptions();
+  inverse.solver.max_iterations = 0;
+  StatusOr<Estimate> e = SolveInverseRendering(inverse, nullptr, nullptr);
+  ASSERT_TRUE(e.ok()) << e.status().message();
+  const std::string out = dir_.File("out");
+  const auto posterior = [&](std::vector<double> covariance) {
+    e->lobe_covariance = std::move(covariance);
+    const Status written =
+        WriteResults(problem_, inverse, TheTruth(), *e, out, nullptr);
+    EXPECT_TRUE(written.ok()) << written.message();
+    return nlohmann::json::parse(ReadBytes(out + "/result.json"))["posterior"];
+  };
+  EXPECT_FALSE(posterior({}).contains("condition_number"));
+  const size_t n = e->lobe_parameters.size();
+  std::vector<double> covariance(n * n, 0.0);
+  for (size_t i = 0; i < n; ++i) covariance[i * n + i] = 1e-4 * (1.0 + i);
+  // Two of correlation 1/2: eigenvalues 1/2 and 3/2.
+  covariance[1] = covariance[n] =
+      0.5 * std::sqrt(covariance[0] * covariance[n + 1]);
+  EXPECT_NEAR(3.0, posterior(covariance)["condition_number"].get<double>(),
+              1e-9);
+}
+
 TEST_F(SolveProblemTest, ResultsOfAKnownReflectanceHoldNoBrdf) {
   const StatusOr<InverseProblem> p =
       Load({"problem=illumination", "reflectance={known: {lambertian: 0.5}}"});

@@ -1,0 +1,135 @@
+#include "experiments/derivatives/conditioning_study.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ibrdf/base/parallel_for.h"
+#include "solvers/conditioning.h"
+#include "solvers/costs/log_radiance_cost.h"
+#include "solvers/costs/material_prior_cost.h"
+#include "solvers/marginal/marginal_objective.h"
+#include "tests/render/render_testing.h"
+
+namespace ibrdf {
+namespace derivatives {
+namespace {
+
+constexpr double kCodeSigma = 0.5;
+constexpr double kLogAmplitudeStd = 0.7;
+
+Eigen::MatrixXd NormalMatrix(const ceres::CostFunction& cost,
+                             const Eigen::VectorXd& x) {
+  using RowMajor =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::VectorXd r(cost.num_residuals());
+  RowMajor J(cost.num_residuals(), x.size());
+  const double* block[] = {x.data()};
+  double* jacobians[] = {J.data()};
+  CHECK(cost.Evaluate(block, r.data(), jacobians));
+  return J.transpose() * J;
+}
+
+Eigen::VectorXd ParametersOf(const MaterialPrior& prior,
+                             const std::string& name) {
+  for (const MaterialPrior::Material& m : prior.materials) {
+    if (m.name == name) return m.parameters;
+  }
+  LOG(FATAL) << "no material " << name;
+}
+
+// By central differences of the gradient, in whitened coordinates.
+double MarginalCondition(const NeuralBrdfModel& model,
+                         const MaterialPrior& prior,
+                         const std::vector<ShadingPoint>& points,
+                         const std::vector<double>& radiance,
+                         const Eigen::VectorXd& x) {
+  MarginalResolution resolution;
+  resolution.cells = {8, 4, 0.2};
+  resolution.map_width = 16;
+  resolution.map_height = 8;
+  const MarginalReflectance reflectance(model, prior.num_lobes(), points,
+                                        radiance, LightProcess(), resolution,
+                                        0);
+  const Eigen::VectorXd noise =
+      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
+  LightMode mode;
+  reflectance.Evaluate(x.data(), noise, 0.0, 1e-9, &mode, nullptr);
+  const MarginalObjective whitened(&reflectance, &prior, kLogAmplitudeStd,
+                                   noise, &mode);
+  const std::vector<double> y = whitened.Whitened(x, 0.0);
+  const auto n = static_cast<Eigen::Index>(y.size());
+  Eigen::MatrixXd hessian(n, n);
+  ParallelFor(n, 0, [&](int64_t i, int) {
+    constexpr double kStep = 0.02;
+    Eigen::VectorXd side[2];
+    for (int s = 0; s < 2; ++s) {
+      std::vector<double> at = y;
+      at[i] += s == 0 ? kStep : -kStep;
+      LightMode start = mode;
+      const MarginalObjective objective(&reflectance, &prior, kLogAmplitudeStd,
+                                        noise, &start);
+      double cost = 0.0;
+      side[s].resize(n);
+      CHECK(objective.Evaluate(at.data(), &cost, side[s].data()));
+    }
+    hessian.col(i) = (side[0] - side[1]) / (2 * kStep);
+  });
+  return ScaledCondition(0.5 * (hessian + hessian.transpose()));
+}
+
+}  // namespace
+
+std::vector<ConditioningRow> StudyConditioning(const NeuralBrdfModel& model,
+                                               bool marginal) {
+  const MaterialPrior one = JointMaterialPrior(model, 1, kCodeSigma);
+  const MaterialPrior two = JointMaterialPrior(model, 2, kCodeSigma);
+  const std::vector<ShadingPoint> points = testing::SpherePoints(24);
+  const Image map = testing::SmoothMap(32, 64);
+  const TransportOptions options;
+  const Transport transport(points, map.height, map.width, options);
+  std::vector<ConditioningRow> rows;
+  for (const char* name : {"white-fabric", "red-plastic", "chrome"}) {
+    const Eigen::VectorXd both = ParametersOf(two, name);
+    Eigen::VectorXd same = both;
+    same.tail(same.size() / 2) = same.head(same.size() / 2);
+    const struct {
+      const char* lobes;
+      const MaterialPrior* prior;
+      Eigen::VectorXd x;
+    } cases[] = {{"1", &one, ParametersOf(one, name)},
+                 {"2", &two, both},
+                 {"2 that coincide", &two, same}};
+    for (const auto& c : cases) {
+      const LobeModel lobes(model, c.prior->num_lobes(), options.grid, 0);
+      std::vector<double> E;
+      CHECK(RenderLobeModel(transport, lobes, c.x.data(), map.rgb.data(), &E,
+                            nullptr));
+      const Observations observed = MakeObservations(E);
+      RobustLogLikelihood likelihood;
+      double mean = 0.0;
+      for (const double e : E) mean += e / static_cast<double>(E.size());
+      likelihood.epsilon = 1e-5 * mean;
+      const LobeRadianceCost cost(&transport, &lobes, map.rgb, &observed,
+                                  likelihood);
+      const MaterialPriorCost prior(c.prior);
+      const Eigen::MatrixXd image = NormalMatrix(cost, c.x);
+      ConditioningRow row;
+      row.material = name;
+      row.lobes = c.lobes;
+      row.image = ScaledCondition(image);
+      row.with_prior = ScaledCondition(image + NormalMatrix(prior, c.x));
+      row.marginal = marginal
+                         ? MarginalCondition(model, *c.prior, points, E, c.x)
+                         : std::numeric_limits<double>::quiet_NaN();
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+}  // namespace derivatives
+}  // namespace ibrdf

@@ -1,0 +1,27 @@
+// Condition numbers of a reflectance's normal equations.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/flow/neural_brdf_model.h"
+
+namespace ibrdf {
+namespace derivatives {
+
+struct ConditioningRow {
+  std::string material, lobes;
+  // ScaledCondition of J^T J under known light: of the likelihood alone and
+  // with the materials' prior.
+  double image = 0.0, with_prior = 0.0;
+  // Of the marginal posterior's Hessian, light unknown; NaN: not wanted.
+  double marginal = 0.0;
+};
+
+// A matte, a glossy and a mirror-like material of the default model on a
+// sphere under a smooth map, each as one lobe, as its two and as two that
+// coincide.
+std::vector<ConditioningRow> StudyConditioning(const NeuralBrdfModel& model,
+                                               bool marginal);
+
+}  // namespace derivatives
+}  // namespace ibrdf
