@@ -1,5 +1,7 @@
 #include "experiments/derivatives/conditioning_study.h"
 
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
 #include <glog/logging.h>
 
 #include <Eigen/Dense>
@@ -20,6 +22,9 @@ namespace {
 
 constexpr double kCodeSigma = 0.5;
 constexpr double kLogAmplitudeStd = 0.7;
+// Of the light's mode, nats: what is left of it enters differences of gradients
+// by its root.
+constexpr double kModeTolerance = 1e-9;
 
 Eigen::MatrixXd NormalMatrix(const ceres::CostFunction& cost,
                              const Eigen::VectorXd& x) {
@@ -41,7 +46,8 @@ Eigen::VectorXd ParametersOf(const MaterialPrior& prior,
   LOG(FATAL) << "no material " << name;
 }
 
-// By central differences of the gradient, in whitened coordinates.
+// At the minimum that BFGS finds from x, by central differences of the
+// gradient, in whitened coordinates.
 double MarginalCondition(const NeuralBrdfModel& model,
                          const MaterialPrior& prior,
                          const std::vector<ShadingPoint>& points,
@@ -58,9 +64,18 @@ double MarginalCondition(const NeuralBrdfModel& model,
       Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
   LightMode mode;
   reflectance.Evaluate(x.data(), noise, 0.0, 1e-9, &mode, nullptr);
-  const MarginalObjective whitened(&reflectance, &prior, kLogAmplitudeStd,
-                                   noise, &mode);
-  const std::vector<double> y = whitened.Whitened(x, 0.0);
+  // Owned by the problem.
+  auto* whitened = new MarginalObjective(&reflectance, &prior, kLogAmplitudeStd,
+                                         noise, &mode, kModeTolerance);
+  const ceres::GradientProblem problem(whitened);
+  std::vector<double> y = whitened->Whitened(x, 0.0);
+  ceres::GradientProblemSolver::Options o;
+  o.line_search_direction_type = ceres::BFGS;
+  o.max_num_iterations = 100;
+  o.function_tolerance = 1e-9;
+  o.logging_type = ceres::SILENT;
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(o, problem, y.data(), &summary);
   const auto n = static_cast<Eigen::Index>(y.size());
   Eigen::MatrixXd hessian(n, n);
   ParallelFor(n, 0, [&](int64_t i, int) {
@@ -71,7 +86,7 @@ double MarginalCondition(const NeuralBrdfModel& model,
       at[i] += s == 0 ? kStep : -kStep;
       LightMode start = mode;
       const MarginalObjective objective(&reflectance, &prior, kLogAmplitudeStd,
-                                        noise, &start);
+                                        noise, &start, kModeTolerance);
       double cost = 0.0;
       side[s].resize(n);
       CHECK(objective.Evaluate(at.data(), &cost, side[s].data()));

@@ -13,7 +13,8 @@ struct ConditioningRow {
   // ScaledCondition of J^T J under known light: of the likelihood alone and
   // with the materials' prior.
   double image = 0.0, with_prior = 0.0;
-  // Of the marginal posterior's Hessian, light unknown; NaN: not wanted.
+  // Of the marginal posterior's Hessian at its minimum, light unknown; NaN: not
+  // wanted.
   double marginal = 0.0;
 };
 
