@@ -12,6 +12,7 @@
 #include "ibrdf/light/illumination_unet_reference.h"
 #include "solvers/joint/joint_objective.h"
 #include "tests/render/render_testing.h"
+#include "tests/solvers/solver_testing.h"
 #include "tests/support/tiny_model.h"
 
 namespace ibrdf {
@@ -20,18 +21,6 @@ namespace {
 
 constexpr Real kMaxLogMap = 60;  // of ToRadianceMap
 
-IlluminationUnetOptions Network() {
-  IlluminationUnetOptions options;
-  options.width = 16;
-  options.height = 8;
-  options.scales = 2;
-  options.channels = 4;
-  options.skip_channels = 2;
-  options.noise_channels = 2;
-  options.num_threads = 1;
-  return options;
-}
-
 class JointStudy {
  public:
   JointStudy(std::string name, const NeuralBrdfModel& model, ErrorTable* table)
@@ -39,8 +28,8 @@ class JointStudy {
         model_(model),
         scene_(testing::SpherePoints(5), testing::SmoothMap(8, 16)),
         lobes_(model, 2, scene_.options().grid, 0),
-        unet_(Network()),
-        light_(MakeUnetIllumination(Network())),
+        unet_(testing::TinyUnetOptions()),
+        light_(MakeUnetIllumination(testing::TinyUnetOptions())),
         reference_(unet_.plan(), {unet_.noise().begin(), unet_.noise().end()}),
         table_(table) {
     const double zero[3] = {0, 0, 0};

@@ -8,6 +8,7 @@
 #include "experiments/derivatives/studies.h"
 #include "ibrdf/light/illumination_unet.h"
 #include "ibrdf/light/illumination_unet_reference.h"
+#include "tests/solvers/solver_testing.h"
 
 namespace ibrdf {
 namespace derivatives {
@@ -118,14 +119,10 @@ void AddNetwork(const std::string& name, const IlluminationUnetOptions& options,
 
 void StudyUnet(const StudyOptions& options, ErrorTable* table) {
   std::mt19937_64 rng(options.seed);
-  IlluminationUnetOptions network;
-  network.width = 16;
-  network.height = 8;
-  network.scales = 2;
+  IlluminationUnetOptions network = testing::TinyUnetOptions();
   network.channels = 8;
   network.skip_channels = 3;
   network.noise_channels = 3;
-  network.num_threads = 1;
   const int count = std::max(options.points / 20, 3);
   AddNetwork("UNet", network, count, &rng, table);
   network.normalize = false;

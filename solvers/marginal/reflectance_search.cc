@@ -180,12 +180,9 @@ class Search {
          const std::vector<ShadingPoint>& points,
          const std::vector<double>& radiance,
          const ReflectanceSearchOptions& options)
-      : options_(options),
-        screen_(model, prior, points, radiance, options.screen, options),
-        coarse_(model, prior, points, radiance, options.coarse, options),
-        make_fine_([&] {
+      : options_(options), level_at_([&](const MarginalResolution& resolution) {
           return std::make_unique<Level>(model, prior, points, radiance,
-                                         options.fine, options);
+                                         resolution, options);
         }) {
     for (const MaterialPrior::Material& m : prior.materials) {
       tried_.push_back(
@@ -198,10 +195,11 @@ class Search {
   bool Start() {
     const auto count = static_cast<int64_t>(tried_.size());
     const int64_t kept = std::min<int64_t>(options_.kept, count);
-    Rank(screen_, count);
+    Rank(*level_at_(options_.screen), count);
+    coarse_ = level_at_(options_.coarse);
     // Costs of the two resolutions do not compare.
     for (int64_t i = kept; i < count; ++i) tried_[i].first_cost = kInfinity;
-    Rank(coarse_, kept);
+    Rank(*coarse_, kept);
     Report("rank " + std::to_string(count) + " materials",
            tried_.front().first_cost, tried_.front().first_misfit);
     for (int k = 0; k < std::min<int64_t>(options_.starts, kept); ++k) {
@@ -209,13 +207,13 @@ class Search {
         from_.push_back({k, ToEigen(tried_[k].parameters), 0.0, 0.0});
       }
     }
-    return Refine("refine ", coarse_, options_.coarse_iterations);
+    return Refine("refine ", *coarse_, options_.coarse_iterations);
   }
 
   // Compares the ends at the fine resolution and finishes the best.
   void Finish() {
     if (options_.fine_iterations == 0 || Stopped()) return;
-    fine_ = make_fine_();
+    fine_ = level_at_(options_.fine);
     if (!Refine("", *fine_, 0)) return;
     from_.erase(std::find_if(from_.begin(), from_.end(),
                              [&](const Candidate& c) {
@@ -229,14 +227,11 @@ class Search {
 
   ReflectanceSearchResult Result() {
     ReflectanceSearchResult result;
-    const MarginalObjective objective =
-        best_level_->Objective(best_.noise, &best_.mode);
-    const double log_amplitude = objective.LogAmplitudeOf(best_.y.data());
-    result.parameters = ToVector(objective.LobesOf(best_.y.data()));
-    result.start = tried_[best_tried_].name;
+    result.parameters = ToVector(best_candidate_.lobes);
+    result.start = tried_[best_candidate_.tried].name;
     result.cost = best_.cost;
     result.misfit = best_.value.misfit;
-    result.amplitude = std::exp(log_amplitude);
+    result.amplitude = std::exp(best_candidate_.log_amplitude);
     if (options_.covariance && !Stopped()) {
       result.covariance = best_level_->Covariance(best_);
     }
@@ -245,11 +240,12 @@ class Search {
     result.map_height = reflectance.resolution().map_height;
     result.log_radiance =
         ToVector((best_.mode.l.array() + best_.mode.level).matrix());
-    result.log_radiance_std = ToVector(
-        reflectance.likelihood()
-            .LightVariance(reflectance.Matrices(result.parameters.data()),
-                           best_.noise, log_amplitude, best_.mode)
-            .cwiseSqrt());
+    result.log_radiance_std =
+        ToVector(reflectance.likelihood()
+                     .LightVariance(
+                         reflectance.Matrices(result.parameters.data()),
+                         best_.noise, best_candidate_.log_amplitude, best_.mode)
+                     .cwiseSqrt());
     std::stable_sort(tried_.begin(), tried_.end(),
                      [](const TriedMaterial& a, const TriedMaterial& b) {
                        return a.cost < b.cost;
@@ -261,7 +257,7 @@ class Search {
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  // Where a refinement begins, of tried_[tried].
+  // Where a refinement of tried_[tried] ended and the next begins.
   struct Candidate {
     int tried = 0;
     Eigen::VectorXd lobes;
@@ -319,7 +315,7 @@ class Search {
       if (best_level_ != &level || end.cost < best_.cost) {
         best_level_ = &level;
         best_ = std::move(end);
-        best_tried_ = from_[k].tried;
+        best_candidate_ = reached.back();
       }
     }
     if (reached.empty()) return false;
@@ -331,14 +327,14 @@ class Search {
   }
 
   const ReflectanceSearchOptions& options_;
-  const Level screen_, coarse_;
-  const std::function<std::unique_ptr<Level>()> make_fine_;
-  std::unique_ptr<Level> fine_;
+  const std::function<std::unique_ptr<Level>(const MarginalResolution&)>
+      level_at_;
+  std::unique_ptr<Level> coarse_, fine_;
   std::vector<TriedMaterial> tried_;
   std::vector<Candidate> from_;
   const Level* best_level_ = nullptr;
   Level::End best_;
-  int best_tried_ = 0;
+  Candidate best_candidate_;
 };
 
 }  // namespace

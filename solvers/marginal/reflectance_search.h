@@ -46,14 +46,13 @@ struct ReflectanceSearchOptions {
       report;
 };
 
-// A start and where it led, costs in nats. Those of several resolutions do not
-// compare; those that are compared have the same.
+// A start and where it led, costs in nats.
 struct TriedMaterial {
   std::string name;
   double first_cost = 0.0;    // coarse
   double first_misfit = 0.0;  // mean |log E - log I| over cells
-  // At the finest resolution at which it was compared with the end that was
-  // chosen, on a scale on which that one's is ReflectanceSearchResult::cost.
+  // At the finest resolution that the search came to; infinite where this start
+  // did not come to it.
   double cost = 0.0;
   std::vector<double> parameters;  // at the end
 };
