@@ -70,6 +70,18 @@ double MaterialPrior::WallCost(const Eigen::VectorXd& x,
   return cost;
 }
 
+void MaterialPrior::AddWallInformation(const Eigen::VectorXd& x,
+                                       Eigen::MatrixXd* information) const {
+  for (int k = 0; k < num_lobes(); ++k) {
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * (code_size + 3);
+    const Eigen::VectorXd z = x.segment(first, code_size);
+    if (z.norm() <= 1.0) continue;
+    const Eigen::VectorXd outward = wall * z.normalized();
+    information->block(first, first, code_size, code_size) +=
+        outward * outward.transpose();
+  }
+}
+
 double MaterialPrior::Cost(const Eigen::VectorXd& x,
                            Eigen::VectorXd* gradient) const {
   const auto lower = factor.triangularView<Eigen::Lower>();

@@ -30,6 +30,9 @@ struct MaterialPrior {
   double Cost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;
   // The wall's part alone, with y = factor^-1 (x - mean) in its place.
   double WallCost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;
+  // Adds the wall's Gauss-Newton Hessian to the first rows and columns.
+  void AddWallInformation(const Eigen::VectorXd& x,
+                          Eigen::MatrixXd* information) const;
 };
 
 // Mean and covariance of the materials' lobes (NeuralBrdfModel::lobe_fits): how

@@ -1,7 +1,5 @@
 #include "experiments/derivatives/conditioning_study.h"
 
-#include <ceres/gradient_problem.h>
-#include <ceres/gradient_problem_solver.h>
 #include <glog/logging.h>
 
 #include <Eigen/Dense>
@@ -13,6 +11,7 @@
 #include "solvers/conditioning.h"
 #include "solvers/costs/log_radiance_cost.h"
 #include "solvers/costs/material_prior_cost.h"
+#include "solvers/marginal/marginal_descent.h"
 #include "solvers/marginal/marginal_objective.h"
 #include "tests/render/render_testing.h"
 
@@ -46,13 +45,13 @@ Eigen::VectorXd ParametersOf(const MaterialPrior& prior,
   LOG(FATAL) << "no material " << name;
 }
 
-// At the minimum that BFGS finds from x, by central differences of the
+// At the minimum that the descent finds from x, by central differences of the
 // gradient, in whitened coordinates.
-double MarginalCondition(const NeuralBrdfModel& model,
-                         const MaterialPrior& prior,
-                         const std::vector<ShadingPoint>& points,
-                         const std::vector<double>& radiance,
-                         const Eigen::VectorXd& x) {
+void StudyMarginalHessian(const NeuralBrdfModel& model,
+                          const MaterialPrior& prior,
+                          const std::vector<ShadingPoint>& points,
+                          const std::vector<double>& radiance,
+                          const Eigen::VectorXd& x, ConditioningRow* row) {
   MarginalResolution resolution;
   resolution.cells = {8, 4, 0.2};
   resolution.map_width = 16;
@@ -64,18 +63,13 @@ double MarginalCondition(const NeuralBrdfModel& model,
       Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
   LightMode mode;
   reflectance.Evaluate(x.data(), noise, 0.0, 1e-9, &mode, nullptr);
-  // Owned by the problem.
-  auto* whitened = new MarginalObjective(&reflectance, &prior, kLogAmplitudeStd,
-                                         noise, &mode, kModeTolerance);
-  const ceres::GradientProblem problem(whitened);
-  std::vector<double> y = whitened->Whitened(x, 0.0);
-  ceres::GradientProblemSolver::Options o;
-  o.line_search_direction_type = ceres::BFGS;
-  o.max_num_iterations = 100;
-  o.function_tolerance = 1e-9;
-  o.logging_type = ceres::SILENT;
-  ceres::GradientProblemSolver::Summary summary;
-  ceres::Solve(o, problem, y.data(), &summary);
+  const MarginalObjective whitened(&reflectance, &prior, kLogAmplitudeStd,
+                                   noise, &mode, kModeTolerance);
+  std::vector<double> y = whitened.Whitened(x, 0.0);
+  MarginalDescentOptions o;
+  o.max_iterations = 200;
+  o.least_gain = 1e-6;
+  CHECK(Descend(whitened, o, &y).ok);
   const auto n = static_cast<Eigen::Index>(y.size());
   Eigen::MatrixXd hessian(n, n);
   ParallelFor(n, 0, [&](int64_t i, int) {
@@ -93,7 +87,19 @@ double MarginalCondition(const NeuralBrdfModel& model,
     }
     hessian.col(i) = (side[0] - side[1]) / (2 * kStep);
   });
-  return ScaledCondition(0.5 * (hessian + hessian.transpose()));
+  hessian = (0.5 * (hessian + hessian.transpose())).eval();
+  row->marginal = ScaledCondition(hessian);
+  const Eigen::LLT<Eigen::MatrixXd> llt(hessian);
+  if (llt.info() != Eigen::Success) return;
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(n, n);
+  const Eigen::VectorXd exact = llt.solve(identity).diagonal();
+  Eigen::VectorXd ratio =
+      whitened.Information(y.data()).llt().solve(identity).diagonal();
+  ratio = ratio.cwiseQuotient(exact).cwiseSqrt();
+  std::sort(ratio.data(), ratio.data() + n);
+  row->smallest_ratio = ratio[0];
+  row->median_ratio = ratio[n / 2];
+  row->largest_ratio = ratio[n - 1];
 }
 
 }  // namespace
@@ -137,9 +143,11 @@ std::vector<ConditioningRow> StudyConditioning(const NeuralBrdfModel& model,
       row.lobes = c.lobes;
       row.image = ScaledCondition(image);
       row.with_prior = ScaledCondition(image + NormalMatrix(prior, c.x));
-      row.marginal = marginal
-                         ? MarginalCondition(model, *c.prior, points, E, c.x)
-                         : std::numeric_limits<double>::quiet_NaN();
+      row.marginal = row.smallest_ratio = row.median_ratio = row.largest_ratio =
+          std::numeric_limits<double>::quiet_NaN();
+      if (marginal) {
+        StudyMarginalHessian(model, *c.prior, points, E, c.x, &row);
+      }
       rows.push_back(row);
     }
   }

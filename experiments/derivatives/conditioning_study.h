@@ -16,6 +16,10 @@ struct ConditioningRow {
   // Of the marginal posterior's Hessian at its minimum, light unknown; NaN: not
   // wanted.
   double marginal = 0.0;
+  // Standard deviations of the whitened coordinates by the Gauss-Newton Hessian
+  // over those by that Hessian: smallest, median, largest; NaN where that one
+  // is not positive definite.
+  double smallest_ratio = 0.0, median_ratio = 0.0, largest_ratio = 0.0;
 };
 
 // A matte, a glossy and a mirror-like material of the default model on a

@@ -51,11 +51,13 @@ int Run(const std::string& csv, const std::string& only,
   }
   if (!csv.empty()) std::ofstream(csv) << ToCsv(table.Rows());
   if (!only.empty() && only != "conditioning") return 0;
-  std::printf("\n%-14s %-16s %10s %10s %10s\n", "material", "lobes", "image",
-              "+ prior", "marginal");
+  std::printf("\n%-14s %-16s %10s %10s %10s  %s\n", "material", "lobes",
+              "image", "+ prior", "marginal",
+              "std by Gauss-Newton over exact: least, median, most");
   for (const ConditioningRow& r : StudyConditioning(model, true)) {
-    std::printf("%-14s %-16s %10.2g %10.2g %10.2g\n", r.material.c_str(),
-                r.lobes.c_str(), r.image, r.with_prior, r.marginal);
+    std::printf("%-14s %-16s %10.2g %10.2g %10.2g  %.2f %.2f %.2f\n",
+                r.material.c_str(), r.lobes.c_str(), r.image, r.with_prior,
+                r.marginal, r.smallest_ratio, r.median_ratio, r.largest_ratio);
   }
   return 0;
 }

@@ -419,6 +419,35 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
       amplitude * (-0.5 * mode.dual.dot(local) + w.dot(local)) + 0.5 * trace;
 }
 
+Eigen::MatrixXd MarginalLikelihood::Information(
+    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    double log_amplitude, const LightMode& mode, const RowMatrix& G) const {
+  const Eigen::Index P = num_points_, n = G.cols();
+  CHECK_EQ(G.rows(), 3 * P);
+  const auto linear = Linearise(matrices, noise, std::exp(log_amplitude),
+                                At(matrices, mode.level, mode.l));
+  if (linear == nullptr) return {};
+  const RowMatrix whitened =
+      linear->factor.triangularView<Eigen::Lower>().solve(G);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  information.topLeftCorner(n, n).noalias() = whitened.transpose() * whitened;
+  RowMatrix inverse = linear->factor;
+  InvertFactored(&inverse);
+  // A^-1 J K1 J^T = I - A^-1 (D + the level's part).
+  RowMatrix by_amplitude = -inverse * noise.asDiagonal();
+  for (int c = 0; c < 3; ++c) {
+    Eigen::VectorXd level = Eigen::VectorXd::Zero(3 * P);
+    for (int d = 0; d < 3; ++d) {
+      level += level_(d, c) * inverse.middleCols(d * P, P).rowwise().sum();
+    }
+    by_amplitude.middleCols(c * P, P).colwise() -= level;
+  }
+  by_amplitude.diagonal().array() += 1.0;
+  information(n, n) =
+      0.5 * by_amplitude.cwiseProduct(by_amplitude.transpose()).sum();
+  return information;
+}
+
 Eigen::VectorXd MarginalLikelihood::LightVariance(
     const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
     double log_amplitude, const LightMode& mode) const {

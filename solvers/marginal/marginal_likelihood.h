@@ -67,6 +67,18 @@ class MarginalLikelihood {
                          double tolerance, LightMode* mode,
                          MarginalGradient* gradient) const;
 
+  // Gauss-Newton Hessian [n + 1][n + 1] of the cost by n parameters and, last,
+  // by log amplitude, the light profiled out:
+  //   G^T A^-1 G,  A = D + J K J^T,  G = d log E / d parameters [3 * points][n]
+  // with the light held at its mode. Of the log determinant the amplitude alone
+  // has its part in it, the Fisher information tr((A^-1 J K1 J^T)^2) / 2, K1
+  // what the amplitude scales. Positive semidefinite. Empty where A is not
+  // positive definite.
+  Eigen::MatrixXd Information(const std::array<RowMatrix, 3>& matrices,
+                              const Eigen::VectorXd& noise,
+                              double log_amplitude, const LightMode& mode,
+                              const RowMatrix& G) const;
+
   // sigma^2 and what the map's coarse texels cannot hold: light inside a texel
   // shows where a lobe changes within it,
   //   sigma^2 + v / E_p^2 sum_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,

@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace ibrdf {
@@ -49,7 +50,9 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
   const Eigen::VectorXd lobes = LobesOf(y);
   std::vector<double> by_lobes;
   // A trial that a line search turns down must not move the mode's start.
-  LightMode mode = *mode_;
+  const bool tried =
+      !trial_.empty() && std::equal(trial_.begin(), trial_.end(), y);
+  LightMode mode = tried ? trial_mode_ : *mode_;
   const MarginalValue value = reflectance_->Evaluate(
       lobes.data(), noise_, LogAmplitudeOf(y), mode_tolerance_, &mode,
       gradient != nullptr ? &by_lobes : nullptr);
@@ -59,7 +62,10 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
   Eigen::VectorXd wall = Eigen::VectorXd::Zero(n);
   *cost = value.cost + 0.5 * whitened.squaredNorm() +
           prior_->WallCost(lobes, &wall);
-  if (gradient != nullptr) {
+  if (gradient == nullptr) {
+    trial_.assign(y, y + n + 1);
+    trial_mode_ = std::move(mode);
+  } else {
     *mode_ = std::move(mode);
     wall += Eigen::Map<const Eigen::VectorXd>(by_lobes.data(), n);
     Eigen::Map<Eigen::VectorXd> out(gradient, n + 1);
@@ -69,6 +75,21 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
     out[n] += log_amplitude_std_ * by_lobes[n];
   }
   return true;
+}
+
+Eigen::MatrixXd MarginalObjective::Information(const double* y) const {
+  const Eigen::Index n = prior_->num_parameters();
+  const Eigen::VectorXd lobes = LobesOf(y);
+  Eigen::MatrixXd by_lobes = reflectance_->Information(
+      lobes.data(), noise_, LogAmplitudeOf(y), *mode_);
+  if (by_lobes.size() == 0 || !by_lobes.allFinite()) return {};
+  prior_->AddWallInformation(lobes, &by_lobes);
+  // Both sides by the whitening, whose last row is the amplitude's.
+  Eigen::MatrixXd whitening = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  whitening.topLeftCorner(n, n) = prior_->factor.triangularView<Eigen::Lower>();
+  whitening(n, n) = log_amplitude_std_;
+  return Eigen::MatrixXd::Identity(n + 1, n + 1) +
+         whitening.transpose() * by_lobes * whitening;
 }
 
 }  // namespace ibrdf

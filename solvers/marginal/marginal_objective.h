@@ -13,12 +13,13 @@ namespace ibrdf {
 // -log posterior of a reflectance, in coordinates in which the prior is
 // N(0, I): y [num_parameters + 1], lobes = mean + factor y, then
 // log amplitude / log_amplitude_std. The light's mode of the last point with a
-// gradient is kept as the next one's start.
+// gradient is kept as the next one's start, and that of the last point without
+// one for a gradient there.
 class MarginalObjective final : public ceres::FirstOrderFunction {
  public:
   // The light's mode is taken as found where a step gains less, nats:
   // derivatives are then good to its root.
-  static constexpr double kModeTolerance = 1e-3;
+  static constexpr double kModeTolerance = 1e-6;
 
   // All must outlive *this.
   MarginalObjective(const MarginalReflectance* reflectance,
@@ -28,6 +29,11 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
 
   int NumParameters() const override;
   bool Evaluate(const double* y, double* cost, double* gradient) const override;
+
+  // Gauss-Newton Hessian [NumParameters()]^2 at y, where Evaluate with a
+  // gradient was called last: prior, wall and MarginalReflectance::Information.
+  // Positive definite; empty where there is none.
+  Eigen::MatrixXd Information(const double* y) const;
 
   Eigen::VectorXd LobesOf(const double* y) const;
   double LogAmplitudeOf(const double* y) const;
@@ -43,6 +49,8 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   const Eigen::VectorXd noise_;
   LightMode* mode_;
   const double mode_tolerance_;
+  mutable std::vector<double> trial_;  // of the last evaluation, no gradient
+  mutable LightMode trial_mode_;
   mutable MarginalValue last_value_;
 };
 

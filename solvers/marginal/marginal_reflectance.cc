@@ -138,4 +138,68 @@ MarginalValue MarginalReflectance::Evaluate(
   return value;
 }
 
+RowMatrix MarginalReflectance::LogRadianceJacobian(
+    const double* parameters, const std::vector<float>& fields,
+    const LightMode& mode) const {
+  const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
+  const int num_fields = num_lobes * (1 + size);
+  const Eigen::Index t = likelihood_->num_texels(), P = cells_.num_cells();
+  const size_t nodes = lobes_->grid_shape().num_nodes();
+  std::vector<const float*> field(num_fields);
+  for (int i = 0; i < num_fields; ++i) field[i] = &fields[i * nodes];
+  // The level of the light cancels in the ratios below.
+  const double highest = mode.l.maxCoeff();
+  std::vector<float> map(3 * t);
+  for (Eigen::Index i = 0; i < t; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      map[3 * i + c] =
+          static_cast<float>(std::exp(mode.l[c * t + i] - highest));
+    }
+  }
+  std::vector<float> by_point(size_t{3} * cells_.points.size() * num_fields);
+  transport_->RenderLobes(field.data(), num_fields, map.data(),
+                          by_point.data());
+  RowMatrix jacobian = RowMatrix::Zero(3 * P, lobes_->num_parameters());
+  std::vector<double> sum(size_t{3} * num_fields);
+  for (Eigen::Index i = 0; i < P; ++i) {
+    std::fill(sum.begin(), sum.end(), 0.0);
+    for (int p = cells_.first[i]; p < cells_.first[i + 1]; ++p) {
+      const float* out = &by_point[p * sum.size()];
+      for (size_t k = 0; k < sum.size(); ++k) sum[k] += out[k];
+    }
+    for (int c = 0; c < 3; ++c) {
+      double radiance = 0.0;
+      for (int k = 0; k < num_lobes; ++k) {
+        const double* lobe = parameters + k * lobes_->lobe_size();
+        radiance += Colour(lobe[size + c], c) * sum[3 * k * (1 + size) + c];
+      }
+      for (int k = 0; k < num_lobes; ++k) {
+        const double log_colour =
+            parameters[k * lobes_->lobe_size() + size + c];
+        const double share = Colour(log_colour, c) / radiance;
+        const double* of_lobe = &sum[3 * k * (1 + size) + c];
+        double* row = &jacobian(c * P + i, k * lobes_->lobe_size());
+        for (int d = 0; d < size; ++d) row[d] = share * of_lobe[3 * (1 + d)];
+        if (log_colour < LobeModel::kMaxLogColour) {
+          row[size + c] = share * of_lobe[0];
+        }
+      }
+    }
+  }
+  return jacobian;
+}
+
+Eigen::MatrixXd MarginalReflectance::Information(const double* parameters,
+                                                 const Eigen::VectorXd& noise,
+                                                 double log_amplitude,
+                                                 const LightMode& mode) const {
+  std::vector<float> fields;
+  lobes_->Tabulate(parameters, true, &fields);
+  const RowMatrix G = LogRadianceJacobian(parameters, fields, mode);
+  if (!G.allFinite()) return {};
+  return likelihood_->Information(
+      Coloured(parameters, ShapeMatrices(fields, 1 + lobes_->code_size())),
+      noise, log_amplitude, mode, G);
+}
+
 }  // namespace ibrdf

@@ -1,5 +1,7 @@
 // The marginal likelihood as a function of lobes.
 #pragma once
+#include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -41,12 +43,22 @@ class MarginalReflectance {
                          double log_amplitude, double tolerance,
                          LightMode* mode, std::vector<double>* gradient) const;
 
+  // As MarginalLikelihood::Information at the mode of these parameters.
+  Eigen::MatrixXd Information(const double* parameters,
+                              const Eigen::VectorXd& noise,
+                              double log_amplitude,
+                              const LightMode& mode) const;
+
   // The matrices T_c of a reflectance.
   std::array<RowMatrix, 3> Matrices(const double* parameters) const;
 
  private:
   using FloatMatrix =
       Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  // d log E / d parameters [3 * cells][num_parameters], the light held.
+  RowMatrix LogRadianceJacobian(const double* parameters,
+                                const std::vector<float>& fields,
+                                const LightMode& mode) const;
   // Of each lobe's shape, the first of its `stride` fields.
   std::vector<FloatMatrix> ShapeMatrices(const std::vector<float>& fields,
                                          int stride) const;

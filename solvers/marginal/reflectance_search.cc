@@ -1,7 +1,5 @@
 #include "solvers/marginal/reflectance_search.h"
 
-#include <ceres/gradient_problem.h>
-#include <ceres/gradient_problem_solver.h>
 #include <glog/logging.h>
 
 #include <Eigen/Dense>
@@ -12,8 +10,8 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "solvers/conditioning.h"
+#include "solvers/marginal/marginal_descent.h"
 #include "solvers/marginal/marginal_objective.h"
-#include "solvers/stop_callback.h"
 
 namespace ibrdf {
 namespace {
@@ -23,17 +21,6 @@ constexpr double kRankingTolerance = 0.5;
 // Standard deviation of log radiance with which a first mode is sought, from
 // which the noise of the coarse map follows.
 constexpr double kFirstSigma = 0.15;
-// Of a refinement, relative: a twentieth of a nat in a thousand.
-constexpr double kFunctionTolerance = 5e-5;
-// Step of the differences of gradients, in prior standard deviations, and how
-// well the light's mode must be known there, nats: an error of its root over
-// the step is the Hessian's.
-constexpr double kHessianStep = 0.02;
-constexpr double kHessianModeTolerance = 1e-7;
-// Least precision of a posterior, in the prior's: the Laplacian's likelihood is
-// not concave everywhere, and an end need not be a minimum to the last digit.
-constexpr double kLeastPrecision = 0.25;
-
 // A search at one resolution.
 class Level {
  public:
@@ -61,11 +48,10 @@ class Level {
     return likelihood.NoiseVariance(matrices, options_.sigma, *mode);
   }
 
-  MarginalObjective Objective(
-      const Eigen::VectorXd& noise, LightMode* mode,
-      double mode_tolerance = MarginalObjective::kModeTolerance) const {
+  MarginalObjective Objective(const Eigen::VectorXd& noise,
+                              LightMode* mode) const {
     return MarginalObjective(&reflectance_, &prior_, options_.log_amplitude_std,
-                             noise, mode, mode_tolerance);
+                             noise, mode);
   }
 
   // -log posterior at amplitude 1; infinite where it has none.
@@ -94,68 +80,31 @@ class Level {
     End end;
     end.noise =
         NoiseOf(reflectance_.Matrices(lobes.data()), log_amplitude, &end.mode);
-    // Owned by the problem, which must not outlive the mode.
-    auto* objective =
-        new MarginalObjective(&reflectance_, &prior_,
-                              options_.log_amplitude_std, end.noise, &end.mode);
-    const ceres::GradientProblem problem(objective);
-    end.y = objective->Whitened(lobes, log_amplitude);
-    // Finds the light before the first line search needs it.
-    std::vector<double> gradient(end.y.size());
-    double first = 0.0;
-    if (!objective->Evaluate(end.y.data(), &first, gradient.data())) return end;
-    ceres::GradientProblemSolver::Options o;
-    o.line_search_direction_type = ceres::BFGS;
-    o.max_num_iterations = iterations;
-    o.function_tolerance = kFunctionTolerance;
-    o.logging_type = ceres::SILENT;
-    StopCallback stop(options_.should_stop);
-    o.callbacks.push_back(&stop);
-    ceres::GradientProblemSolver::Summary summary;
-    ceres::Solve(o, problem, end.y.data(), &summary);
-    end.ok = objective->Evaluate(end.y.data(), &end.cost, gradient.data());
-    end.value = objective->last_value();
+    const MarginalObjective objective = Objective(end.noise, &end.mode);
+    end.y = objective.Whitened(lobes, log_amplitude);
+    MarginalDescentOptions o;
+    o.max_iterations = iterations;
+    o.should_stop = options_.should_stop;
+    const MarginalDescent descent = Descend(objective, o, &end.y);
+    end.ok = descent.ok;
+    end.cost = descent.cost;
+    end.value = objective.last_value();
     return end;
   }
 
-  // Inverse of the Hessian at y by central differences of gradients, mapped to
-  // lobe parameters. Empty where time ran out.
-  Eigen::MatrixXd Covariance(const End& end) const {
-    const auto n = static_cast<Eigen::Index>(end.y.size());
-    Eigen::MatrixXd hessian(n, n);
-    std::vector<char> done(n, 0);
-    ParallelFor(n, options_.num_threads, [&](int64_t i, int) {
-      if (options_.should_stop && options_.should_stop()) return;
-      Eigen::VectorXd side[2];
-      for (int s = 0; s < 2; ++s) {
-        std::vector<double> y = end.y;
-        y[i] += s == 0 ? kHessianStep : -kHessianStep;
-        LightMode at = end.mode;
-        const MarginalObjective objective =
-            Objective(end.noise, &at, kHessianModeTolerance);
-        double cost = 0.0;
-        side[s].resize(n);
-        if (!objective.Evaluate(y.data(), &cost, side[s].data())) return;
-      }
-      hessian.col(i) = (side[0] - side[1]) / (2 * kHessianStep);
-      done[i] = 1;
-    });
-    if (std::find(done.begin(), done.end(), 0) != done.end()) return {};
-    const Eigen::MatrixXd symmetric = 0.5 * (hessian + hessian.transpose());
-    VLOG(1) << "marginal posterior: condition of the Hessian, scaled, "
-            << ScaledCondition(symmetric);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);
-    if (eigen.info() != Eigen::Success) return {};
-    const Eigen::Index lobes = prior_.num_parameters();
-    const Eigen::MatrixXd inverse = (eigen.eigenvectors() *
-                                     eigen.eigenvalues()
-                                         .cwiseMax(kLeastPrecision)
-                                         .cwiseInverse()
-                                         .asDiagonal() *
-                                     eigen.eigenvectors().transpose())
-                                        .topLeftCorner(lobes, lobes);
+  // Laplace's, of the lobe parameters, by the Gauss-Newton Hessian; empty where
+  // there is none.
+  Eigen::MatrixXd Covariance(End* end) const {
+    const Eigen::MatrixXd information =
+        Objective(end->noise, &end->mode).Information(end->y.data());
+    if (information.size() == 0) return {};
+    VLOG(1) << "marginal posterior: condition of the information, scaled, "
+            << ScaledCondition(information);
+    const Eigen::Index n = information.rows();
+    const Eigen::MatrixXd inverse =
+        information.llt().solve(Eigen::MatrixXd::Identity(n, n));
     const Eigen::MatrixXd factor = prior_.factor.triangularView<Eigen::Lower>();
-    return factor * inverse * factor.transpose();
+    return factor * inverse.topLeftCorner(n - 1, n - 1) * factor.transpose();
   }
 
  private:
@@ -232,8 +181,8 @@ class Search {
     result.cost = best_.cost;
     result.misfit = best_.value.misfit;
     result.amplitude = std::exp(best_candidate_.log_amplitude);
-    if (options_.covariance && !Stopped()) {
-      result.covariance = best_level_->Covariance(best_);
+    if (options_.covariance) {
+      result.covariance = best_level_->Covariance(&best_);
     }
     const MarginalReflectance& reflectance = best_level_->reflectance();
     result.map_width = reflectance.resolution().map_width;

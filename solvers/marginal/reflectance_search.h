@@ -23,13 +23,13 @@ struct ReflectanceSearchOptions {
   MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}, 20, 56};
   int kept = 20;
   int starts = 4;              // that are refined at the coarse resolution
-  int coarse_iterations = 20;  // of BFGS, each start
+  int coarse_iterations = 12;  // each start
   // Of those, at most so many are finished at the fine resolution: the ones
   // whose costs there come within the margin, nats, of the lowest. Costs of two
   // ends differ by some ten nats from one resolution to the next.
   int finalists = 3;
   double margin = 12.0;
-  int fine_iterations = 30;
+  int fine_iterations = 20;
   // Standard deviation of log radiance between model and image, of a cell. Not
   // the pixels' noise, which a cell averages out, but what no lobes of the
   // model can render: were it free to fall to the noise, light and reflectance
@@ -65,8 +65,8 @@ struct ReflectanceSearchResult {
   double amplitude = 0.0;  // of the light's process, times its variances
   // By cost: the refined ones, then the others by their first cost.
   std::vector<TriedMaterial> tried;
-  // Of the parameters (Laplace); empty where it was not asked for, time ran
-  // out, or the end is no minimum.
+  // Of the parameters (Laplace, by the Gauss-Newton Hessian); empty where it was
+  // not asked for.
   Eigen::MatrixXd covariance;
   // Most probable log radiance and its standard deviation given the
   // reflectance, [3][H W] of the resolution.

@@ -121,8 +121,8 @@ TEST(Derivatives, JointObjective) {
 TEST(Derivatives, MarginalObjective) {
   ErrorTable table;
   StudyMarginal(TinyModel(3), Few(10), &table);
-  // The objective's mode is found to a thousandth of a nat.
-  ExpectWithin(table, kObjective, {{"objective", 2e-2}});
+  // The objective's mode is found to a millionth of a nat.
+  ExpectWithin(table, kObjective, {{"objective", 1e-3}});
 }
 
 }  // namespace

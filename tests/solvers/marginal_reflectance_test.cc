@@ -7,6 +7,7 @@
 
 #include "solvers/costs/material_prior_cost.h"
 #include "solvers/known_light_search.h"
+#include "solvers/marginal/marginal_descent.h"
 #include "solvers/marginal/marginal_objective.h"
 #include "solvers/marginal/reflectance_search.h"
 #include "solvers/trainer/material_lobes.h"
@@ -122,6 +123,153 @@ TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
   }
 }
 
+// G^T A^-1 G with G by differences of log E under the mode's light and A put
+// together densely. A clamped colour and a code beyond the ball among them.
+TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
+  const MarginalReflectance reflectance(model_, 2, points_, radiance_,
+                                        LightProcess(), resolution_, 1);
+  const int P = reflectance.cells().num_cells(), t = 128;
+  Eigen::VectorXd noise(3 * P);
+  for (int i = 0; i < 3 * P; ++i) noise[i] = 0.002 + 1e-4 * (i % 7);
+  const double log_amplitude = 0.3;
+  const LightProcess process;
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  for (const bool extreme : {false, true}) {
+    std::vector<double> x = truth_;
+    if (extreme) {
+      x[4] = LobeModel::kMaxLogColour + 5.0;
+      x[7] = -1.4;
+      x[12] = -40.0;
+    }
+    LightMode mode;
+    ASSERT_TRUE(
+        reflectance
+            .Evaluate(x.data(), noise, log_amplitude, 1e-6, &mode, nullptr)
+            .ok);
+    const Eigen::VectorXd L = (mode.l.array() + mode.level).exp();
+    const auto radiance = [&](const std::vector<double>& at) {
+      const std::array<RowMatrix, 3> T = reflectance.Matrices(at.data());
+      Eigen::VectorXd E(3 * P);
+      for (int c = 0; c < 3; ++c) {
+        E.segment(c * P, P) = T[c] * L.segment(c * t, t);
+      }
+      return E;
+    };
+    RowMatrix G(3 * P, 14);
+    for (int i = 0; i < 14; ++i) {
+      std::vector<double> up = x, down = x;
+      up[i] += 0.01;
+      down[i] -= 0.01;
+      G.col(i) =
+          (radiance(up).array().log() - radiance(down).array().log()) / 0.02;
+    }
+    const std::array<RowMatrix, 3> T = reflectance.Matrices(x.data());
+    const Eigen::VectorXd E = radiance(x);
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * P, 3 * t);
+    Eigen::MatrixXd K1(3 * t, 3 * t), K2(3 * t, 3 * t);
+    const RowMatrix C = LightCorrelation(8, 16, process.correlation_degrees);
+    for (int c = 0; c < 3; ++c) {
+      J.block(c * P, c * t, P, t) =
+          E.segment(c * P, P).cwiseInverse().asDiagonal() * T[c] *
+          L.segment(c * t, t).asDiagonal();
+      for (int d = 0; d < 3; ++d) {
+        K1.block(c * t, d * t, t, t) =
+            std::exp(log_amplitude) * process.Local()(c, d) * C;
+        K2.block(c * t, d * t, t, t).setConstant(process.Level()(c, d));
+      }
+    }
+    const Eigen::MatrixXd A1 = J * K1 * J.transpose();
+    Eigen::MatrixXd A = A1 + J * K2 * J.transpose();
+    A.diagonal() += noise;
+    const Eigen::LLT<Eigen::MatrixXd> llt(A);
+    const Eigen::MatrixXd expected = G.transpose() * llt.solve(G);
+    const Eigen::MatrixXd X = llt.solve(A1);
+    const Eigen::MatrixXd found =
+        reflectance.Information(x.data(), noise, log_amplitude, mode);
+    ASSERT_EQ(15, found.rows());
+    // Tables and sums of the renderer are float.
+    EXPECT_LT((found.topLeftCorner(14, 14) - expected).norm(),
+              5e-3 * expected.norm());
+    EXPECT_NEAR(0.5 * (X * X).trace(), found(14, 14), 1e-3 * found(14, 14));
+    EXPECT_EQ(0.0, found.row(14).head(14).norm());
+    if (extreme) {
+      EXPECT_EQ(0.0, found.row(4).norm());
+    }
+
+    // Of the objective: the prior whitened, and the wall of that code.
+    const MarginalObjective objective(&reflectance, &prior, 0.7, noise, &mode);
+    const std::vector<double> y = objective.Whitened(
+        Eigen::Map<const Eigen::VectorXd>(x.data(), 14), log_amplitude);
+    Eigen::MatrixXd rest = objective.Information(y.data());
+    ASSERT_EQ(15, rest.rows());
+    Eigen::MatrixXd whitening = Eigen::MatrixXd::Zero(15, 15);
+    whitening.topLeftCorner(14, 14) = prior.factor;
+    whitening(14, 14) = 0.7;
+    rest -= whitening.transpose() * found * whitening;
+    rest -= Eigen::MatrixXd::Identity(15, 15);
+    Eigen::VectorXd wall = Eigen::VectorXd::Zero(14);
+    if (extreme) {
+      wall.segment(7, 4) =
+          prior.wall *
+          Eigen::Map<const Eigen::VectorXd>(x.data() + 7, 4).normalized();
+    }
+    const Eigen::VectorXd whitened = prior.factor.transpose() * wall;
+    EXPECT_LT(
+        (rest.topLeftCorner(14, 14) - whitened * whitened.transpose()).norm(),
+        1e-6 * (1.0 + found.norm()));
+  }
+}
+
+// Where it ends, a step of Newton's along the information gains next to
+// nothing, and no start, however far out, raises the cost.
+TEST_F(MarginalReflectanceTest, DescentEndsWhereNewtonGainsNothing) {
+  const MarginalReflectance reflectance(model_, 2, points_, radiance_,
+                                        LightProcess(), resolution_, 1);
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  const Eigen::VectorXd noise =
+      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
+  for (const double away : {0.3, 4.0}) {
+    LightMode mode;
+    const MarginalObjective objective(&reflectance, &prior, 0.7, noise, &mode);
+    std::vector<double> y(15);
+    for (int i = 0; i < 15; ++i) y[i] = away * std::cos(3.0 * i);
+    std::vector<double> gradient(15);
+    double first = 0.0;
+    ASSERT_TRUE(objective.Evaluate(y.data(), &first, gradient.data()));
+    MarginalDescentOptions options;
+    options.max_iterations = 60;
+    const std::vector<double> start = y;
+    const MarginalDescent descent = Descend(objective, options, &y);
+    ASSERT_TRUE(descent.ok);
+    EXPECT_LT(descent.iterations, 60);
+    EXPECT_LT(descent.cost, first - 1.0);
+    double cost = 0.0;
+    ASSERT_TRUE(objective.Evaluate(y.data(), &cost, gradient.data()));
+    EXPECT_NEAR(cost, descent.cost, 1e-4);
+    const Eigen::Map<const Eigen::VectorXd> g(gradient.data(), 15);
+    EXPECT_LT(0.5 * g.dot(objective.Information(y.data()).llt().solve(g)), 0.2);
+    // One step alone lowers it, and the others lower it further.
+    options.max_iterations = 1;
+    std::vector<double> one = start;
+    LightMode cold;
+    const MarginalObjective again(&reflectance, &prior, 0.7, noise, &cold);
+    const MarginalDescent step = Descend(again, options, &one);
+    EXPECT_EQ(1, step.iterations);
+    EXPECT_LE(descent.cost, step.cost);
+    EXPECT_LT(step.cost, first);
+  }
+  // Stopped at once it is where it was.
+  LightMode mode;
+  const MarginalObjective objective(&reflectance, &prior, 0.7, noise, &mode);
+  std::vector<double> y(15, 0.1);
+  MarginalDescentOptions options;
+  options.should_stop = [] { return true; };
+  const MarginalDescent stopped = Descend(objective, options, &y);
+  EXPECT_TRUE(stopped.ok);
+  EXPECT_EQ(0, stopped.iterations);
+  EXPECT_EQ(std::vector<double>(15, 0.1), y);
+}
+
 TEST_F(MarginalReflectanceTest, SearchLowersTheCostWhateverTheThreads) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   ReflectanceSearchOptions options = Options();
@@ -188,7 +336,7 @@ TEST_F(MarginalReflectanceTest, StoppedSearchIsWhole) {
       SearchReflectance(model_, prior, points_, radiance_, options);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_EQ(14u, found->parameters.size());
-  EXPECT_EQ(0, found->covariance.size());
+  EXPECT_EQ(14, found->covariance.rows());
 }
 
 TEST_F(MarginalReflectanceTest, ImageWithoutAUsablePixelIsNamed) {

@@ -1,0 +1,221 @@
+// Is the truth what the joint posterior deems probable? For problems that give
+// it: the cost of what the search finds beside that of the two lobes that come
+// nearest to the true table, and where a descent from those ends.
+#include <glog/logging.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "ibrdf/metrics/brdf_metrics.h"
+#include "io/problem_file.h"
+#include "solvers/level_gauge.h"
+#include "solvers/lobe_table_fit.h"
+#include "solvers/marginal/marginal_descent.h"
+#include "solvers/marginal/reflectance_search.h"
+#include "solvers/solve_problem.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kDescentIterations = 40;
+// Factors of the noise that light inside texels makes, at which the likelihood
+// is taken.
+constexpr std::array<double, 6> kTexelNoise = {2.0, 1.0, 0.5, 0.25, 0.1, 0.0};
+
+// Its search's finest resolution, its truth, and the metric.
+class EvidenceStudy {
+ public:
+  EvidenceStudy(std::string name, const InverseProblem& problem,
+                const Truth& truth, int cells_across, bool texel_noise)
+      : name_(std::move(name)),
+        problem_(problem),
+        truth_(truth),
+        prior_(JointMaterialPrior(problem.model, problem.lobes,
+                                  problem.prior_sigma)),
+        lobes_(problem.model, problem.lobes, problem.transport.grid,
+               problem.num_threads),
+        gauge_(problem.model, prior_, problem.num_threads),
+        texel_noise_(texel_noise) {
+    options_.num_threads = problem.num_threads;
+    options_.covariance = false;
+    options_.screen.visibility = options_.coarse.visibility =
+        options_.fine.visibility = problem.transport.visibility;
+    if (cells_across > 0) {
+      options_.fine.cells.cells_across = cells_across;
+      options_.fine.map_width = 2 * cells_across;
+      options_.fine.map_height = cells_across;
+    }
+    for (const ShadingPoint& point : problem.points) {
+      for (int c = 0; c < 3; ++c) {
+        radiance_.push_back(problem.image.rgb[size_t{3} * point.pixel + c]);
+      }
+    }
+  }
+
+  Status Run() const {
+    LobeTableFitOptions fit_options;
+    fit_options.lobes = problem_.lobes;
+    fit_options.num_threads = problem_.num_threads;
+    const StatusOr<LobeTableFit> fit =
+        LobeTableFitter(problem_.model).Fit(truth_.brdf, fit_options);
+    if (!fit.ok()) return fit.status();
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+        problem_.model, prior_, problem_.points, radiance_, options_);
+    if (!found.ok()) return found.status();
+    const double seconds =
+        std::chrono::duration<double>(Clock::now() - start).count();
+    const MarginalReflectance fine(problem_.model, problem_.lobes,
+                                   problem_.points, radiance_, options_.process,
+                                   options_.fine, problem_.num_threads);
+    const auto vector = [](const std::vector<double>& v) {
+      return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+          v.data(), static_cast<Eigen::Index>(v.size())));
+    };
+    std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
+                found->start.c_str());
+    Look(fine, "found", vector(found->parameters), std::log(found->amplitude),
+         0);
+    // The prior tells lobes apart: the order that it prefers.
+    std::vector<double> nearest = fit->parameters;
+    gauge_.Fix(nearest.data());
+    std::vector<double> turned = nearest;
+    std::rotate(turned.begin(), turned.end() - lobes_.lobe_size(),
+                turned.end());
+    if (prior_.Cost(vector(turned), nullptr) <
+        prior_.Cost(vector(nearest), nullptr)) {
+      nearest = turned;
+    }
+    Look(fine, "truth", vector(nearest), 0.0, 0);
+    Look(fine, "from truth", vector(nearest), 0.0, kDescentIterations);
+    return OkStatus();
+  }
+
+ private:
+  // Descends, then takes the noise anew, so that all costs compare.
+  void Look(const MarginalReflectance& fine, const char* what,
+            Eigen::VectorXd lobes, double log_amplitude, int iterations) const {
+    for (const int steps : {iterations, 0}) {
+      LightMode mode;
+      const std::array<RowMatrix, 3> matrices = fine.Matrices(lobes.data());
+      const Eigen::VectorXd noise =
+          NoiseOf(fine, matrices, log_amplitude, &mode);
+      const MarginalObjective objective(
+          &fine, &prior_, options_.log_amplitude_std, noise, &mode);
+      std::vector<double> y = objective.Whitened(lobes, log_amplitude);
+      MarginalDescentOptions o;
+      o.max_iterations = steps;
+      const MarginalDescent descent = Descend(objective, o, &y);
+      if (!descent.ok) {
+        std::printf("  %-10s no cost\n", what);
+        return;
+      }
+      lobes = objective.LobesOf(y.data());
+      log_amplitude = objective.LogAmplitudeOf(y.data());
+      if (steps > 0) continue;
+      const MarginalValue& value = objective.last_value();
+      std::vector<double> parameters(lobes.data(), lobes.data() + lobes.size());
+      gauge_.Fix(parameters.data());
+      const StatusOr<BrdfMetrics> metrics =
+          CompareBrdfs(lobes_.ToMerl(parameters.data()), truth_.brdf);
+      std::printf(
+          "  %-10s cost %8.1f = likelihood %8.1f + prior %5.1f  misfit %.4f  "
+          "noise %.4f  BRDF aligned %.3f\n",
+          what, descent.cost, value.cost, descent.cost - value.cost,
+          value.misfit, noise.cwiseSqrt().mean(),
+          metrics.ok() ? metrics->log_rmse_aligned : std::nan(""));
+      if (texel_noise_) SweepTexelNoise(fine, lobes, log_amplitude, noise);
+      return;
+    }
+  }
+
+  // As the search takes it.
+  Eigen::VectorXd NoiseOf(const MarginalReflectance& fine,
+                          const std::array<RowMatrix, 3>& matrices,
+                          double log_amplitude, LightMode* mode) const {
+    constexpr double kFirstVariance = 0.15 * 0.15;
+    constexpr double kTolerance = 0.5;
+    const Eigen::Index n =
+        3 * static_cast<Eigen::Index>(fine.cells().num_cells());
+    fine.likelihood().Evaluate(matrices,
+                               Eigen::VectorXd::Constant(n, kFirstVariance),
+                               log_amplitude, kTolerance, mode, nullptr);
+    return fine.likelihood().NoiseVariance(matrices, options_.sigma, *mode);
+  }
+
+  void SweepTexelNoise(const MarginalReflectance& fine,
+                       const Eigen::VectorXd& lobes, double log_amplitude,
+                       const Eigen::VectorXd& noise) const {
+    const std::array<RowMatrix, 3> matrices = fine.Matrices(lobes.data());
+    const double own = options_.sigma * options_.sigma;
+    std::printf("    texel noise times:");
+    for (const double factor : kTexelNoise) {
+      LightMode mode;
+      const MarginalValue value = fine.likelihood().Evaluate(
+          matrices, (own + factor * (noise.array() - own)).matrix(),
+          log_amplitude, MarginalObjective::kModeTolerance, &mode, nullptr);
+      std::printf("  %.2f %.1f", factor, value.cost);
+    }
+    std::printf("\n");
+  }
+
+  const std::string name_;
+  const InverseProblem& problem_;
+  const Truth& truth_;
+  const MaterialPrior prior_;
+  const LobeModel lobes_;
+  const LevelGauge gauge_;
+  const bool texel_noise_;
+  ReflectanceSearchOptions options_;
+  std::vector<double> radiance_;
+};
+
+Status Study(const std::string& path, int cells_across, bool texel_noise,
+             int num_threads) {
+  const StatusOr<Problem> problem = ReadProblem(path, {});
+  if (!problem.ok()) return problem.status();
+  const StatusOr<InverseProblem> inverse =
+      LoadInverseProblem(*problem, 1, num_threads);
+  if (!inverse.ok()) return inverse.status();
+  const StatusOr<Truth> truth =
+      LoadTruth(problem->truth, inverse->map_width, inverse->map_height);
+  if (!truth.ok()) return truth.status();
+  if (truth->brdf.raw.empty()) {
+    return InvalidInput(path, "truth.brdf is needed here");
+  }
+  return EvidenceStudy(path, *inverse, *truth, cells_across, texel_noise).Run();
+}
+
+}  // namespace
+}  // namespace ibrdf
+
+int main(int argc, char** argv) {
+  google::InitGoogleLogging(argv[0]);
+  FLAGS_logtostderr = true;
+  CLI::App app("Costs of the truth and of what a search finds");
+  std::vector<std::string> problems;
+  int cells = 0, threads = 0;
+  bool texel_noise = false;
+  app.add_option("problems", problems, "joint problems with truth.brdf")
+      ->required();
+  app.add_option("--cells", cells,
+                 "cells across and rows of the map, finest resolution");
+  app.add_flag("--texel-noise", texel_noise,
+               "the likelihood at several strengths of light inside texels");
+  app.add_option("--threads", threads, "0: all");
+  CLI11_PARSE(app, argc, argv);
+  for (const std::string& path : problems) {
+    const ibrdf::Status status =
+        ibrdf::Study(path, cells, texel_noise, threads);
+    if (status.ok()) continue;
+    std::fprintf(stderr, "%s\n", status.message().c_str());
+    return status.ExitCode();
+  }
+  return 0;
+}

@@ -1,0 +1,73 @@
+#include "solvers/marginal/marginal_descent.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace ibrdf {
+namespace {
+
+// Of the gain that the slope promises, what a step must bring.
+constexpr double kSufficientGain = 1e-3;
+constexpr double kSmallestStep = 1e-3;
+
+// Newton's direction by the information, or downhill where there is none.
+Eigen::VectorXd Direction(const MarginalObjective& objective,
+                          const std::vector<double>& y,
+                          const Eigen::VectorXd& gradient) {
+  const Eigen::MatrixXd information = objective.Information(y.data());
+  if (information.size() > 0) {
+    const Eigen::LLT<Eigen::MatrixXd> llt(information);
+    if (llt.info() == Eigen::Success) return -llt.solve(gradient);
+  }
+  return -gradient / std::max(1.0, gradient.norm());
+}
+
+}  // namespace
+
+MarginalDescent Descend(const MarginalObjective& objective,
+                        const MarginalDescentOptions& options,
+                        std::vector<double>* y) {
+  MarginalDescent descent;
+  const auto n = static_cast<Eigen::Index>(y->size());
+  Eigen::VectorXd gradient(n);
+  descent.ok = objective.Evaluate(y->data(), &descent.cost, gradient.data());
+  if (!descent.ok) return descent;
+  double longest = 1.0;
+  int small_gains = 0;
+  while (descent.iterations < options.max_iterations && small_gains < 2) {
+    if (options.should_stop && options.should_stop()) break;
+    const Eigen::VectorXd direction = Direction(objective, *y, gradient);
+    const double slope = gradient.dot(direction);
+    if (!(slope < 0.0)) break;
+    std::vector<double> next(n);
+    double cost = 0.0, step = longest;
+    bool lower = false;
+    while (step > kSmallestStep) {
+      Eigen::Map<Eigen::VectorXd>(next.data(), n) =
+          Eigen::Map<const Eigen::VectorXd>(y->data(), n) + step * direction;
+      const bool ok = objective.Evaluate(next.data(), &cost, nullptr);
+      const double gain = descent.cost - cost;
+      lower = ok && gain >= -kSufficientGain * step * slope;
+      if (lower) break;
+      // The lowest point of the parabola through both ends.
+      const double lowest =
+          ok ? 0.5 * step * step * slope / (step * slope + gain) : 0.0;
+      step = std::clamp(lowest, 0.1 * step, 0.5 * step);
+    }
+    if (!lower) break;
+    const double before = descent.cost;
+    Eigen::VectorXd at_next(n);
+    if (!objective.Evaluate(next.data(), &cost, at_next.data())) break;
+    *y = std::move(next);
+    gradient = std::move(at_next);
+    descent.cost = cost;
+    ++descent.iterations;
+    longest = std::min(1.0, 2.0 * step);
+    small_gains = before - cost < options.least_gain ? small_gains + 1 : 0;
+  }
+  return descent;
+}
+
+}  // namespace ibrdf
