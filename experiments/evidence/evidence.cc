@@ -131,6 +131,7 @@ class EvidenceStudy {
           value.misfit, noise.cwiseSqrt().mean(),
           metrics.ok() ? metrics->log_rmse_aligned : std::nan(""));
       if (texel_noise_) SweepTexelNoise(fine, lobes, log_amplitude, noise);
+      std::fflush(stdout);  // one problem takes half a minute
       return;
     }
   }
