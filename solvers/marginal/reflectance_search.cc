@@ -36,15 +36,17 @@ class Level {
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
 
-  // The noise at the mode of a reflectance's matrices; `mode` receives it.
+  // The noise at the mode of a reflectance's matrices, found to `tolerance`
+  // nats; `mode` receives it.
   Eigen::VectorXd NoiseOf(const std::array<RowMatrix, 3>& matrices,
-                          double log_amplitude, LightMode* mode) const {
+                          double log_amplitude, double tolerance,
+                          LightMode* mode) const {
     const MarginalLikelihood& likelihood = reflectance_.likelihood();
     const Eigen::Index n =
         3 * static_cast<Eigen::Index>(reflectance_.cells().num_cells());
     likelihood.Evaluate(matrices,
                         Eigen::VectorXd::Constant(n, kFirstSigma * kFirstSigma),
-                        log_amplitude, kRankingTolerance, mode, nullptr);
+                        log_amplitude, tolerance, mode, nullptr);
     return likelihood.NoiseVariance(matrices, options_.sigma, *mode);
   }
 
@@ -59,7 +61,8 @@ class Level {
     LightMode mode;
     const std::array<RowMatrix, 3> matrices =
         reflectance_.Matrices(lobes.data());
-    const Eigen::VectorXd noise = NoiseOf(matrices, 0.0, &mode);
+    const Eigen::VectorXd noise =
+        NoiseOf(matrices, 0.0, kRankingTolerance, &mode);
     const MarginalValue value = reflectance_.likelihood().Evaluate(
         matrices, noise, 0.0, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
@@ -78,8 +81,8 @@ class Level {
   End Refine(const Eigen::VectorXd& lobes, double log_amplitude,
              int iterations) const {
     End end;
-    end.noise =
-        NoiseOf(reflectance_.Matrices(lobes.data()), log_amplitude, &end.mode);
+    end.noise = NoiseOf(reflectance_.Matrices(lobes.data()), log_amplitude,
+                        MarginalObjective::kModeTolerance, &end.mode);
     const MarginalObjective objective = Objective(end.noise, &end.mode);
     end.y = objective.Whitened(lobes, log_amplitude);
     MarginalDescentOptions o;
