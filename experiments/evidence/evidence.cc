@@ -4,15 +4,18 @@
 #include <glog/logging.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "io/problem_file.h"
+#include "solvers/estimate/image_levels.h"
 #include "solvers/level_gauge.h"
 #include "solvers/lobe_table_fit.h"
 #include "solvers/marginal/marginal_descent.h"
@@ -40,7 +43,8 @@ class EvidenceStudy {
         lobes_(problem.model, problem.lobes, problem.transport.grid,
                problem.num_threads),
         gauge_(problem.model, prior_, problem.num_threads),
-        texel_noise_(texel_noise) {
+        texel_noise_(texel_noise),
+        radiance_(RadianceOf(problem.image, problem.points)) {
     options_.num_threads = problem.num_threads;
     options_.covariance = false;
     options_.screen.visibility = options_.coarse.visibility =
@@ -49,11 +53,6 @@ class EvidenceStudy {
       options_.fine.cells.cells_across = cells_across;
       options_.fine.map_width = 2 * cells_across;
       options_.fine.map_height = cells_across;
-    }
-    for (const ShadingPoint& point : problem.points) {
-      for (int c = 0; c < 3; ++c) {
-        radiance_.push_back(problem.image.rgb[size_t{3} * point.pixel + c]);
-      }
     }
   }
 
@@ -80,8 +79,8 @@ class EvidenceStudy {
     };
     std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
                 found->start.c_str());
-    Look(fine, "found", vector(found->parameters), std::log(found->amplitude),
-         0);
+    Show(fine, "found",
+         {vector(found->parameters), std::log(found->amplitude)});
     // The prior tells lobes apart: the order that it prefers.
     std::vector<double> nearest = fit->parameters;
     gauge_.Fix(nearest.data());
@@ -92,75 +91,78 @@ class EvidenceStudy {
         prior_.Cost(vector(nearest), nullptr)) {
       nearest = turned;
     }
-    Look(fine, "truth", vector(nearest), 0.0, 0);
-    Look(fine, "from truth", vector(nearest), 0.0, kDescentIterations);
+    const Point truth = {vector(nearest), 0.0};
+    Show(fine, "truth", truth);
+    Show(fine, "from truth", DescendFrom(fine, truth, kDescentIterations).end);
     return OkStatus();
   }
 
  private:
-  // Descends, then takes the noise anew, so that all costs compare.
-  void Look(const MarginalReflectance& fine, const char* what,
-            Eigen::VectorXd lobes, double log_amplitude, int iterations) const {
-    for (const int steps : {iterations, 0}) {
-      LightMode mode;
-      const std::array<RowMatrix, 3> matrices = fine.Matrices(lobes.data());
-      const Eigen::VectorXd noise =
-          NoiseOf(fine, matrices, log_amplitude, &mode);
-      const MarginalObjective objective(
-          &fine, &prior_, options_.log_amplitude_std, noise, &mode);
-      std::vector<double> y = objective.Whitened(lobes, log_amplitude);
-      MarginalDescentOptions o;
-      o.max_iterations = steps;
-      const MarginalDescent descent = Descend(objective, o, &y);
-      if (!descent.ok) {
-        std::printf("  %-10s no cost\n", what);
-        return;
-      }
-      lobes = objective.LobesOf(y.data());
-      log_amplitude = objective.LogAmplitudeOf(y.data());
-      if (steps > 0) continue;
-      const MarginalValue& value = objective.last_value();
-      std::vector<double> parameters(lobes.data(), lobes.data() + lobes.size());
-      gauge_.Fix(parameters.data());
-      const StatusOr<BrdfMetrics> metrics =
-          CompareBrdfs(lobes_.ToMerl(parameters.data()), truth_.brdf);
-      std::printf(
-          "  %-10s cost %8.1f = likelihood %8.1f + prior %5.1f  misfit %.4f  "
-          "noise %.4f  BRDF aligned %.3f\n",
-          what, descent.cost, value.cost, descent.cost - value.cost,
-          value.misfit, noise.cwiseSqrt().mean(),
-          metrics.ok() ? metrics->log_rmse_aligned : std::nan(""));
-      if (texel_noise_) SweepTexelNoise(fine, lobes, log_amplitude, noise);
-      std::fflush(stdout);  // one problem takes half a minute
+  struct Point {
+    Eigen::VectorXd lobes;
+    double log_amplitude = 0.0;
+  };
+  struct Descent {
+    MarginalDescent summary;
+    MarginalValue value;
+    Eigen::VectorXd noise;  // taken at the start
+    Point end;
+  };
+  Descent DescendFrom(const MarginalReflectance& fine, const Point& start,
+                      int iterations) const {
+    Descent descent;
+    LightMode mode;
+    descent.noise = fine.likelihood().FindNoise(
+        fine.Matrices(start.lobes.data()), options_.sigma, start.log_amplitude,
+        MarginalObjective::kModeTolerance, &mode);
+    const MarginalObjective objective(
+        &fine, &prior_, options_.log_amplitude_std, descent.noise, &mode);
+    std::vector<double> y =
+        objective.Whitened(start.lobes, start.log_amplitude);
+    MarginalDescentOptions o;
+    o.max_iterations = iterations;
+    descent.summary = Descend(objective, o, &y);
+    descent.value = objective.last_value();
+    descent.end = {objective.LobesOf(y.data()),
+                   objective.LogAmplitudeOf(y.data())};
+    return descent;
+  }
+
+  // With the noise of the point itself, so that all costs compare.
+  void Show(const MarginalReflectance& fine, const char* what,
+            const Point& point) const {
+    const Descent here = DescendFrom(fine, point, 0);
+    if (!here.summary.ok) {
+      std::printf("  %-10s no cost\n", what);
       return;
     }
+    std::vector<double> parameters(point.lobes.data(),
+                                   point.lobes.data() + point.lobes.size());
+    gauge_.Fix(parameters.data());
+    const StatusOr<BrdfMetrics> metrics =
+        CompareBrdfs(lobes_.ToMerl(parameters.data()), truth_.brdf);
+    std::printf(
+        "  %-10s cost %8.1f = likelihood %8.1f + prior %5.1f  misfit %.4f  "
+        "noise %.4f  BRDF aligned %.3f\n",
+        what, here.summary.cost, here.value.cost,
+        here.summary.cost - here.value.cost, here.value.misfit,
+        here.noise.cwiseSqrt().mean(),
+        metrics.ok() ? metrics->log_rmse_aligned : std::nan(""));
+    if (texel_noise_) SweepTexelNoise(fine, point, here.noise);
+    std::fflush(stdout);  // one problem takes half a minute
   }
 
-  // As the search takes it.
-  Eigen::VectorXd NoiseOf(const MarginalReflectance& fine,
-                          const std::array<RowMatrix, 3>& matrices,
-                          double log_amplitude, LightMode* mode) const {
-    constexpr double kFirstVariance = 0.15 * 0.15;
-    constexpr double kTolerance = 0.5;
-    const Eigen::Index n =
-        3 * static_cast<Eigen::Index>(fine.cells().num_cells());
-    fine.likelihood().Evaluate(matrices,
-                               Eigen::VectorXd::Constant(n, kFirstVariance),
-                               log_amplitude, kTolerance, mode, nullptr);
-    return fine.likelihood().NoiseVariance(matrices, options_.sigma, *mode);
-  }
-
-  void SweepTexelNoise(const MarginalReflectance& fine,
-                       const Eigen::VectorXd& lobes, double log_amplitude,
+  void SweepTexelNoise(const MarginalReflectance& fine, const Point& point,
                        const Eigen::VectorXd& noise) const {
-    const std::array<RowMatrix, 3> matrices = fine.Matrices(lobes.data());
+    const std::array<RowMatrix, 3> matrices = fine.Matrices(point.lobes.data());
     const double own = options_.sigma * options_.sigma;
     std::printf("    texel noise times:");
     for (const double factor : kTexelNoise) {
       LightMode mode;
       const MarginalValue value = fine.likelihood().Evaluate(
           matrices, (own + factor * (noise.array() - own)).matrix(),
-          log_amplitude, MarginalObjective::kModeTolerance, &mode, nullptr);
+          point.log_amplitude, MarginalObjective::kModeTolerance, &mode,
+          nullptr);
       std::printf("  %.2f %.1f", factor, value.cost);
     }
     std::printf("\n");
@@ -173,8 +175,8 @@ class EvidenceStudy {
   const LobeModel lobes_;
   const LevelGauge gauge_;
   const bool texel_noise_;
+  const std::vector<double> radiance_;
   ReflectanceSearchOptions options_;
-  std::vector<double> radiance_;
 };
 
 Status Study(const std::string& path, int cells_across, bool texel_noise,

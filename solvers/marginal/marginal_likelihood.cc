@@ -25,6 +25,8 @@ constexpr double kSmallestRadiance = 1e-200;
 constexpr int kMaxHessianSteps = 30;
 constexpr double kNewtonTolerance = 1e-3;
 constexpr double kMotionTolerance = 1e-10;
+// Of FindNoise, log radiance.
+constexpr double kFirstSigma = 0.15;
 // Rows of one task of a product.
 constexpr Eigen::Index kTileRows = 48;
 
@@ -107,6 +109,15 @@ Eigen::VectorXd MarginalLikelihood::NoiseVariance(
     }
   }
   return noise;
+}
+
+Eigen::VectorXd MarginalLikelihood::FindNoise(
+    const std::array<RowMatrix, 3>& matrices, double sigma,
+    double log_amplitude, double tolerance, LightMode* mode) const {
+  const Eigen::VectorXd first =
+      Eigen::VectorXd::Constant(y_.size(), kFirstSigma * kFirstSigma);
+  Evaluate(matrices, first, log_amplitude, tolerance, mode, nullptr);
+  return NoiseVariance(matrices, sigma, *mode);
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Eigen::VectorXd& g) const {

@@ -88,6 +88,12 @@ class MarginalLikelihood {
   Eigen::VectorXd NoiseVariance(const std::array<RowMatrix, 3>& matrices,
                                 double sigma, const LightMode& mode) const;
 
+  // NoiseVariance where no mode is known yet: at the one found, to `tolerance`
+  // nats, with independent deviations of 0.15. `mode` as in Evaluate.
+  Eigen::VectorXd FindNoise(const std::array<RowMatrix, 3>& matrices,
+                            double sigma, double log_amplitude,
+                            double tolerance, LightMode* mode) const;
+
   // The level at which constant light gives the image's mean log radiance.
   double LevelFor(const std::array<RowMatrix, 3>& matrices) const;
 

@@ -18,9 +18,7 @@ namespace {
 
 // Of a ranking's modes, nats: materials differ by tens.
 constexpr double kRankingTolerance = 0.5;
-// Standard deviation of log radiance with which a first mode is sought, from
-// which the noise of the coarse map follows.
-constexpr double kFirstSigma = 0.15;
+
 // A search at one resolution.
 class Level {
  public:
@@ -36,20 +34,6 @@ class Level {
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
 
-  // The noise at the mode of a reflectance's matrices, found to `tolerance`
-  // nats; `mode` receives it.
-  Eigen::VectorXd NoiseOf(const std::array<RowMatrix, 3>& matrices,
-                          double log_amplitude, double tolerance,
-                          LightMode* mode) const {
-    const MarginalLikelihood& likelihood = reflectance_.likelihood();
-    const Eigen::Index n =
-        3 * static_cast<Eigen::Index>(reflectance_.cells().num_cells());
-    likelihood.Evaluate(matrices,
-                        Eigen::VectorXd::Constant(n, kFirstSigma * kFirstSigma),
-                        log_amplitude, tolerance, mode, nullptr);
-    return likelihood.NoiseVariance(matrices, options_.sigma, *mode);
-  }
-
   MarginalObjective Objective(const Eigen::VectorXd& noise,
                               LightMode* mode) const {
     return MarginalObjective(&reflectance_, &prior_, options_.log_amplitude_std,
@@ -61,9 +45,10 @@ class Level {
     LightMode mode;
     const std::array<RowMatrix, 3> matrices =
         reflectance_.Matrices(lobes.data());
-    const Eigen::VectorXd noise =
-        NoiseOf(matrices, 0.0, kRankingTolerance, &mode);
-    const MarginalValue value = reflectance_.likelihood().Evaluate(
+    const MarginalLikelihood& likelihood = reflectance_.likelihood();
+    const Eigen::VectorXd noise = likelihood.FindNoise(
+        matrices, options_.sigma, 0.0, kRankingTolerance, &mode);
+    const MarginalValue value = likelihood.Evaluate(
         matrices, noise, 0.0, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
     *misfit = value.misfit;
@@ -81,8 +66,9 @@ class Level {
   End Refine(const Eigen::VectorXd& lobes, double log_amplitude,
              int iterations) const {
     End end;
-    end.noise = NoiseOf(reflectance_.Matrices(lobes.data()), log_amplitude,
-                        MarginalObjective::kModeTolerance, &end.mode);
+    end.noise = reflectance_.likelihood().FindNoise(
+        reflectance_.Matrices(lobes.data()), options_.sigma, log_amplitude,
+        MarginalObjective::kModeTolerance, &end.mode);
     const MarginalObjective objective = Objective(end.noise, &end.mode);
     end.y = objective.Whitened(lobes, log_amplitude);
     MarginalDescentOptions o;

@@ -65,8 +65,8 @@ struct ReflectanceSearchResult {
   double amplitude = 0.0;  // of the light's process, times its variances
   // By cost: the refined ones, then the others by their first cost.
   std::vector<TriedMaterial> tried;
-  // Of the parameters (Laplace, by the Gauss-Newton Hessian); empty where it was
-  // not asked for.
+  // Of the parameters (Laplace, by the Gauss-Newton Hessian); empty where it
+  // was not asked for.
   Eigen::MatrixXd covariance;
   // Most probable log radiance and its standard deviation given the
   // reflectance, [3][H W] of the resolution.
