@@ -72,15 +72,13 @@ enum class Effect {
 inline constexpr int kNumEffects = 5;
 // Name in problem files, e.g. "sharp_lobes".
 const char* EffectName(Effect effect);
-// Whether this version has it.
-bool EffectAvailable(Effect effect);
 
-// kAuto: the program decides. kAll: every effect that is available. kList: the
+// kAuto: the program decides. kAll: every effect. kList: the
 // listed ones and no other.
 enum class EffectsMode { kAuto, kAll, kNone, kList };
 struct EffectsSpec {
   EffectsMode mode = EffectsMode::kAuto;
-  std::vector<Effect> list;  // each at most once, all available
+  std::vector<Effect> list;  // each at most once
 };
 
 // Of the joint estimate; kAuto: the program decides.

@@ -216,7 +216,8 @@ void ReadIllumination(ConfigContext* context, const ConfigNode* node,
   if (illumination->width % 2 != 0) {
     reader.FailExpected("width", "an even number");
   }
-  ReadChoice(&reader, "prior", {"unet", "process", "none"}, &illumination->prior);
+  ReadChoice(&reader, "prior", {"unet", "process", "none"},
+             &illumination->prior);
   const ConfigNode* known = reader.Find("known");
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {
@@ -247,11 +248,8 @@ void ReadEffects(ConfigContext* context, const ConfigNode* node,
       return;
     }
     const auto effect = static_cast<Effect>(name - names.begin());
-    if (!EffectAvailable(effect)) {
-      context->Fail("effects",
-                    *name + " is not available in this version; leave it out");
-    } else if (std::find(effects->list.begin(), effects->list.end(), effect) !=
-               effects->list.end()) {
+    if (std::find(effects->list.begin(), effects->list.end(), effect) !=
+        effects->list.end()) {
       context->Fail("effects", *name + " is listed twice");
     } else {
       effects->list.push_back(effect);
@@ -328,10 +326,6 @@ const char* EffectName(Effect effect) {
       return "reflectance_map";
   }
   return "";
-}
-
-bool EffectAvailable(Effect effect) {
-  return effect != Effect::kInterreflection;
 }
 
 StatusOr<Problem> ReadProblem(const std::string& path,

@@ -33,9 +33,10 @@ CookTorrance ProbeMaterial(double specular) {
   return brdf;
 }
 
-ShadowWorth Predict(const Scene& scene, const std::vector<ShadingPoint>& points,
-                    const Image* known_map, const BrdfGrid* known_brdf,
-                    const SceneProbeOptions& options) {
+EffectsWorth Predict(const Scene& scene,
+                     const std::vector<ShadingPoint>& points,
+                     const Image* known_map, const BrdfGrid* known_brdf,
+                     const SceneProbeOptions& options) {
   const Image sky = RenderSky(SkyOptions(), kProbeWidth / 2, kProbeWidth);
   const Image* map = known_map != nullptr ? known_map : &sky;
   Image small;
@@ -44,14 +45,18 @@ ShadowWorth Predict(const Scene& scene, const std::vector<ShadingPoint>& points,
     map = &small;
   }
   if (known_brdf != nullptr) {
-    return PredictShadowWorth(scene, points, {{map, known_brdf}}, options);
+    return PredictEffects(scene, points, {{map, known_brdf}}, options);
   }
   const BrdfGrid matte =
       BrdfGrid::FromFunction(ProbeMaterial(0.0).Function(), kProbeGrid);
   const BrdfGrid glossy =
       BrdfGrid::FromFunction(ProbeMaterial(1.0).Function(), kProbeGrid);
-  return PredictShadowWorth(scene, points, {{map, &matte}, {map, &glossy}},
-                            options);
+  return PredictEffects(scene, points, {{map, &matte}, {map, &glossy}},
+                        options);
+}
+
+std::string Bounces(int count) {
+  return std::to_string(count) + (count == 1 ? " bounce" : " bounces");
 }
 
 std::string InWords(const EffectsPlan& plan, EffectsMode mode) {
@@ -60,19 +65,40 @@ std::string InWords(const EffectsPlan& plan, EffectsMode mode) {
       "points some",
       100 * plan.probe.hidden_mean, 100 * plan.probe.shadowed_share);
   const std::string worth = Format(
-      "leaving shadows out would change log radiance by %.4f, mean over the "
-      "image (worth it above %.3f); their rays take about %.1f s",
-      plan.worth.log_error, plan.threshold, plan.worth.seconds);
+      "log radiance, mean over the image, would change by %.4f without "
+      "shadows and by %.4f without light from the object to itself (worth it "
+      "above %.3f)",
+      plan.worth.unshadowed, plan.worth.bounces[0], plan.threshold);
+  const std::string seconds =
+      Format("; rays take about %.1f s for shadows, %.1f s for bounces",
+             plan.worth.shadow_seconds, plan.worth.bounce_seconds);
   const std::string asked = mode == EffectsMode::kAuto ? "" : ", as asked";
-  if (plan.visibility) {
-    return "visibility" + asked + ": " + seen + "; " + worth +
-           "; interreflection is not simulated";
+  const std::string left =
+      mode != EffectsMode::kAuto && plan.error > plan.threshold
+          ? Format("; reflectance and light absorb the %.4f that is left out",
+                   plan.error)
+          : "";
+  std::string simulated = "none";
+  if (plan.visibility) simulated = "visibility";
+  if (plan.bounces > 0) {
+    simulated += ", interreflection (" + Bounces(plan.bounces) + ")";
   }
-  if (mode != EffectsMode::kAuto) {
-    return "none" + asked + ": " + seen + "; " + worth +
-           "; reflectance and light absorb what is left out";
+  return simulated + asked + ": " + seen + "; " + worth +
+         (plan.probe.shadowed_share > 0.0 ? seconds : "") + left;
+}
+
+// The cheapest that leaves no more out than the threshold, of what may be
+// chosen.
+void Choose(bool may_leave_shadows, bool may_bounce, EffectsPlan* plan) {
+  plan->visibility = true;
+  plan->bounces = may_bounce ? kMostBounces : 0;
+  for (int b = plan->bounces; b >= 0; --b) {
+    if (plan->worth.bounces[b] <= plan->threshold) plan->bounces = b;
   }
-  return "none: " + seen + "; " + worth;
+  if (may_leave_shadows && plan->worth.unshadowed <= plan->threshold) {
+    plan->visibility = false;
+    plan->bounces = 0;
+  }
 }
 
 }  // namespace
@@ -85,11 +111,17 @@ StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
   EffectsPlan plan;
   plan.threshold = threshold;
   const EffectsSpec& effects = problem.effects;
+  const bool interreflection = Listed(effects, Effect::kInterreflection);
+  // Where light is bounced it is also blocked.
+  const bool visibility =
+      interreflection || Listed(effects, Effect::kVisibility);
   if (problem.geometry.kind == GeometryKind::kNormals) {
-    if (Listed(effects, Effect::kVisibility)) {
-      return InvalidInput(problem.path + ": effects",
-                          "visibility needs a shape: expected geometry sphere "
-                          "or mesh, found normals");
+    if (visibility) {
+      return InvalidInput(
+          problem.path + ": effects",
+          std::string(interreflection ? "interreflection" : "visibility") +
+              " needs a shape: expected geometry sphere or mesh, found "
+              "normals");
     }
     plan.words =
         "none: a normal map has no positions, so that shadows and "
@@ -110,17 +142,21 @@ StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
   }
   switch (effects.mode) {
     case EffectsMode::kAuto:
-      plan.visibility = plan.worth.log_error > threshold;
+      Choose(true, true, &plan);
       break;
     case EffectsMode::kAll:
       plan.visibility = true;
+      plan.bounces = kMostBounces;
       break;
     case EffectsMode::kNone:
       break;
     case EffectsMode::kList:
-      plan.visibility = Listed(effects, Effect::kVisibility);
+      if (visibility) Choose(false, interreflection, &plan);
+      if (interreflection) plan.bounces = std::max(plan.bounces, 1);
       break;
   }
+  plan.error = plan.visibility ? plan.worth.bounces[plan.bounces]
+                               : plan.worth.unshadowed;
   plan.words = InWords(plan, effects.mode);
   return plan;
 }

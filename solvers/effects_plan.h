@@ -19,11 +19,14 @@ inline constexpr double kReferenceLogError = 0.001;
 
 struct EffectsPlan {
   bool visibility = false;
+  int bounces = 0;  // of light from the object to itself; with visibility alone
   SceneProbe probe;
   // Predicted under the known light and reflectance; where one is unknown,
   // under a sun in a clear sky, and for a matte and a glossy surface.
-  ShadowWorth worth;
+  EffectsWorth worth;
   double threshold = kWorthwhileLogError;
+  // The predicted error of what is simulated.
+  double error = 0.0;
   std::string words;  // for the user
 };
 

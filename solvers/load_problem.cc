@@ -101,6 +101,13 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
     rays.num_threads = num_threads;
     inverse.transport.visibility =
         std::make_shared<Visibility>(*scene, inverse.points, rays);
+    if (inverse.effects.bounces > 0) {
+      SurfaceEmitterOptions emitters =
+          EmittersFor(inverse.points.size(), inverse.effects.bounces);
+      emitters.num_threads = num_threads;
+      inverse.transport.emitters = std::make_shared<SurfaceEmitters>(
+          *scene, inverse.points, inverse.transport.visibility, emitters);
+    }
   }
   return inverse;
 }

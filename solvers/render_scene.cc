@@ -10,6 +10,7 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/light/procedural_sky.h"
 #include "ibrdf/render/reference_renderer.h"
+#include "ibrdf/render/transport.h"
 #include "io/image_file.h"
 #include "io/merl.h"
 #include "io/mesh.h"
@@ -22,6 +23,9 @@ constexpr int kReferenceSamplesPerSide = 2;
 // quality, enough to keep the threads busy.
 constexpr size_t kPointsPerStep = 2048;
 constexpr int kPreviewShadowRows = 128;
+// Whose sight decides where emitters are.
+constexpr size_t kEmitterPoints = 2048;
+constexpr size_t kReferenceEmitterPoints = 8192;
 
 // A quarter of the reference's rings: within 1 % but for mirrors.
 ReferenceOptions QualityOptions(RenderQuality quality, int num_threads) {
@@ -33,6 +37,40 @@ ReferenceOptions QualityOptions(RenderQuality quality, int num_threads) {
     options.far_width = 64;
   }
   return options;
+}
+
+// Sets the emitters of `quality` and returns their radiance [emitters, 3]. They
+// are placed and lit as in a solve, at reference quality with more of them.
+std::vector<double> EmittedLight(const Scene& scene,
+                                 const std::vector<ShadingPoint>& points,
+                                 int bounces, bool reference, const Image& map,
+                                 const BrdfGrid& grid,
+                                 ReferenceOptions* quality) {
+  const size_t most = reference ? kReferenceEmitterPoints : kEmitterPoints;
+  std::vector<ShadingPoint> few;
+  for (size_t k = 0; k < std::min(points.size(), most); ++k) {
+    few.push_back(points[k * points.size() / std::min(points.size(), most)]);
+  }
+  VisibilityOptions rays;
+  rays.num_threads = quality->num_threads;
+  SurfaceEmitterOptions options = EmittersFor(points.size(), bounces);
+  options.num_threads = quality->num_threads;
+  options.max_points = static_cast<int>(most);
+  if (reference) {
+    options.patch = 0.05;
+    options.views = 4;
+    options.max_emitters = 16000;
+    options.lattice_rows = 64;
+  }
+  TransportOptions transport;
+  transport.grid = grid.shape;
+  transport.num_threads = quality->num_threads;
+  transport.visibility = std::make_shared<Visibility>(scene, few, rays);
+  transport.emitters = std::make_shared<SurfaceEmitters>(
+      scene, few, transport.visibility, options);
+  quality->emitters = transport.emitters;
+  return Transport({}, map.height, map.width, transport)
+      .Emitted(grid, map.rgb.data());
 }
 
 // Box-Muller on bits of the generator, which the standard fixes (unlike
@@ -178,6 +216,13 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
     quality.shadows = std::make_shared<VisibilityGrid>(
         view->scene, reference ? kReferenceShadowRows : kPreviewShadowRows);
   }
+  std::vector<double> emitted;
+  if (effects->bounces > 0) {
+    emitted = EmittedLight(view->scene, points, effects->bounces, reference,
+                           *map, grid, &quality);
+  }
+  const double* const emitted_light =
+      emitted.empty() ? nullptr : emitted.data();
   const ReferenceRenderer renderer(*map, quality);
   std::vector<double> E(3 * points.size());
   for (size_t begin = 0; begin < points.size(); begin += kPointsPerStep) {
@@ -190,9 +235,9 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
                                          points.begin() + end);
     if (problem.reflectance.analytic.has_value()) {
       renderer.Render(step, problem.reflectance.analytic->Function(),
-                      &E[3 * begin]);
+                      &E[3 * begin], emitted_light);
     } else {
-      renderer.Render(step, table, &E[3 * begin]);
+      renderer.Render(step, table, &E[3 * begin], emitted_light);
     }
   }
   if (options.progress) options.progress(1.0);

@@ -38,14 +38,25 @@ Json EffectsJson(const InverseProblem& inverse) {
                      {"hidden_90", plan.probe.hidden_90},
                      {"hidden_max", plan.probe.hidden_max},
                      {"shadowed_share", plan.probe.shadowed_share},
-                     {"log_radiance_error_without", plan.worth.log_error},
+                     {"log_radiance_error_without", plan.worth.unshadowed},
                      {"log_radiance_error_threshold", plan.threshold},
-                     {"seconds_predicted", plan.worth.seconds}};
+                     {"seconds_predicted", plan.worth.shadow_seconds}};
   if (const Visibility* rays = inverse.transport.visibility.get()) {
     visibility["rays"] = rays->num_rays();
     visibility["bytes"] = rays->MemoryBytes();
   }
-  return {{"visibility", visibility}};
+  Json interreflection = {{"simulated", plan.bounces > 0},
+                          {"bounces", plan.bounces},
+                          {"log_radiance_error_by_bounces", plan.worth.bounces},
+                          {"log_radiance_error_threshold", plan.threshold},
+                          {"seconds_predicted", plan.worth.bounce_seconds}};
+  if (const SurfaceEmitters* emitters = inverse.transport.emitters.get()) {
+    interreflection["emitters"] = emitters->count();
+    interreflection["bytes"] = emitters->MemoryBytes();
+  }
+  return {{"visibility", visibility},
+          {"interreflection", interreflection},
+          {"log_radiance_error_left_out", plan.error}};
 }
 
 // Pixels that the estimate renders.

@@ -58,7 +58,7 @@ void AddScene(const std::string& kind, const std::vector<ShadingPoint>& points,
 
     std::vector<float> by_map(map.rgb.size()), by_grid(3 * nodes);
     by_light.ApplyTranspose(adjoint.data(), by_map.data());
-    transport.GridGradient(map.rgb.data(), adjoint.data(), by_grid.data());
+    transport.GridGradient(grid, map.rgb.data(), adjoint.data(), by_grid.data());
     std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
     for (int c = 0; c < 3; ++c) {
       const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
@@ -144,7 +144,7 @@ void AddAdjoints(const std::string& kind,
                {static_cast<double>(1 + (left - right) / size)}, {1});
     transport.Render(grid, map.rgb.data(), E.data());
     std::vector<float> by_grid(grid.values.size());
-    transport.GridGradient(map.rgb.data(), a.data(), by_grid.data());
+    transport.GridGradient(grid, map.rgb.data(), a.data(), by_grid.data());
     left = right = size = 0;
     for (size_t i = 0; i < a.size(); ++i) {
       left += Real(a[i]) * E[i];

@@ -82,11 +82,37 @@ bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
 bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
                      const double* parameters, const float* map,
                      std::vector<double>* E, std::vector<double>* dE) {
-  return CombineLobes(
-      [&](const float* const* fields, int num_fields, float* out) {
-        transport.RenderLobes(fields, num_fields, map, out);
-      },
-      transport.num_points(), lobes, parameters, E, dE);
+  // Radiance of the emitters after one bounce more each, and its tangents.
+  std::vector<double> emitted, d_emitted;
+  const auto render = [&](const Transport& of, const LightOperator* light,
+                          std::vector<double>* out, std::vector<double>* d) {
+    const bool finite = CombineLobes(
+        [&](const float* const* fields, int num_fields, float* field_out) {
+          of.RenderLobes(fields, num_fields, map, field_out,
+                         emitted.empty() ? nullptr : emitted.data());
+        },
+        of.num_points(), lobes, parameters, out, d);
+    if (d != nullptr && !d_emitted.empty()) {
+      light->AddEmitted(d_emitted.data(), lobes.num_parameters(), d->data());
+    }
+    return finite;
+  };
+  std::optional<LightOperator> light;
+  if (transport.bounces() > 0 && dE != nullptr) {
+    std::vector<float> fields;
+    lobes.Tabulate(parameters, false, &fields);
+    light = transport.ByLight(lobes.Combine(parameters, fields, 1));
+  }
+  for (int b = 0; b < transport.bounces(); ++b) {
+    std::vector<double> next, d_next;
+    if (!render(*transport.emitters(), light ? light->emitters() : nullptr,
+                &next, dE != nullptr ? &d_next : nullptr)) {
+      return false;
+    }
+    emitted = std::move(next);
+    d_emitted = std::move(d_next);
+  }
+  return render(transport, light ? &*light : nullptr, E, dE);
 }
 
 LobeRadianceCost::LobeRadianceCost(const Transport* transport,
@@ -99,7 +125,8 @@ LobeRadianceCost::LobeRadianceCost(const Transport* transport,
       map_(std::move(map)),
       observed_(observed),
       likelihood_(likelihood) {
-  if (transport->num_points() <= kMaxStoredPoints) {
+  if (transport->bounces() == 0 &&
+      transport->num_points() <= kMaxStoredPoints) {
     operator_.emplace(transport->ByReflectance(map_.data()));
   }
   mutable_parameter_block_sizes()->push_back(lobes->num_parameters());
@@ -110,18 +137,17 @@ bool LobeRadianceCost::Evaluate(double const* const* parameters,
                                 double* residuals, double** jacobians) const {
   const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
   std::vector<double> E, dE, dr_dE;
-  const auto render = [this](const float* const* fields, int num_fields,
-                             float* out) {
-    if (operator_) {
-      operator_->Apply(fields, num_fields, out);
-    } else {
-      transport_->RenderLobes(fields, num_fields, map_.data(), out);
-    }
-  };
-  if (!CombineLobes(render, transport_->num_points(), *lobes_, parameters[0],
-                    &E, wanted ? &dE : nullptr)) {
-    return false;
-  }
+  std::vector<double>* const tangents = wanted ? &dE : nullptr;
+  const bool finite =
+      operator_
+          ? CombineLobes(
+                [this](const float* const* fields, int num_fields, float* out) {
+                  operator_->Apply(fields, num_fields, out);
+                },
+                transport_->num_points(), *lobes_, parameters[0], &E, tangents)
+          : RenderLobeModel(*transport_, *lobes_, parameters[0], map_.data(),
+                            &E, tangents);
+  if (!finite) return false;
   if (!FillResiduals(E, *observed_, likelihood_, residuals,
                      wanted ? &dr_dE : nullptr)) {
     return false;

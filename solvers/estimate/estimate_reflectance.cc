@@ -23,6 +23,9 @@ constexpr int kKnownLightFinalists = 2;
 constexpr int kStartSteps = 3;
 constexpr int kFinalistSteps = 3;
 constexpr int kRoundSteps = 6;
+// Where nearly all of a point's light comes from the object the map's says
+// little of it.
+constexpr double kMostBounceGain = 10.0;
 // Far from the optimum, where steps fail, and near it.
 constexpr double kStartRadius = 10.0;
 constexpr double kRoundRadius = 300.0;
@@ -50,6 +53,13 @@ Status Estimator::SearchMarginal(JointState* state) {
     entry.seconds = Elapsed();
     Report(entry);
   };
+  if (problem_.transport.emitters != nullptr) {
+    o.bounce_gain = [&](const std::vector<double>& lobes,
+                        const std::vector<double>& log_radiance) {
+      return BounceGain(lobes, log_radiance, o.fine.map_height,
+                        o.fine.map_width);
+    };
+  }
   const StatusOr<ReflectanceSearchResult> found =
       SearchReflectance(problem_.model, materials_, problem_.points,
                         RadianceOf(problem_.image, problem_.points), o);
@@ -76,6 +86,38 @@ Status Estimator::SearchMarginal(JointState* state) {
     if (std::isfinite(tried.cost)) tried_.push_back(tried);
   }
   return OkStatus();
+}
+
+std::vector<double> Estimator::BounceGain(
+    const std::vector<double>& lobes, const std::vector<double>& log_radiance,
+    int height, int width) const {
+  const size_t texels = static_cast<size_t>(height) * width;
+  if (log_radiance.size() != 3 * texels) return {};
+  // The level cancels in the ratio.
+  const double highest =
+      *std::max_element(log_radiance.begin(), log_radiance.end());
+  std::vector<float> map(3 * texels);
+  for (size_t t = 0; t < texels; ++t) {
+    for (size_t c = 0; c < 3; ++c) {
+      map[3 * t + c] =
+          static_cast<float>(std::exp(log_radiance[c * texels + t] - highest));
+    }
+  }
+  TransportOptions options = problem_.transport;
+  options.num_threads = problem_.num_threads;
+  const Transport transport(problem_.points, height, width, options);
+  std::vector<float> fields;
+  lobes_->Tabulate(lobes.data(), false, &fields);
+  const BrdfGrid grid = lobes_->Combine(lobes.data(), fields, 1);
+  std::vector<double> direct(3 * problem_.points.size()), all(direct.size());
+  transport.RenderBounces(grid, map.data(), 0, direct.data());
+  transport.Render(grid, map.data(), all.data());
+  for (size_t i = 0; i < all.size(); ++i) {
+    const double gain = all[i] / direct[i];
+    all[i] = std::isfinite(gain) && gain > 0.0 ? std::min(gain, kMostBounceGain)
+                                               : 1.0;
+  }
+  return all;
 }
 
 void Estimator::StartAtMeanMaterial(JointState* state) {

@@ -37,8 +37,9 @@ void LobeBlock::ReverseGradient(const double* parameters, const float* map,
   const size_t nodes = lobes_->grid_shape().num_nodes();
   const int codes = lobes_->code_size(), stride = 1 + codes;
   std::vector<float> by_grid(3 * nodes), fields;
-  transport_->GridGradient(map, adjoint.data(), by_grid.data());
   lobes_->Tabulate(parameters, true, &fields);
+  const BrdfGrid grid = lobes_->Combine(parameters, fields, stride);
+  transport_->GridGradient(grid, map, adjoint.data(), by_grid.data());
   for (int k = 0; k < lobes_->num_lobes(); ++k) {
     const size_t first = static_cast<size_t>(k) * lobes_->lobe_size();
     const double* lobe = parameters + first;

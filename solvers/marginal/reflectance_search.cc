@@ -118,8 +118,11 @@ class Search {
          const std::vector<ShadingPoint>& points,
          const std::vector<double>& radiance,
          const ReflectanceSearchOptions& options)
-      : options_(options), level_at_([&](const MarginalResolution& resolution) {
-          return std::make_unique<Level>(model, prior, points, radiance,
+      : options_(options),
+        image_(radiance),
+        radiance_(radiance),
+        level_at_([&](const MarginalResolution& resolution) {
+          return std::make_unique<Level>(model, prior, points, radiance_,
                                          resolution, options);
         }) {
     for (const MaterialPrior::Material& m : prior.materials) {
@@ -163,6 +166,25 @@ class Search {
     Refine("finish ", *fine_, options_.fine_iterations);
   }
 
+  // Takes what the object throws on itself out of the image.
+  void TakeBouncesOut() {
+    if (!options_.bounce_gain || options_.fine_iterations == 0) return;
+    for (int round = 0; round < options_.bounce_rounds && !Stopped(); ++round) {
+      const std::vector<double> gain =
+          options_.bounce_gain(ToVector(best_candidate_.lobes), LogRadiance());
+      if (gain.empty()) return;
+      for (size_t i = 0; i < gain.size(); ++i) {
+        radiance_[i] = image_[i] / gain[i];
+      }
+      // The last level stays until the next has an end: the best one is of it.
+      std::unique_ptr<Level> next =
+          level_at_(best_level_->reflectance().resolution());
+      from_ = {best_candidate_};
+      if (!Refine("bounces ", *next, options_.fine_iterations)) return;
+      fine_ = std::move(next);
+    }
+  }
+
   ReflectanceSearchResult Result() {
     ReflectanceSearchResult result;
     result.parameters = ToVector(best_candidate_.lobes);
@@ -176,8 +198,7 @@ class Search {
     const MarginalReflectance& reflectance = best_level_->reflectance();
     result.map_width = reflectance.resolution().map_width;
     result.map_height = reflectance.resolution().map_height;
-    result.log_radiance =
-        ToVector((best_.mode.l.array() + best_.mode.level).matrix());
+    result.log_radiance = LogRadiance();
     result.log_radiance_std =
         ToVector(reflectance.likelihood()
                      .LightVariance(
@@ -203,6 +224,9 @@ class Search {
     double cost = 0.0;
   };
 
+  std::vector<double> LogRadiance() const {
+    return ToVector((best_.mode.l.array() + best_.mode.level).matrix());
+  }
   bool Stopped() const {
     return options_.should_stop && options_.should_stop();
   }
@@ -265,6 +289,8 @@ class Search {
   }
 
   const ReflectanceSearchOptions& options_;
+  const std::vector<double>& image_;
+  std::vector<double> radiance_;  // the image without bounces
   const std::function<std::unique_ptr<Level>(const MarginalResolution&)>
       level_at_;
   std::unique_ptr<Level> coarse_, fine_;
@@ -294,6 +320,7 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
                   "no training material explains the image at all");
   }
   search.Finish();
+  search.TakeBouncesOut();
   return search.Result();
 }
 

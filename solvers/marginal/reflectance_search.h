@@ -38,6 +38,16 @@ struct ReflectanceSearchOptions {
   double log_amplitude_std = 0.7;  // of the light process
   bool covariance = true;
   int num_threads = 0;
+  // Light that the object throws on itself, of which the search knows nothing:
+  // by what each point's radiance [points][3] is above the map's light alone,
+  // at the lobes and the log radiance [3][H W] of an end (factors > 0; empty:
+  // not to be had). The image is divided by them and the end refined, so many
+  // times. Where it settles the model explains the image with its own bounces;
+  // that the factors follow the lobes is left out of the covariance.
+  std::function<std::vector<double>(const std::vector<double>& lobes,
+                                    const std::vector<double>& log_radiance)>
+      bounce_gain;
+  int bounce_rounds = 3;
   // Checked between steps, by several threads; true ends early with the best so
   // far.
   std::function<bool()> should_stop;

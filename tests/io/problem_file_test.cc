@@ -146,8 +146,6 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {least + "solver: {seconds: 1e400}", "solver.seconds: expected"},
       {least + "likelihood: {scale: many}", "likelihood.scale: expected"},
       {least + "likelihood: {scale: []}", "expected auto or a number"},
-      {least + "effects: [interreflection]",
-       "effects: interreflection is not available in this version"},
       {least + "effects: [perspectiv]", "the nearest known one is perspective"},
       {least + "effects: [perspective, perspective]", "listed twice"},
       {least + "camera: {fov_degrees: 3}", "camera.fov_degrees: expected"},

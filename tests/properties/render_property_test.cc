@@ -160,7 +160,7 @@ RC_GTEST_PROP(RenderProperty, OperatorsAndTransposesAgree, ()) {
   for (double& v : adjoint) v = *Between(0.0, 1.0);
   std::vector<float> by_map(map.rgb.size()), by_grid(grid.values.size());
   light.ApplyTranspose(adjoint.data(), by_map.data());
-  transport.GridGradient(map.rgb.data(), adjoint.data(), by_grid.data());
+  transport.GridGradient(grid, map.rgb.data(), adjoint.data(), by_grid.data());
   double left = 0.0, by_light = 0.0, by_brdf = 0.0;
   for (int i = 0; i < 9; ++i) {
     RC_ASSERT(std::abs(E[i] - applied[i]) <= 1e-5 * E[i]);

@@ -18,9 +18,9 @@ TEST(SceneProbe, SphereCastsNoRay) {
   EXPECT_EQ(0.0, probe.hidden_max);
   const Image map = SmoothMap(16, 32);
   const BrdfGrid matte = BrdfGrid::FromFunction(Lambertian(0.5), {24, 12, 8});
-  EXPECT_EQ(0.0, PredictShadowWorth(Scene::UnitSphere(), SpherePoints(20),
-                                    {{&map, &matte}}, {})
-                     .log_error);
+  EXPECT_EQ(0.0, PredictEffects(Scene::UnitSphere(), SpherePoints(20),
+                                {{&map, &matte}}, {})
+                     .unshadowed);
 }
 
 TEST(SceneProbe, BallOfTrianglesIsConvex) {
@@ -57,10 +57,53 @@ TEST(SceneProbe, HiddenShareOfAWallIsTheClosedForm) {
   // Constant light on a matte floor: the hidden share is lost.
   const Image map = ConstantMap(16, 32, 2.0f);
   const BrdfGrid matte = BrdfGrid::FromFunction(Lambertian(0.5), {24, 12, 8});
-  const ShadowWorth worth =
-      PredictShadowWorth(scene, points, {{&map, &matte}}, {});
-  EXPECT_NEAR(-0.75 * std::log(1 - hidden), worth.log_error, 5e-3);
-  EXPECT_GT(worth.seconds, 0.0);
+  EffectsWorth worth = PredictEffects(scene, points, {{&map, &matte}}, {});
+  EXPECT_GT(worth.shadow_seconds, 0.0);
+  // A black wall gives nothing back.
+  const BrdfGrid black = BrdfGrid::FromFunction(Lambertian(1e-9), {24, 12, 8});
+  worth = PredictEffects(scene, points, {{&map, &black}}, {});
+  EXPECT_NEAR(-0.75 * std::log(1 - hidden), worth.unshadowed, 5e-3);
+  EXPECT_LT(worth.bounces[0], 1e-6);
+}
+
+// The inside of half a sphere: half of all light comes from it, so that a matte
+// bowl of albedo a lacks log (1 / (1 - a / 2)) without bounces and
+// log (1 / (1 - (a / 2)^(b + 1))) with b.
+TEST(SceneProbe, BouncesOfABowlAreWorthTheClosedForm) {
+  const TriangleMesh bowl =
+      GridMesh(64, 128, false,
+               [](double u, double v, Eigen::Vector3d* p, Eigen::Vector3d* n) {
+                 const double theta = kPi / 2 * (1 + u), phi = 2 * kPi * v;
+                 *p = {std::sin(theta) * std::sin(phi), std::cos(theta),
+                       std::sin(theta) * std::cos(phi)};
+                 *n = -*p;
+               });
+  std::vector<ShadingPoint> points;
+  for (int i = 0; i < 12; ++i) {
+    const double theta = kPi / 2 * (1.05 + 0.07 * i);
+    const Eigen::Vector3d p(std::sin(theta) * std::sin(2.0 * i),
+                            std::cos(theta),
+                            std::sin(theta) * std::cos(2.0 * i));
+    ShadingPoint point{};
+    point.normal = point.wo = -p.cast<float>();
+    point.position = 0.999 * p;
+    point.index = i;
+    points.push_back(point);
+  }
+  const Image map = ConstantMap(16, 32, 1.0f);
+  const double albedo = 0.6;
+  const BrdfGrid matte =
+      BrdfGrid::FromFunction(Lambertian(albedo), {24, 12, 8});
+  const EffectsWorth worth = PredictEffects(Scene::FromMesh(bowl).value(),
+                                            points, {{&map, &matte}}, {});
+  const auto sum = [&](int b) {
+    return (1 - std::pow(albedo / 2, b + 1)) / (1 - albedo / 2);
+  };
+  for (int b = 0; b < kMostBounces; ++b) {
+    EXPECT_NEAR(std::log(sum(kMostBounces) / sum(b)), worth.bounces[b], 0.01)
+        << b;
+  }
+  EXPECT_EQ(0.0, worth.bounces[kMostBounces]);
 }
 
 TEST(SceneProbe, WorstLookCountsAndThreadsDoNot) {
@@ -73,17 +116,18 @@ TEST(SceneProbe, WorstLookCountsAndThreadsDoNot) {
   const BrdfGrid matte = BrdfGrid::FromFunction(Lambertian(0.5), {24, 12, 8});
   SceneProbeOptions one;
   one.num_threads = 1;
-  const double soft_error =
-      PredictShadowWorth(scene, points, {{&soft, &matte}}, one).log_error;
-  const ShadowWorth both = PredictShadowWorth(
-      scene, points, {{&soft, &matte}, {&hard, &matte}}, one);
-  EXPECT_GT(soft_error, 0.05);
-  EXPECT_GT(both.log_error, soft_error);
-  EXPECT_EQ(1, both.look);
-  EXPECT_EQ(
-      both.log_error,
-      PredictShadowWorth(scene, points, {{&soft, &matte}, {&hard, &matte}}, {})
-          .log_error);
+  const EffectsWorth gentle =
+      PredictEffects(scene, points, {{&soft, &matte}}, one);
+  const EffectsWorth both =
+      PredictEffects(scene, points, {{&soft, &matte}, {&hard, &matte}}, one);
+  // What the hole of the torus hides it gives back in part.
+  EXPECT_GT(gentle.unshadowed, 0.02);
+  EXPECT_GT(gentle.bounces[0], 0.02);
+  EXPECT_GT(both.unshadowed, gentle.unshadowed);
+  const EffectsWorth all =
+      PredictEffects(scene, points, {{&soft, &matte}, {&hard, &matte}}, {});
+  EXPECT_EQ(both.unshadowed, all.unshadowed);
+  EXPECT_EQ(both.bounces, all.bounces);
   EXPECT_EQ(ProbeScene(scene, points, one).hidden_mean,
             ProbeScene(scene, points, {}).hidden_mean);
 }

@@ -266,7 +266,7 @@ TEST_F(ShadowedDerivatives, GridGradientMatchesFiniteDifferences) {
   const Image map = RandomMap(64, 128, 4);
   const std::vector<double> adjoint = Adjoint();
   std::vector<float> gradient(glossy_.values.size());
-  transport_.GridGradient(map.rgb.data(), adjoint.data(), gradient.data());
+  transport_.GridGradient(glossy_, map.rgb.data(), adjoint.data(), gradient.data());
   // The largest entries, one per channel and some by the way.
   std::vector<size_t> nodes(gradient.size());
   for (size_t i = 0; i < nodes.size(); ++i) nodes[i] = i;
@@ -337,7 +337,7 @@ TEST_F(ShadowedDerivatives, SameBitsForAnyNumberOfThreads) {
     t.Render(glossy_, map.rgb.data(), E.data());
     std::vector<float> light(map.rgb.size()), grid(glossy_.values.size());
     t.ByLight(glossy_).ApplyTranspose(E.data(), light.data());
-    t.GridGradient(map.rgb.data(), E.data(), grid.data());
+    t.GridGradient(glossy_, map.rgb.data(), E.data(), grid.data());
     ReferenceOptions options;
     options.num_threads = threads;
     options.shadows = std::make_shared<VisibilityGrid>(Torus(), 64);

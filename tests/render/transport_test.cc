@@ -134,7 +134,7 @@ TEST_F(TransportTest, GridGradientIsTheTransposeOfRender) {
   for (float& v : tangent.values) v = static_cast<float>(gauss_(rng_));
   const std::vector<double> E = Render(tangent, map);
   std::vector<float> gradient(tangent.values.size());
-  transport_.GridGradient(map.rgb.data(), adjoint.data(), gradient.data());
+  transport_.GridGradient(glossy_, map.rgb.data(), adjoint.data(), gradient.data());
   const std::vector<double> g(gradient.begin(), gradient.end());
   const std::vector<double> f(tangent.values.begin(), tangent.values.end());
   EXPECT_NEAR(Dot(adjoint, E), Dot(g, f),
@@ -205,7 +205,7 @@ TEST_F(TransportTest, SameBitsForAnyNumberOfThreads) {
     const LightOperator op = t.ByLight(glossy_);
     op.Apply(map.rgb.data(), r.applied.data());
     op.ApplyTranspose(r.E.data(), r.light.data());
-    t.GridGradient(map.rgb.data(), r.E.data(), r.grid.data());
+    t.GridGradient(glossy_, map.rgb.data(), r.E.data(), r.grid.data());
     const float* fields[] = {glossy_.Channel(0), glossy_.Channel(1)};
     t.RenderLobes(fields, 2, map.rgb.data(), r.lobes.data());
     r.reflected.resize(r.lobes.size());
@@ -301,7 +301,7 @@ TEST_F(TransportTest, ExtremesStayFinite) {
       const LightOperator op = transport.ByLight(grid);
       op.Apply(map.rgb.data(), applied.data());
       op.ApplyTranspose(E.data(), light.data());
-      transport.GridGradient(map.rgb.data(), E.data(), g.data());
+      transport.GridGradient(grid, map.rgb.data(), E.data(), g.data());
       for (const double e : E) {
         EXPECT_TRUE(std::isfinite(e));
         EXPECT_GE(e, 0.0);

@@ -11,6 +11,7 @@
 #include "solvers/costs/log_radiance_cost.h"
 #include "solvers/costs/prior_costs.h"
 #include "solvers/costs/robust_log_residual.h"
+#include "tests/render/shadow_testing.h"
 #include "tests/solvers/solver_testing.h"
 
 namespace ibrdf {
@@ -252,6 +253,81 @@ TEST_F(RadianceCosts, RenderLobeModelIsTransportOfTheCombinedGrid) {
     EXPECT_NEAR(expected[i], E[i], 2e-5 * expected[i]);
   }
 }
+
+// The inside of half a sphere, its opening towards the viewer.
+class BouncedRadiance : public ::testing::TestWithParam<int> {
+ protected:
+  void SetUp() override {
+    const TriangleMesh bowl = GridMesh(
+        24, 48, false,
+        [](double u, double v, Eigen::Vector3d* p, Eigen::Vector3d* n) {
+          const double theta = kPi / 2 * u, phi = 2 * kPi * v;
+          *p = {std::sin(theta) * std::cos(phi),
+                std::sin(theta) * std::sin(phi), -std::cos(theta)};
+          *n = -*p;
+        });
+    const Scene scene = Scene::FromMesh(bowl).value();
+    points_ = FindShadingPoints(scene, Camera(), 4, 4, Mask(), 1).value();
+    TransportOptions options = TinyTransportOptions();
+    options.visibility =
+        std::make_shared<Visibility>(scene, points_, VisibilityOptions());
+    SurfaceEmitterOptions emitters;
+    emitters.bounces = GetParam();
+    emitters.max_emitters = 200;
+    options.emitters = std::make_shared<SurfaceEmitters>(
+        scene, points_, options.visibility, emitters);
+    transport_ = std::make_unique<Transport>(points_, 8, 16, options);
+  }
+  std::vector<ShadingPoint> points_;
+  std::unique_ptr<Transport> transport_;
+  const TinyScene scene_;
+};
+
+TEST_P(BouncedRadiance, TangentsOfLobesMatchDifferences) {
+  const std::vector<float> map = SmoothMap(8, 16).rgb;
+  for (const double brighter : {0.0, 1.0}) {
+    std::vector<double> p = scene_.Parameters();
+    for (const int k : {4, 5, 6, 11, 12, 13}) p[k] += brighter;
+    std::vector<double> E, dE, direct(3 * points_.size());
+    ASSERT_TRUE(RenderLobeModel(*transport_, scene_.lobes, p.data(), map.data(),
+                                &E, &dE));
+    std::vector<float> fields;
+    scene_.lobes.Tabulate(p.data(), false, &fields);
+    const BrdfGrid grid = scene_.lobes.Combine(p.data(), fields, 1);
+    std::vector<double> rendered(E.size());
+    transport_->Render(grid, map.data(), rendered.data());
+    transport_->RenderBounces(grid, map.data(), 0, direct.data());
+    for (size_t i = 0; i < E.size(); ++i) {
+      EXPECT_NEAR(rendered[i], E[i], 2e-5 * E[i]);
+      EXPECT_GT(E[i], 1.02 * direct[i]);
+    }
+    const auto columns = static_cast<size_t>(scene_.lobes.num_parameters());
+    for (size_t k = 0; k < columns; ++k) {
+      const double h = 0.02;
+      std::vector<double> at[4];
+      int place = 0;
+      for (const double step : {-2 * h, -h, h, 2 * h}) {
+        std::vector<double> moved = p;
+        moved[k] += step;
+        ASSERT_TRUE(RenderLobeModel(*transport_, scene_.lobes, moved.data(),
+                                    map.data(), &at[place++], nullptr));
+      }
+      double size = 0.0;
+      for (size_t i = 0; i < E.size(); ++i) {
+        size = std::max(size, std::abs(dE[i * columns + k]));
+      }
+      for (size_t i = 0; i < E.size(); ++i) {
+        const double numeric =
+            (8 * (at[2][i] - at[1][i]) - (at[3][i] - at[0][i])) / (12 * h);
+        // Rounding of E over the step, and the step's own error.
+        EXPECT_NEAR(numeric, dE[i * columns + k], 2e-3 * size + 1e-4 * E[i])
+            << "parameter " << k << ", row " << i;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Bounces, BouncedRadiance, ::testing::Values(1, 3));
 
 TEST_F(RadianceCosts, LobeJacobianMatchesDifferencesAtOrdinaryPoints) {
   ExpectBlock(*Cost(map_), {scene_.Parameters()}, 0, kJacobianTolerance, "mid");

@@ -54,15 +54,22 @@ class EffectsPlanTest : public ::testing::Test {
 TEST_F(EffectsPlanTest, AutoShadowsWhatNeedsItAndSaysSo) {
   const RenderedScene groove = Render({}).value();
   EXPECT_TRUE(groove.effects.visibility);
-  EXPECT_EQ(0u, groove.effects.words.find("visibility: "))
+  EXPECT_GE(groove.effects.bounces, 1);
+  EXPECT_EQ(0u, groove.effects.words.find("visibility, interreflection ("))
       << groove.effects.words;
-  EXPECT_GT(groove.effects.worth.log_error, 0.1);
+  EXPECT_GT(groove.effects.worth.unshadowed, 0.1);
+  EXPECT_LT(groove.effects.error, kWorthwhileLogError);
+
+  const RenderedScene dark =
+      Render({"reflectance.known={lambertian: 0.02}"}).value();
+  EXPECT_EQ(0, dark.effects.bounces);
+  EXPECT_EQ(0u, dark.effects.words.find("visibility: ")) << dark.effects.words;
   EXPECT_EQ(1.0, groove.effects.probe.shadowed_share);
 
   const RenderedScene ridge = Render({"geometry.mesh=ridge.obj"}).value();
   EXPECT_FALSE(ridge.effects.visibility);
   EXPECT_EQ(0u, ridge.effects.words.find("none: "));
-  EXPECT_EQ(0.0, ridge.effects.worth.log_error);
+  EXPECT_EQ(0.0, ridge.effects.worth.unshadowed);
 
   const RenderedScene sphere = Render({"geometry={sphere: {}}"}).value();
   EXPECT_EQ(0, sphere.effects.probe.rays);
@@ -70,25 +77,32 @@ TEST_F(EffectsPlanTest, AutoShadowsWhatNeedsItAndSaysSo) {
 }
 
 TEST_F(EffectsPlanTest, PredictionIsTheErrorOfTheImage) {
-  const RenderedScene with = Render({"effects=all"}).value();
-  const RenderedScene without = Render({"effects=none"}).value();
-  EXPECT_TRUE(with.effects.visibility);
-  EXPECT_FALSE(without.effects.visibility);
-  double error = 0.0;
-  int count = 0;
-  for (size_t k = 0; k < with.image.rgb.size(); ++k) {
-    if (with.mask.inside[k / 3] == 0) continue;
-    EXPECT_LE(with.image.rgb[k], without.image.rgb[k] * (1 + 1e-6));
-    error += std::log(without.image.rgb[k] / with.image.rgb[k]);
-    ++count;
+  const RenderedScene all = Render({"effects=all"}).value();
+  EXPECT_EQ(kMostBounces, all.effects.bounces);
+  for (const char* effects :
+       {"effects=none", "effects=[visibility]", "effects=auto"}) {
+    const RenderedScene some = Render({effects}).value();
+    double error = 0.0;
+    int count = 0;
+    for (size_t k = 0; k < all.image.rgb.size(); ++k) {
+      if (all.mask.inside[k / 3] == 0) continue;
+      error += std::abs(std::log(some.image.rgb[k] / all.image.rgb[k]));
+      ++count;
+    }
+    EXPECT_NEAR(error / count, some.effects.error, 0.1 * error / count + 1e-3)
+        << effects;
   }
-  EXPECT_NEAR(error / count, without.effects.worth.log_error,
-              0.1 * error / count);
 }
 
 TEST_F(EffectsPlanTest, TheUserOverrules) {
   EXPECT_FALSE(Render({"effects=[perspective]"})->effects.visibility);
-  EXPECT_TRUE(Render({"effects=[visibility]"})->effects.visibility);
+  const RenderedScene shadows = Render({"effects=[visibility]"}).value();
+  EXPECT_TRUE(shadows.effects.visibility);
+  EXPECT_EQ(0, shadows.effects.bounces);
+  EXPECT_NE(std::string::npos, shadows.effects.words.find("absorb"));
+  const RenderedScene bounces = Render({"effects=[interreflection]"}).value();
+  EXPECT_TRUE(bounces.effects.visibility);
+  EXPECT_GE(bounces.effects.bounces, 1);
   const RenderedScene ridge =
       Render({"effects=[visibility]", "geometry.mesh=ridge.obj"}).value();
   EXPECT_TRUE(ridge.effects.visibility);
@@ -105,6 +119,10 @@ TEST_F(EffectsPlanTest, NormalsHaveNoShadows) {
   const Status refused = Render({geometry, "effects=[visibility]"}).status();
   EXPECT_EQ(StatusCode::kInvalidInput, refused.code());
   EXPECT_NE(std::string::npos, refused.message().find("effects"));
+  EXPECT_NE(std::string::npos, Render({geometry, "effects=[interreflection]"})
+                                   .status()
+                                   .message()
+                                   .find("interreflection needs a shape"));
 }
 
 // The solver gets the table, its result tells why, and the light that it finds
@@ -141,9 +159,12 @@ TEST_F(EffectsPlanTest, SolveUsesShadowsAndReportsThem) {
     EXPECT_EQ(inverse->effects.words, result["effects"].get<std::string>());
     const nlohmann::json& visibility = result["effects_plan"]["visibility"];
     EXPECT_TRUE(visibility["simulated"].get<bool>());
-    EXPECT_EQ(inverse->effects.worth.log_error,
+    EXPECT_EQ(inverse->effects.worth.unshadowed,
               visibility["log_radiance_error_without"].get<double>());
     EXPECT_GT(visibility["rays"].get<int64_t>(), 0);
+    const nlohmann::json& bounces = result["effects_plan"]["interreflection"];
+    EXPECT_EQ(inverse->effects.bounces, bounces["bounces"].get<int>());
+    EXPECT_GT(bounces["emitters"].get<int>(), 0);
   }
   EXPECT_LT(misfit[1], 0.5 * misfit[0]);
 }

@@ -16,14 +16,22 @@ LightOperator Transport::ByLight(const BrdfGrid& grid) const {
   const Corners corners(options_.grid);
   const std::vector<int> texel = PaddedTexels(map_height_, map_width_);
   const int row = map_width_ + 1;
-  const size_t num_sources = static_cast<size_t>(num_blocks_) +
-                             static_cast<size_t>(map_height_) * map_width_;
   LightOperator op;
   op.map_height_ = map_height_;
   op.map_width_ = map_width_;
   op.block_ = block_;
   op.num_blocks_ = num_blocks_;
   op.num_threads_ = options_.num_threads;
+  if (emitters_ != nullptr) {
+    op.bounces_ = bounces();
+    op.emitters_ =
+        std::make_shared<const LightOperator>(emitters_->ByLight(grid));
+  }
+  const size_t num_texels = static_cast<size_t>(map_height_) * map_width_;
+  const size_t num_sources =
+      num_blocks_ + num_texels +
+      (options_.emitters != nullptr ? options_.emitters->count() : 0);
+  op.num_sources_ = num_sources;
   op.chunks_.resize(chunks_.size());
   // Per worker: a point's sums by source, all zero between points, and which
   // sources it has touched, in order of first touch.
@@ -56,7 +64,9 @@ LightOperator Transport::ByLight(const BrdfGrid& grid) const {
           w.sources.clear();
           for (; far < chunk.far_end[i]; ++far) {
             const FarPair& pair = chunk.far[far];
-            add(pair.block, pair.weight * Interpolate(pair, corners, f.data()));
+            const size_t emitters = pair.block < num_blocks_ ? 0 : num_texels;
+            add(emitters + pair.block,
+                pair.weight * Interpolate(pair, corners, f.data()));
           }
           for (; near < chunk.near_end[i]; ++near) {
             const NearPair& pair = chunk.near[near];
@@ -86,7 +96,7 @@ LightOperator Transport::ByLight(const BrdfGrid& grid) const {
 }
 
 size_t LightOperator::MemoryBytes() const {
-  size_t bytes = 0;
+  size_t bytes = emitters_ != nullptr ? emitters_->MemoryBytes() : 0;
   for (const Chunk& chunk : chunks_) {
     bytes += chunk.source.capacity() * sizeof(uint32_t) +
              chunk.value.capacity() * sizeof(float) +
@@ -97,15 +107,15 @@ size_t LightOperator::MemoryBytes() const {
 
 std::vector<float> LightOperator::Sources(const float* map) const {
   std::vector<float> sources = SumBlocks(map, map_height_, map_width_, block_);
-  const size_t texels = static_cast<size_t>(map_height_) * map_width_;
-  sources.resize(sources.size() + 4 * texels, 0.0f);
+  sources.resize(4 * num_sources_, 0.0f);
   float* out = &sources[size_t{4} * num_blocks_];
+  const size_t texels = static_cast<size_t>(map_height_) * map_width_;
   for (size_t t = 0; t < texels; ++t) std::copy_n(map + 3 * t, 3, out + 4 * t);
   return sources;
 }
 
-void LightOperator::Apply(const float* map, double* E) const {
-  const std::vector<float> sources = Sources(map);
+void LightOperator::ApplyTo(const std::vector<float>& sources,
+                            double* E) const {
   ParallelFor(static_cast<int64_t>(chunks_.size()), num_threads_,
               [&](int64_t index, int) {
                 const Chunk& chunk = chunks_[index];
@@ -126,17 +136,30 @@ void LightOperator::Apply(const float* map, double* E) const {
               });
 }
 
-void LightOperator::ApplyTranspose(const double* adjoint,
-                                   float* gradient) const {
-  const size_t texels = static_cast<size_t>(map_height_) * map_width_;
-  const size_t size = 4 * (num_blocks_ + texels);
+void LightOperator::Apply(const float* map, double* E) const {
+  std::vector<float> sources = Sources(map);
+  if (emitters_ != nullptr) {
+    std::vector<double> emitted(size_t{3} * emitters_->num_points());
+    for (int b = 0; b < bounces_; ++b) {
+      emitters_->ApplyTo(sources, emitted.data());
+      for (size_t k = 0; k < emitted.size(); ++k) {
+        sources[4 * (num_map_sources() + k / 3) + k % 3] =
+            static_cast<float>(emitted[k]);
+      }
+    }
+  }
+  ApplyTo(sources, E);
+}
+
+void LightOperator::AddTranspose(const double* adjoint,
+                                 std::vector<double>* sums) const {
   std::vector<std::vector<float>> partial(chunks_.size());
   ParallelFor(
       static_cast<int64_t>(chunks_.size()), num_threads_,
       [&](int64_t index, int) {
         const Chunk& chunk = chunks_[index];
         std::vector<float>& g = partial[index];
-        g.assign(size, 0.0f);
+        g.assign(sums->size(), 0.0f);
         size_t entry = 0;
         for (int i = 0; i < chunk.end - chunk.begin; ++i) {
           const double* a = adjoint + 3 * static_cast<size_t>(chunk.begin + i);
@@ -148,9 +171,24 @@ void LightOperator::ApplyTranspose(const double* adjoint,
           }
         }
       });
-  std::vector<double> sums(size, 0.0);
   for (const std::vector<float>& g : partial) {
-    for (size_t i = 0; i < size; ++i) sums[i] += g[i];
+    for (size_t i = 0; i < sums->size(); ++i) (*sums)[i] += g[i];
+  }
+}
+
+void LightOperator::ApplyTranspose(const double* adjoint,
+                                   float* gradient) const {
+  std::vector<double> sums(4 * num_sources_, 0.0);
+  AddTranspose(adjoint, &sums);
+  // Of R_b, b falling: what is left for R_0 = 0 is dropped.
+  for (int b = 0; b < bounces_; ++b) {
+    std::vector<double> by_emitted(size_t{3} * emitters_->num_points());
+    for (size_t k = 0; k < by_emitted.size(); ++k) {
+      double& sum = sums[4 * (num_map_sources() + k / 3) + k % 3];
+      by_emitted[k] = sum;
+      sum = 0.0;
+    }
+    emitters_->AddTranspose(by_emitted.data(), &sums);
   }
   const int columns = map_width_ / block_;
   for (int y = 0; y < map_height_; ++y) {
@@ -166,6 +204,29 @@ void LightOperator::ApplyTranspose(const double* adjoint,
       }
     }
   }
+}
+
+void LightOperator::AddEmitted(const double* emitted, int columns,
+                               double* out) const {
+  const size_t first = num_map_sources();
+  ParallelFor(
+      static_cast<int64_t>(chunks_.size()), num_threads_,
+      [&](int64_t index, int) {
+        const Chunk& chunk = chunks_[index];
+        size_t entry = 0;
+        for (int i = chunk.begin; i < chunk.end; ++i) {
+          for (; entry < chunk.entry_end[i - chunk.begin]; ++entry) {
+            if (chunk.source[entry] < first) continue;
+            const size_t emitter = chunk.source[entry] - first;
+            for (size_t c = 0; c < 3; ++c) {
+              const double value = chunk.value[3 * entry + c];
+              const double* from = emitted + (3 * emitter + c) * columns;
+              double* to = out + (3 * static_cast<size_t>(i) + c) * columns;
+              for (int k = 0; k < columns; ++k) to[k] += value * from[k];
+            }
+          }
+        }
+      });
 }
 
 }  // namespace ibrdf

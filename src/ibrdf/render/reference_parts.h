@@ -12,6 +12,7 @@
 #include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/reference_kernels.h"
 #include "ibrdf/render/scene.h"
+#include "ibrdf/render/surface_emitters.h"
 #include "ibrdf/render/visibility_grid.h"
 
 namespace ibrdf {
@@ -32,6 +33,8 @@ struct ReferenceOptions {
   // What hides light from the points; null: nothing. Traced afresh for every
   // point rendered.
   std::shared_ptr<const VisibilityGrid> shadows;
+  // What is met where light is hidden; needs `shadows`. Looked for afresh, too.
+  std::shared_ptr<const SurfaceEmitters> emitters;
 };
 // Rows of the grid that suits ReferenceOptions: steps of 0.7 degrees.
 inline constexpr int kReferenceShadowRows = 256;

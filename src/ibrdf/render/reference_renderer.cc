@@ -116,6 +116,9 @@ ReferenceRenderer::Light ReferenceRenderer::GatherLight(
     light.power.push_back(power);
     add_range(y0, x0, block);
   }
+  for (const FarCell& cell : light.cells) {
+    light.solid_angle.push_back(cell.solid_angle);
+  }
   return light;
 }
 
@@ -128,9 +131,13 @@ ReferenceRenderer::ReferenceRenderer(const Image& map, Light light,
     : num_threads_(options.num_threads),
       map_({&map}, 4),
       power_(std::move(light.power)),
+      solid_angle_(std::move(light.solid_angle)),
       shadows_(options.shadows),
+      emitters_(options.emitters),
       ranges_(std::move(light.ranges)),
-      quadrature_(std::move(light.cells), NearOptions(map.width, options)) {}
+      quadrature_(std::move(light.cells), NearOptions(map.width, options)) {
+  CHECK(emitters_ == nullptr || shadows_ != nullptr);
+}
 
 struct ReferenceRenderer::Rays {
   std::vector<float> x, y, z;  // direction
@@ -139,7 +146,9 @@ struct ReferenceRenderer::Rays {
 
 Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
                                          const Eigen::Matrix3f& axes,
-                                         const uint64_t* hidden) const {
+                                         const uint64_t* hidden,
+                                         const SeenEmitters& seen,
+                                         const double* emitted) const {
   const Eigen::Vector3d normal = axes.col(2).cast<double>();
   const auto load = [](const float* p) {
     Float4 v;
@@ -166,6 +175,19 @@ Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
     }
     Float4 block = {0.0f, 0.0f, 0.0f, 0.0f};
     for (int k = 0; k < n; ++k) {
+      if (hidden != nullptr && visible[k] < 1.0f && !seen.empty()) {
+        const Eigen::Vector3f wi =
+            axes * Eigen::Vector3f(rays.x[begin + k], rays.y[begin + k],
+                                   rays.z[begin + k]);
+        const int emitter = emitters_->Along(seen, wi.cast<double>());
+        if (emitter >= 0) {
+          const double* const R = emitted + size_t{3} * emitter;
+          const Float4 light = {static_cast<float>(R[0]),
+                                static_cast<float>(R[1]),
+                                static_cast<float>(R[2]), 0.0f};
+          block += (1.0f - visible[k]) * load(&rays.f[4 * (begin + k)]) * light;
+        }
+      }
       if (hidden != nullptr && visible[k] == 0.0f) continue;
       const int r = std::min(static_cast<int>(row[k]), map_.height);
       const int c = std::min(static_cast<int>(column[k]), map_.width - 1);
@@ -206,7 +228,8 @@ void ReferenceRenderer::ShadeNear(const PointFrame& frame, const Lookup& lookup,
 
 template <typename Lookup>
 void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
-                                   const Lookup& lookup, double* E) const {
+                                   const Lookup& lookup, const double* emitted,
+                                   double* E) const {
   const ViewGroups groups(points);
   struct Scratch {
     std::vector<NearSample> near;
@@ -214,6 +237,8 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
     Rays rays;
     VisibilityGrid::Scratch trace;
     VisibilityGrid::Bits bits;
+    std::vector<SeenEmitter> seen;
+    std::vector<EmitterShare> shares;
   };
   std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
                                                 : HardwareThreads());
@@ -229,16 +254,29 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
           shadows_ != nullptr && shadows_->Trace(points[i], &s.trace, &s.bits)
               ? s.bits.data()
               : nullptr;
-      Eigen::Array3d sum = Gather(s.rays, frame.Axes(), hidden);
+      SeenEmitters seen;
+      if (hidden != nullptr && emitted != nullptr && emitters_ != nullptr) {
+        seen = emitters_->Look(points[i], *shadows_, hidden, &s.seen);
+      }
+      Eigen::Array3d sum = Gather(s.rays, frame.Axes(), hidden, seen, emitted);
       quadrature_.SampleFar(frame.n, frame.wo, &s.far);
       for (const FarSample& far : s.far) {
         const double visible =
             hidden == nullptr
                 ? 1.0
                 : shadows_->VisibleShare(hidden, frame.n, ranges_[far.cell]);
-        if (visible == 0.0) continue;
-        sum += visible * far.weight *
-               lookup(far.theta_h, far.theta_d, far.phi_d) * power_[far.cell];
+        if (visible == 0.0 && seen.empty()) continue;
+        Eigen::Array3d light = visible * power_[far.cell];
+        if (visible < 1.0 && !seen.empty()) {
+          emitters_->SharesIn(*shadows_, hidden, frame.n, ranges_[far.cell],
+                              seen, &s.shares);
+          for (const EmitterShare& e : s.shares) {
+            light += e.share * solid_angle_[far.cell] *
+                     Eigen::Map<const Eigen::Array3d>(emitted +
+                                                      size_t{3} * e.emitter);
+          }
+        }
+        sum += far.weight * lookup(far.theta_h, far.theta_d, far.phi_d) * light;
       }
       for (int c = 0; c < 3; ++c) E[size_t{3} * i + c] = sum[c];
     }
@@ -246,13 +284,15 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
-                               const MerlTable& table, double* E) const {
-  RenderWith(points, MerlSampler(table), E);
+                               const MerlTable& table, double* E,
+                               const double* emitted) const {
+  RenderWith(points, MerlSampler(table), emitted, E);
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
-                               const BrdfFunction& brdf, double* E) const {
-  RenderWith(points, brdf, E);
+                               const BrdfFunction& brdf, double* E,
+                               const double* emitted) const {
+  RenderWith(points, brdf, emitted, E);
 }
 
 Image PixelMeans(const std::vector<ShadingPoint>& points, const double* E,

@@ -1,6 +1,7 @@
 // Slow, converged renderer: the image that accuracy is measured against.
 // Full-resolution map, MERL table trilinear between bin centres
-// (InterpolateMerl), no BRDF grid. Shadows where asked for; no bounces. Points
+// (InterpolateMerl), no BRDF grid. Shadows where asked for, and the light of
+// emitters whose radiance is given (Transport::Emitted). Points
 // seen at the same angle (most of a sphere's under an orthographic camera)
 // share the BRDF values of their near samples.
 #pragma once
@@ -23,22 +24,24 @@ class ReferenceRenderer {
   ReferenceRenderer(const Image& map, const ReferenceOptions& options);
 
   // Radiance [points, 3]. Weights and sums are double; BRDF values float.
+  // emitted: radiance [emitters, 3], null: 0.
   void Render(const std::vector<ShadingPoint>& points, const MerlTable& table,
-              double* E) const;
+              double* E, const double* emitted = nullptr) const;
   // `brdf` may be called from several threads at a time.
   void Render(const std::vector<ShadingPoint>& points, const BrdfFunction& brdf,
-              double* E) const;
+              double* E, const double* emitted = nullptr) const;
 
  private:
   template <typename Lookup>
   void RenderWith(const std::vector<ShadingPoint>& points, const Lookup& lookup,
-                  double* E) const;
+                  const double* emitted, double* E) const;
 
   // Cells of the far rule, their radiance times solid angle, and, under
   // shadows, their texels in the grid.
   struct Light {
     std::vector<FarCell> cells;
     std::vector<Eigen::Array3d> power;
+    std::vector<double> solid_angle;
     std::vector<GridRange> ranges;
   };
   static Light GatherLight(const Image& map, const ReferenceOptions& options);
@@ -48,7 +51,8 @@ class ReferenceRenderer {
   // Sum of f_k L(wi_k) V(wi_k), wi = x t + y b + z n of unit length; axes t, b,
   // n. hidden: the point's bits; null: V = 1.
   Eigen::Array3d Gather(const Rays& rays, const Eigen::Matrix3f& axes,
-                        const uint64_t* hidden) const;
+                        const uint64_t* hidden, const SeenEmitters& seen,
+                        const double* emitted) const;
   // Near samples of one view angle, in the frame of ViewFrame.
   template <typename Lookup>
   void ShadeNear(const PointFrame& frame, const Lookup& lookup,
@@ -61,7 +65,9 @@ class ReferenceRenderer {
   const ReferenceKernels& kernels_ = ActiveReferenceKernels();
   PaddedMaps map_;
   std::vector<Eigen::Array3d> power_;
+  std::vector<double> solid_angle_;
   std::shared_ptr<const VisibilityGrid> shadows_;
+  std::shared_ptr<const SurfaceEmitters> emitters_;
   std::vector<GridRange> ranges_;
   PointQuadrature quadrature_;
 };

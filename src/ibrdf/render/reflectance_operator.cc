@@ -3,7 +3,6 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/render/lobe_contraction.h"
-#include "ibrdf/render/map_sources.h"
 #include "ibrdf/render/transport.h"
 #include "ibrdf/render/transport_taps.h"
 
@@ -87,14 +86,14 @@ void Transport::GatherLight(const Chunk& chunk,
 }
 
 void Transport::RenderLobes(const float* const* fields, int num_fields,
-                            const float* map, float* out) const {
+                            const float* map, float* out,
+                            const double* emitted) const {
   if (num_fields <= 0) return;
   const std::vector<float> by_node =
       FieldsByNode(options_.grid, fields, num_fields, options_.num_threads);
   const int stride = LobeStride(num_fields);
   const std::vector<float> texels = PadMap(map),
-                           blocks =
-                               SumBlocks(map, map_height_, map_width_, block_);
+                           blocks = FarSources(map, emitted);
   const ContractLobesFunction contract = ContractLobes();
   std::vector<GatheredLight> scratch(
       options_.num_threads > 0 ? options_.num_threads : HardwareThreads());
@@ -116,8 +115,7 @@ void Transport::RenderLobes(const float* const* fields, int num_fields,
 
 ReflectanceOperator Transport::ByReflectance(const float* map) const {
   const std::vector<float> texels = PadMap(map),
-                           blocks =
-                               SumBlocks(map, map_height_, map_width_, block_);
+                           blocks = FarSources(map, nullptr);
   ReflectanceOperator op;
   op.grid_ = options_.grid;
   op.num_points_ = num_points_;

@@ -18,6 +18,9 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kGoldenAngle = kPi * (3.0 - 2.23606797749978969641);
 // Of the mean radiance: darker points count as this bright.
 constexpr double kDarkest = 1e-3;
+// Of the emitters: coarser than a solve takes.
+constexpr double kProbePatch = 0.2;
+constexpr int kProbeEmitters = 500;
 
 // At most `most` of the points, evenly spread over the list.
 std::vector<ShadingPoint> Spread(const std::vector<ShadingPoint>& points,
@@ -73,45 +76,62 @@ SceneProbe ProbeScene(const Scene& scene,
   return probe;
 }
 
-ShadowWorth PredictShadowWorth(const Scene& scene,
-                               const std::vector<ShadingPoint>& points,
-                               const std::vector<ProbeLook>& looks,
-                               const SceneProbeOptions& options) {
+EffectsWorth PredictEffects(const Scene& scene,
+                            const std::vector<ShadingPoint>& points,
+                            const std::vector<ProbeLook>& looks,
+                            const SceneProbeOptions& options) {
   CHECK(!looks.empty());
-  ShadowWorth worth;
+  EffectsWorth worth;
   if (!scene.CastsShadows() || points.empty()) return worth;
   const std::vector<ShadingPoint> few = Spread(points, options.max_points);
   const int height = looks[0].map->height, width = looks[0].map->width;
-  TransportOptions bare, shadowed;
+  TransportOptions bare, all;
   bare.num_threads = options.num_threads;
   bare.grid = looks[0].brdf->shape;
-  shadowed = bare;
+  all = bare;
   VisibilityOptions rays;
   rays.num_threads = options.num_threads;
   using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
-  shadowed.visibility = std::make_shared<Visibility>(scene, few, rays);
-  worth.seconds = std::chrono::duration<double>(Clock::now() - start).count() *
-                  static_cast<double>(points.size()) /
-                  static_cast<double>(few.size());
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  const double share =
+      static_cast<double>(points.size()) / static_cast<double>(few.size());
+  Clock::time_point start = Clock::now();
+  all.visibility = std::make_shared<Visibility>(scene, few, rays);
+  worth.shadow_seconds = since(start) * share;
+  SurfaceEmitterOptions emitters;
+  emitters.bounces = kMostBounces;
+  emitters.patch = kProbePatch;
+  emitters.max_emitters = kProbeEmitters;
+  emitters.num_threads = options.num_threads;
+  start = Clock::now();
+  all.emitters =
+      std::make_shared<SurfaceEmitters>(scene, few, all.visibility, emitters);
+  worth.bounce_seconds = since(start) * share;
   const Transport without(few, height, width, bare);
-  const Transport with(few, height, width, shadowed);
-  std::vector<double> a(3 * few.size()), b(a.size());
-  for (size_t look = 0; look < looks.size(); ++look) {
-    CHECK(looks[look].map->height == height && looks[look].map->width == width);
-    without.Render(*looks[look].brdf, looks[look].map->rgb.data(), a.data());
-    with.Render(*looks[look].brdf, looks[look].map->rgb.data(), b.data());
-    double mean = 0.0, error = 0.0;
-    for (const double e : a) mean += e / static_cast<double>(a.size());
+  const Transport with(few, height, width, all);
+  std::vector<double> full(3 * few.size()), part(full.size());
+  for (const ProbeLook& look : looks) {
+    CHECK(look.map->height == height && look.map->width == width);
+    with.Render(*look.brdf, look.map->rgb.data(), full.data());
+    double mean = 0.0;
+    for (const double e : full) mean += e / static_cast<double>(full.size());
     if (!(mean > 0.0)) continue;
-    for (size_t i = 0; i < a.size(); ++i) {
-      error += std::abs(std::log(std::max(a[i], kDarkest * mean)) -
-                        std::log(std::max(b[i], kDarkest * mean))) /
-               static_cast<double>(a.size());
-    }
-    if (error > worth.log_error) {
-      worth.log_error = error;
-      worth.look = static_cast<int>(look);
+    const auto keep_larger = [&](double* error) {
+      double sum = 0.0;
+      for (size_t i = 0; i < full.size(); ++i) {
+        sum += std::abs(std::log(std::max(part[i], kDarkest * mean)) -
+                        std::log(std::max(full[i], kDarkest * mean)));
+      }
+      *error = std::max(*error, sum / static_cast<double>(full.size()));
+    };
+    without.Render(*look.brdf, look.map->rgb.data(), part.data());
+    keep_larger(&worth.unshadowed);
+    // Of a convex object there are no emitters.
+    for (int b = 0; b < with.bounces(); ++b) {
+      with.RenderBounces(*look.brdf, look.map->rgb.data(), b, part.data());
+      keep_larger(&worth.bounces[b]);
     }
   }
   return worth;

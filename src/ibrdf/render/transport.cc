@@ -27,6 +27,19 @@ uint16_t Quantise(double fraction) {
 
 Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
                      int map_width, const TransportOptions& options)
+    : Transport(points, map_height, map_width, options, Of::kPoints) {
+  if (options.emitters == nullptr || options.emitters->count() == 0) {
+    options_.emitters = nullptr;
+    return;
+  }
+  TransportOptions own = options;
+  own.visibility = options.emitters->visibility();
+  emitters_ = std::shared_ptr<const Transport>(new Transport(
+      options.emitters->points(), map_height, map_width, own, Of::kEmitters));
+}
+
+Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
+                     int map_width, const TransportOptions& options, Of of)
     : options_(options),
       num_points_(static_cast<int>(points.size())),
       map_height_(map_height),
@@ -36,21 +49,25 @@ Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
   CHECK(map_height > 0 && map_width > 1 && map_width % 2 == 0);
   CHECK(options.grid.h >= 2 && options.grid.d >= 2 && options.grid.p >= 1);
   num_blocks_ = (map_height / block_) * (map_width / block_);
-  CHECK_LE(num_blocks_, 65536) << "map of odd size: resize it first";
-  const PointQuadrature quadrature(MapCells(map_height, map_width, block_),
-                                   options.quadrature);
+  CHECK(options.emitters == nullptr || options.visibility != nullptr);
+  const int emitters =
+      options.emitters != nullptr ? options.emitters->count() : 0;
+  CHECK_LE(num_blocks_ + emitters, 65536) << "map of odd size: resize it first";
+  const std::vector<FarCell> cells = MapCells(map_height, map_width, block_);
+  const PointQuadrature quadrature(cells, options.quadrature);
   const int num_chunks = std::min(kMaxChunks, num_points_);
   chunks_.resize(num_chunks);
   ParallelFor(num_chunks, options_.num_threads, [&](int64_t i, int) {
     Chunk& chunk = chunks_[i];
     chunk.begin = static_cast<int>(i * num_points_ / num_chunks);
     chunk.end = static_cast<int>((i + 1) * num_points_ / num_chunks);
-    BuildChunk(points, quadrature, &chunk);
+    BuildChunk(points, cells, quadrature, of, &chunk);
   });
 }
 
 void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
-                           const PointQuadrature& quadrature,
+                           const std::vector<FarCell>& cells,
+                           const PointQuadrature& quadrature, Of of,
                            Chunk* chunk) const {
   const BrdfGridShape& shape = options_.grid;
   const auto set_cell = [&shape](const auto& sample, auto* pair) {
@@ -64,20 +81,40 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
     pair->weight = static_cast<float>(sample.weight);
   };
   const Visibility* const visibility = options_.visibility.get();
+  const SurfaceEmitters* const emitters = options_.emitters.get();
   const int columns = map_width_ / block_;
   PointSamples samples;
+  std::vector<EmitterShare> shares;
+  const auto add_emitter = [&](const auto& sample, int emitter, double weight) {
+    FarPair pair{};
+    set_cell(sample, &pair);
+    pair.block = static_cast<uint16_t>(num_blocks_ + emitter);
+    pair.weight = static_cast<float>(weight);
+    chunk->far.push_back(pair);
+  };
   for (int i = chunk->begin; i < chunk->end; ++i) {
     const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
     const uint64_t* const hidden =
         visibility != nullptr ? visibility->Hidden(points[i]) : nullptr;
+    SeenEmitters seen;
+    if (hidden != nullptr && emitters != nullptr) {
+      seen = of == Of::kPoints ? emitters->SeenFrom(points[i])
+                               : emitters->SeenFromEmitter(points[i]);
+    }
     quadrature.Sample(n, points[i].wo.cast<double>().normalized(), &samples);
     for (FarSample& s : samples.far) {
       if (hidden != nullptr) {
         const VisibilityGrid& grid = visibility->grid();
-        const double share =
-            grid.VisibleShare(hidden, n,
-                              grid.RangeOf(s.cell / columns, s.cell % columns,
-                                           map_height_ / block_, columns));
+        const GridRange range = grid.RangeOf(s.cell / columns, s.cell % columns,
+                                             map_height_ / block_, columns);
+        const double share = grid.VisibleShare(hidden, n, range);
+        if (share < 1.0 && !seen.empty()) {
+          emitters->SharesIn(grid, hidden, n, range, seen, &shares);
+          for (const EmitterShare& e : shares) {
+            add_emitter(s, e.emitter,
+                        s.weight * cells[s.cell].solid_angle * e.share);
+          }
+        }
         if (share <= 0.0) continue;
         if (share < 1.0 && block_ > 1) {
           NearPair sample{};
@@ -94,7 +131,14 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
     }
     for (NearSample& s : samples.near) {
       if (hidden != nullptr) {
-        s.weight *= visibility->grid().VisibleAlong(hidden, n, s.wi);
+        const double visible = visibility->grid().VisibleAlong(hidden, n, s.wi);
+        if (visible < 1.0 && !seen.empty()) {
+          const int emitter = emitters->Along(seen, s.wi);
+          if (emitter >= 0) {
+            add_emitter(s, emitter, s.weight * (1.0 - visible));
+          }
+        }
+        s.weight *= visible;
         if (s.weight <= 0.0) continue;
       }
       NearPair pair{};
@@ -143,6 +187,7 @@ size_t Transport::MemoryBytes() const {
         chunk.near.capacity() * sizeof(NearPair) +
         (chunk.far_end.capacity() + chunk.near_end.capacity()) * sizeof(size_t);
   }
+  if (emitters_ != nullptr) bytes += emitters_->MemoryBytes();
   return bytes;
 }
 
@@ -170,12 +215,26 @@ std::vector<float> Transport::PadGrid(const BrdfGrid& grid) const {
   return out;
 }
 
-void Transport::Render(const BrdfGrid& grid, const float* map,
-                       double* E) const {
-  const std::vector<float> f = PadGrid(grid);
+std::vector<float> Transport::FarSources(const float* map,
+                                         const double* emitted) const {
+  std::vector<float> sources = SumBlocks(map, map_height_, map_width_, block_);
+  if (options_.emitters == nullptr) return sources;
+  const size_t first = sources.size();
+  const auto count = static_cast<size_t>(options_.emitters->count());
+  sources.resize(first + 4 * count, 0.0f);
+  if (emitted == nullptr) return sources;
+  for (size_t j = 0; j < count; ++j) {
+    for (size_t c = 0; c < 3; ++c) {
+      sources[first + 4 * j + c] = static_cast<float>(emitted[3 * j + c]);
+    }
+  }
+  return sources;
+}
+
+void Transport::RenderLit(const std::vector<float>& f, const float* map,
+                          const double* emitted, double* E) const {
   const std::vector<float> texels = PadMap(map),
-                           blocks =
-                               SumBlocks(map, map_height_, map_width_, block_);
+                           blocks = FarSources(map, emitted);
   const Corners corners(options_.grid);
   const int row = map_width_ + 1;
   ParallelFor(
@@ -202,12 +261,43 @@ void Transport::Render(const BrdfGrid& grid, const float* map,
       });
 }
 
-void Transport::GridGradient(const float* map, const double* adjoint,
-                             float* gradient) const {
+std::vector<std::vector<double>> Transport::Emitted(const std::vector<float>& f,
+                                                    const float* map,
+                                                    int bounces) const {
+  CHECK(bounces >= 0 && bounces <= this->bounces());
+  std::vector<std::vector<double>> emitted(1);
+  for (int b = 0; b < bounces; ++b) {
+    std::vector<double> next(size_t{3} * emitters_->num_points());
+    const double* const last = b > 0 ? emitted.back().data() : nullptr;
+    emitters_->RenderLit(f, map, last, next.data());
+    emitted.push_back(std::move(next));
+  }
+  return emitted;
+}
+
+std::vector<double> Transport::Emitted(const BrdfGrid& grid,
+                                       const float* map) const {
+  return Emitted(PadGrid(grid), map, bounces()).back();
+}
+
+void Transport::Render(const BrdfGrid& grid, const float* map,
+                       double* E) const {
+  RenderBounces(grid, map, bounces(), E);
+}
+
+void Transport::RenderBounces(const BrdfGrid& grid, const float* map,
+                              int bounces, double* E) const {
+  const std::vector<float> f = PadGrid(grid);
+  const std::vector<double> emitted = Emitted(f, map, bounces).back();
+  RenderLit(f, map, emitted.empty() ? nullptr : emitted.data(), E);
+}
+
+void Transport::AddGridGradient(const float* map, const double* emitted,
+                                const double* adjoint,
+                                std::vector<double>* sums) const {
   const BrdfGridShape& s = options_.grid;
   const std::vector<float> texels = PadMap(map),
-                           blocks =
-                               SumBlocks(map, map_height_, map_width_, block_);
+                           blocks = FarSources(map, emitted);
   const Corners corners(s);
   const int row = map_width_ + 1;
   std::vector<std::vector<float>> partial(chunks_.size());
@@ -241,16 +331,65 @@ void Transport::GridGradient(const float* map, const double* adjoint,
           }
         }
       });
-  std::vector<double> sums(size_t{3} * s.num_nodes(), 0.0);
   for (const std::vector<float>& g : partial) {
     for (int hd = 0; hd < s.h * s.d; ++hd) {
       for (int p = 0; p <= s.p; ++p) {
         const int node = hd * s.p + p % s.p;
         for (int c = 0; c < 3; ++c) {
-          sums[static_cast<size_t>(c) * s.num_nodes() + node] +=
+          (*sums)[static_cast<size_t>(c) * s.num_nodes() + node] +=
               g[4 * (static_cast<size_t>(hd) * (s.p + 1) + p) + c];
         }
       }
+    }
+  }
+}
+
+std::vector<double> Transport::ByEmitted(const std::vector<float>& f,
+                                         const double* adjoint) const {
+  const Corners corners(options_.grid);
+  const size_t size = size_t{4} * options_.emitters->count();
+  std::vector<std::vector<double>> partial(chunks_.size());
+  ParallelFor(
+      static_cast<int64_t>(chunks_.size()), options_.num_threads,
+      [&](int64_t index, int) {
+        const Chunk& chunk = chunks_[index];
+        std::vector<double>& g = partial[index];
+        g.assign(size, 0.0);
+        size_t far = 0;
+        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
+          const double* a = adjoint + 3 * static_cast<size_t>(chunk.begin + i);
+          for (; far < chunk.far_end[i]; ++far) {
+            const FarPair& pair = chunk.far[far];
+            if (pair.block < num_blocks_) continue;
+            const Float4 v = pair.weight * Interpolate(pair, corners, f.data());
+            double* const to = &g[size_t{4} * (pair.block - num_blocks_)];
+            for (int c = 0; c < 3; ++c) to[c] += v[c] * a[c];
+          }
+        }
+      });
+  std::vector<double> by_emitted(size / 4 * 3, 0.0);
+  for (const std::vector<double>& g : partial) {
+    for (size_t j = 0; j < size / 4; ++j) {
+      for (size_t c = 0; c < 3; ++c) by_emitted[3 * j + c] += g[4 * j + c];
+    }
+  }
+  return by_emitted;
+}
+
+void Transport::GridGradient(const BrdfGrid& grid, const float* map,
+                             const double* adjoint, float* gradient) const {
+  std::vector<double> sums(size_t{3} * options_.grid.num_nodes(), 0.0);
+  if (bounces() == 0) {
+    AddGridGradient(map, nullptr, adjoint, &sums);
+  } else {
+    const std::vector<float> f = PadGrid(grid);
+    const std::vector<std::vector<double>> emitted = Emitted(f, map, bounces());
+    AddGridGradient(map, emitted.back().data(), adjoint, &sums);
+    std::vector<double> by_emitted = ByEmitted(f, adjoint);
+    for (int b = bounces(); b > 0; --b) {
+      emitters_->AddGridGradient(map, b > 1 ? emitted[b - 1].data() : nullptr,
+                                 by_emitted.data(), &sums);
+      if (b > 1) by_emitted = emitters_->ByEmitted(f, by_emitted.data());
     }
   }
   for (size_t i = 0; i < sums.size(); ++i) {

@@ -3,10 +3,16 @@
 //
 // E_ic = sum_pairs weight f_c(pair) L_c(pair): the pairs of a point are the
 // samples of PointQuadrature, each with eight taps into the BRDF grid and one
-// block of the map (far) or four of its texels (near). No bounces. Shadows,
-// where asked for, are part of the weights: pairs are dropped or lowered when
-// the lists are built, so that every product below is that of the shadowed
-// scene. A block that is hidden in part is taken texel by texel.
+// block of the map (far) or four of its texels (near). Shadows, where asked
+// for, are part of the weights: pairs are dropped or lowered when the lists are
+// built, so that every product below is that of the shadowed scene. A block
+// that is hidden in part is taken texel by texel.
+//
+// Interreflection, where asked for, gives what is hidden to emitters: surface
+// points with a transport of their own, lit by the map and, from the second
+// bounce on, by each other. With R their radiance, E = T(f) [L; R] and
+// R_b = T'(f) [L; R_(b-1)], R_0 = 0: E stays linear in L, and is a polynomial
+// in f of one degree more than there are bounces.
 //
 // Shapes: map [H, W, 3] radiance; E [points, 3] radiance; BRDF grid
 // [3, nodes] in 1/sr. Inputs must be finite; maps and grids may be negative
@@ -19,6 +25,7 @@
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/scene.h"
+#include "ibrdf/render/surface_emitters.h"
 #include "ibrdf/render/visibility.h"
 
 namespace ibrdf {
@@ -30,6 +37,8 @@ struct TransportOptions {
   // Of the points or more of their image; null: unshadowed. Read at
   // construction alone.
   std::shared_ptr<const Visibility> visibility;
+  // With `visibility`, and of the same points; null: no bounces.
+  std::shared_ptr<const SurfaceEmitters> emitters;
 };
 
 class LightOperator;
@@ -39,7 +48,7 @@ class ReflectanceOperator;
 // a time (they are parallel inside).
 class Transport {
  public:
-  // map_width even; at most 65536 far cells (see FarBlockSize).
+  // map_width even; at most 65536 far cells (see FarBlockSize) and emitters.
   Transport(const std::vector<ShadingPoint>& points, int map_height,
             int map_width, const TransportOptions& options);
 
@@ -47,40 +56,61 @@ class Transport {
   int map_height() const { return map_height_; }
   int map_width() const { return map_width_; }
   const BrdfGridShape& grid_shape() const { return options_.grid; }
+  // 0 without interreflection.
+  int bounces() const {
+    return options_.emitters != nullptr ? options_.emitters->bounces() : 0;
+  }
+  // Of the emitters, without emitters that they see where there is but one
+  // bounce; null without interreflection.
+  const Transport* emitters() const { return emitters_.get(); }
   // Bytes held by the lists of pairs.
   size_t MemoryBytes() const;
 
   void Render(const BrdfGrid& grid, const float* map, double* E) const;
+  // With only the first of the bounces, 0 to bounces().
+  void RenderBounces(const BrdfGrid& grid, const float* map, int bounces,
+                     double* E) const;
+
+  // Radiance of the emitters with all bounces but the last, [emitters, 3];
+  // empty without interreflection.
+  std::vector<double> Emitted(const BrdfGrid& grid, const float* map) const;
 
   // The linear map from L to E for a fixed BRDF.
   LightOperator ByLight(const BrdfGrid& grid) const;
 
   // For scalar fields s_k on the grid, fields[k] = [nodes]: out
   // [points, num_fields, 3], out_ikc = int s_k L_c cos. A BRDF
-  // f_c = sum_k colour_kc s_k has E_ic = sum_k colour_kc out_ikc.
+  // f_c = sum_k colour_kc s_k has E_ic = sum_k colour_kc out_ikc. L is that of
+  // the map and, behind hidden directions, of `emitted` [emitters, 3], null: 0.
   void RenderLobes(const float* const* fields, int num_fields, const float* map,
-                   float* out) const;
+                   float* out, const double* emitted = nullptr) const;
 
-  // The linear map from fields to out of RenderLobes, for a fixed map.
+  // The linear map from fields to out of RenderLobes, for a fixed map and no
+  // emitted light.
   ReflectanceOperator ByReflectance(const float* map) const;
 
-  // Transpose of Render in the grid: gradient [3, nodes] of sum adjoint.E.
-  void GridGradient(const float* map, const double* adjoint,
-                    float* gradient) const;
+  // gradient [3, nodes] of sum adjoint.E in the grid. `grid`: where, read with
+  // interreflection alone; without, E is linear.
+  void GridGradient(const BrdfGrid& grid, const float* map,
+                    const double* adjoint, float* gradient) const;
 
   // The linear map from a small map's texels to radiance for a scalar field
   // [nodes]: matrix [points][H * W], E_i = sum_t matrix_it L_t. The map must
-  // not be wider than QuadratureOptions::far_width.
+  // not be wider than QuadratureOptions::far_width. Without interreflection.
   void LightMatrix(const float* field, float* matrix) const;
   // Its transpose in the field: gradient [nodes] of sum adjoint.matrix.
   void LightMatrixGradient(const float* adjoint, float* gradient) const;
 
  private:
+  enum class Of { kPoints, kEmitters };
+  Transport(const std::vector<ShadingPoint>& points, int map_height,
+            int map_width, const TransportOptions& options, Of of);
+
   // Trilinear fractions are in units of 1/65535.
   struct FarPair {
     uint32_t node;  // lowest node of the cell, in the padded grid
     uint16_t fh, fd, fp;
-    uint16_t block;
+    uint16_t block;  // or num_blocks_ + an emitter
     float weight;
   };
   struct NearPair {
@@ -100,7 +130,8 @@ class Transport {
   };
 
   void BuildChunk(const std::vector<ShadingPoint>& points,
-                  const PointQuadrature& quadrature, Chunk* chunk) const;
+                  const std::vector<FarCell>& cells,
+                  const PointQuadrature& quadrature, Of of, Chunk* chunk) const;
   // A far sample whose block is hidden in part, as pairs with its texels.
   void SplitBlock(const uint64_t* hidden, const Eigen::Vector3d& n, int block,
                   const NearPair& sample, std::vector<NearPair>* pairs) const;
@@ -119,6 +150,19 @@ class Transport {
   void GatherLight(const Chunk& chunk, const std::vector<float>& texels,
                    const std::vector<float>& blocks, GatheredLight* scratch,
                    const Use& use) const;
+  // E for given emitted light, radiance [emitters, 3], null: 0; the transposes
+  // of that in the grid, added to `sums` [3, nodes], and in the emitted light.
+  void RenderLit(const std::vector<float>& f, const float* map,
+                 const double* emitted, double* E) const;
+  void AddGridGradient(const float* map, const double* emitted,
+                       const double* adjoint, std::vector<double>* sums) const;
+  std::vector<double> ByEmitted(const std::vector<float>& f,
+                                const double* adjoint) const;
+  // R_0 to R_bounces; empty: R_0 = 0.
+  std::vector<std::vector<double>> Emitted(const std::vector<float>& f,
+                                           const float* map, int bounces) const;
+  // SumBlocks, then the emitters; four floats each, the last one 0.
+  std::vector<float> FarSources(const float* map, const double* emitted) const;
   // See PaddedTexels; four floats per entry, the last one 0.
   std::vector<float> PadMap(const float* map) const;
   std::vector<float> PadGrid(const BrdfGrid& grid) const;
@@ -133,6 +177,7 @@ class Transport {
   int block_ = 1;  // side in texels
   int num_blocks_ = 0;
   std::vector<Chunk> chunks_;
+  std::shared_ptr<const Transport> emitters_;
 };
 
 // Some 40 kB per point: for few points. Holds what it needs: it may outlive its
@@ -171,6 +216,11 @@ class LightOperator {
   void Apply(const float* map, double* E) const;
   // gradient [H, W, 3] of sum adjoint.E, adjoint [points, 3].
   void ApplyTranspose(const double* adjoint, float* gradient) const;
+  // Of the emitters; null without interreflection.
+  const LightOperator* emitters() const { return emitters_.get(); }
+  // out [points, 3, columns] += the radiance that emitted light, [emitters, 3,
+  // columns], adds: for tangents of the emitters' radiance.
+  void AddEmitted(const double* emitted, int columns, double* out) const;
 
   size_t MemoryBytes() const;
 
@@ -183,16 +233,27 @@ class LightOperator {
   struct Chunk {
     int begin = 0, end = 0;
     std::vector<size_t> entry_end;  // [end - begin]
-    std::vector<uint32_t> source;   // a block, or num_blocks_ + texel
-    std::vector<float> value;       // [entry * 3 + channel], one spare entry
+    // A block, num_blocks_ + texel, or after those an emitter.
+    std::vector<uint32_t> source;
+    std::vector<float> value;  // [entry * 3 + channel], one spare entry
   };
 
-  // Blocks, then texels; four floats each, the last one 0.
+  int num_points() const { return chunks_.empty() ? 0 : chunks_.back().end; }
+  size_t num_map_sources() const {
+    return num_blocks_ + static_cast<size_t>(map_height_) * map_width_;
+  }
+  // Blocks, then texels, then emitters (0); four floats each, the last one 0.
   std::vector<float> Sources(const float* map) const;
+  void ApplyTo(const std::vector<float>& sources, double* E) const;
+  // sums [num_sources_, 4] += the transpose.
+  void AddTranspose(const double* adjoint, std::vector<double>* sums) const;
 
   int map_height_ = 0, map_width_ = 0, block_ = 1, num_blocks_ = 0;
   int num_threads_ = 0;
   std::vector<Chunk> chunks_;
+  size_t num_sources_ = 0;
+  int bounces_ = 0;
+  std::shared_ptr<const LightOperator> emitters_;  // null: none
 };
 
 }  // namespace ibrdf

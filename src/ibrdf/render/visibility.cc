@@ -17,7 +17,11 @@ constexpr int64_t kPointsPerChunk = 64;
 Visibility::Visibility(const Scene& scene,
                        const std::vector<ShadingPoint>& points,
                        const VisibilityOptions& options)
-    : grid_(scene, options.rows) {
+    : grid_(scene, options.rows), num_threads_(options.num_threads) {
+  Add(points);
+}
+
+void Visibility::Add(const std::vector<ShadingPoint>& points) {
   const auto count = static_cast<int64_t>(points.size());
   const int64_t chunks = (count + kPointsPerChunk - 1) / kPointsPerChunk;
   struct Chunk {
@@ -27,8 +31,8 @@ Visibility::Visibility(const Scene& scene,
   };
   std::vector<Chunk> found(chunks);
   std::vector<VisibilityGrid::Scratch> scratch(
-      options.num_threads > 0 ? options.num_threads : HardwareThreads());
-  ParallelFor(chunks, options.num_threads, [&](int64_t index, int worker) {
+      num_threads_ > 0 ? num_threads_ : HardwareThreads());
+  ParallelFor(chunks, num_threads_, [&](int64_t index, int worker) {
     Chunk& chunk = found[index];
     VisibilityGrid::Bits bits;
     const int64_t end = std::min((index + 1) * kPointsPerChunk, count);

@@ -14,12 +14,15 @@ struct VisibilityOptions {
   int num_threads = 0;  // <= 0: all
 };
 
-// Immutable; safe to share between threads.
+// Safe to share between threads once all points are there.
 class Visibility {
  public:
   // `points`: as FindShadingPoints or a selection of them; each index once.
   Visibility(const Scene& scene, const std::vector<ShadingPoint>& points,
              const VisibilityOptions& options);
+
+  // More points of the same scene, with new indices.
+  void Add(const std::vector<ShadingPoint>& points);
 
   const VisibilityGrid& grid() const { return grid_; }
 
@@ -34,6 +37,7 @@ class Visibility {
 
  private:
   VisibilityGrid grid_;
+  int num_threads_;
   int num_shadowed_ = 0;
   int64_t num_rays_ = 0;
   // By index: words into bits_, kClear or kAbsent.

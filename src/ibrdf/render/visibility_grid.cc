@@ -143,17 +143,24 @@ double VisibilityGrid::VisibleShare(const uint64_t* bits,
   }
   if (hidden == 0) return 1.0;
   if (hidden == count) return 0.0;
-  double all = 0.0, visible = 0.0;
+  double all = 0.0, behind = 0.0;
+  CosineSums(bits, n, range, &all, &behind);
+  return all > 0.0 ? (all - behind) / all : 1.0;
+}
+
+void VisibilityGrid::CosineSums(const uint64_t* bits, const Eigen::Vector3d& n,
+                                const GridRange& range, double* all,
+                                double* hidden) const {
+  *all = *hidden = 0.0;
   for (int r = range.row_begin; r < range.row_end; ++r) {
     for (int c = range.column_begin; c < range.column_end; ++c) {
       const double cosine = n.dot(Direction(r, c));
       if (cosine <= 0.0) continue;
       const double weight = cosine * sin_theta_[r];
-      all += weight;
-      if (!Hidden(bits, r, c)) visible += weight;
+      *all += weight;
+      if (Hidden(bits, r, c)) *hidden += weight;
     }
   }
-  return all > 0.0 ? visible / all : 1.0;
 }
 
 double VisibilityGrid::VisibleAlong(const uint64_t* bits,

@@ -52,6 +52,11 @@ class VisibilityGrid {
   double VisibleShare(const uint64_t* bits, const Eigen::Vector3d& n,
                       const GridRange& range) const;
 
+  // Cosine-weighted solid angle of the texels of a range that lie above the
+  // horizon, up to a factor, and of the hidden ones among them.
+  void CosineSums(const uint64_t* bits, const Eigen::Vector3d& n,
+                  const GridRange& range, double* all, double* hidden) const;
+
   // Bilinear between the four directions around wi that are above the horizon.
   double VisibleAlong(const uint64_t* bits, const Eigen::Vector3d& n,
                       const Eigen::Vector3d& wi) const;
@@ -61,8 +66,7 @@ class VisibilityGrid {
   double VisibleAt(const uint64_t* bits, const Eigen::Vector3d& n, double row,
                    double column) const;
 
- private:
-  struct Tracer;
+  // Of a texel's centre; unit.
   Eigen::Vector3d Direction(int row, int column) const {
     return {sin_theta_[row] * sin_phi_[column], cos_theta_[row],
             sin_theta_[row] * cos_phi_[column]};
@@ -71,6 +75,9 @@ class VisibilityGrid {
     const size_t texel = static_cast<size_t>(row) * columns() + column;
     return (bits[texel / 64] >> (texel % 64) & 1) != 0;
   }
+
+ private:
+  struct Tracer;
 
   Scene scene_;
   int rows_;

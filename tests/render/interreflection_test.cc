@@ -1,0 +1,401 @@
+// Light from the object to itself: closed forms, brute force, derivatives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <tuple>
+
+#include "ibrdf/render/surface_emitters.h"
+#include "ibrdf/render/transport.h"
+#include "tests/render/render_testing.h"
+#include "tests/render/shadow_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+// Sums of some thousand float products.
+constexpr double kFloatSums = 2e-5;
+
+TransportOptions WithBounces(const Scene& scene,
+                             const std::vector<ShadingPoint>& points,
+                             int bounces, SurfaceEmitterOptions how = {}) {
+  TransportOptions options;
+  VisibilityOptions rays;
+  options.num_threads = rays.num_threads = how.num_threads;
+  auto visibility = std::make_shared<Visibility>(scene, points, rays);
+  options.visibility = visibility;
+  if (bounces == 0) return options;
+  how.bounces = bounces;
+  options.emitters =
+      std::make_shared<SurfaceEmitters>(scene, points, visibility, how);
+  return options;
+}
+
+// The inside of a unit sphere that is open within `degrees` of the y axis.
+TriangleMesh BowlMesh(double degrees) {
+  const double opening = degrees * kPi / 180;
+  return GridMesh(
+      64, 128, false,
+      [opening](double u, double v, Eigen::Vector3d* p, Eigen::Vector3d* n) {
+        const double theta = opening + u * (kPi - opening);
+        const double phi = 2 * kPi * v, s = std::sin(theta);
+        *p = {s * std::sin(phi), std::cos(theta), s * std::cos(phi)};
+        *n = -*p;
+      });
+}
+
+std::vector<ShadingPoint> BowlPoints(double opening_degrees) {
+  std::vector<ShadingPoint> points;
+  for (const double share : {0.1, 0.35, 0.6, 0.9}) {
+    for (const double phi : {0.4, 2.0, 4.4}) {
+      const double theta =
+          opening_degrees * kPi / 180 * (1 - share) + share * kPi;
+      const Eigen::Vector3d p(std::sin(theta) * std::sin(phi), std::cos(theta),
+                              std::sin(theta) * std::cos(phi));
+      ShadingPoint point{};
+      point.normal = -p.cast<float>();
+      point.wo = -p.cast<float>();
+      point.position = 0.999 * p;
+      point.index = static_cast<int>(points.size());
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+// Every point of a sphere sees equal areas of it alike: within a cap that
+// covers a share F of it, F of a point's light comes from the cap, and under
+// constant light 1 a matte cap of albedo a has, after b bounces,
+// a (1 - F) sum_(k <= b) (a F)^k.
+TEST(Interreflection, MatteBowlIsTheClosedFormAfterEveryBounce) {
+  for (const double degrees : {90.0, 50.0}) {
+    const double share = (1 + std::cos(degrees * kPi / 180)) / 2;
+    const Scene scene = Scene::FromMesh(BowlMesh(degrees)).value();
+    const std::vector<ShadingPoint> points = BowlPoints(degrees);
+    SurfaceEmitterOptions few;
+    few.max_emitters = 500;
+    const TransportOptions options = WithBounces(scene, points, 3, few);
+    const Transport transport(points, 32, 64, options);
+    for (const double albedo : {0.3, 0.9}) {
+      const Image map = ConstantMap(32, 64, 1.0f);
+      double expected = 0.0;
+      for (int b = 0; b <= 3; ++b) {
+        expected += albedo * (1 - share) * std::pow(albedo * share, b);
+        const BrdfGrid matte =
+            BrdfGrid::FromFunction(Lambertian(albedo), options.grid);
+        std::vector<double> E(3 * points.size());
+        transport.RenderBounces(matte, map.rgb.data(), b, E.data());
+        for (size_t i = 0; i < points.size(); ++i) {
+          // Edges of the opening fall between the visibility's directions.
+          EXPECT_NEAR(expected, E[3 * i], 0.015 * expected)
+              << "opening " << degrees << ", albedo " << albedo << ", bounces "
+              << b << ", point " << i;
+        }
+      }
+    }
+  }
+}
+
+// White walls under constant light look like the light, whatever their shape.
+TEST(Interreflection, WhiteObjectInConstantLightDisappears) {
+  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const std::vector<ShadingPoint> points =
+      FindShadingPoints(scene, TorusCamera(), 24, 24, Mask(), 1).value();
+  const Image map = ConstantMap(32, 64, 1.0f);
+  const TransportOptions options = WithBounces(scene, points, 12);
+  const Transport transport(points, 32, 64, options);
+  const BrdfGrid white = BrdfGrid::FromFunction(Lambertian(1), options.grid);
+  std::vector<double> E(3 * points.size());
+  const auto darkest = [&](int bounces) {
+    transport.RenderBounces(white, map.rgb.data(), bounces, E.data());
+    return *std::min_element(E.begin(), E.end());
+  };
+  const double dark = darkest(0), one = darkest(1), all = darkest(12);
+  EXPECT_LT(dark, 0.8);
+  EXPECT_GT(one, dark);
+  EXPECT_GT(all, 0.97);
+  EXPECT_LT(*std::max_element(E.begin(), E.end()), 1.02);
+  double mean = 0.0;
+  for (const double e : E) mean += e / static_cast<double>(E.size());
+  EXPECT_NEAR(1.0, mean, 0.005);
+}
+
+// Radiance towards wo with `bounces`, by a ray for every direction.
+Eigen::Array3d BruteForce(const Scene& scene, const ShadingPoint& point,
+                          const BrdfFunction& brdf, const Image& map,
+                          int bounces, int rings, int samples) {
+  const Eigen::Vector3d n = point.normal.cast<double>().normalized();
+  const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
+  const Eigen::Vector3d t = n.unitOrthogonal(), b = n.cross(t);
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  const auto edge = [rings](int i) {
+    return std::pow(static_cast<double>(i) / rings, 2) * kPi / 2;
+  };
+  for (int i = 0; i < rings; ++i) {
+    const double theta = 0.5 * (edge(i) + edge(i + 1));
+    const double solid_angle =
+        (std::cos(edge(i)) - std::cos(edge(i + 1))) * 2 * kPi / samples;
+    for (int k = 0; k < samples; ++k) {
+      const double phi = 2 * kPi * (k + 0.5) / samples;
+      const Eigen::Vector3d h =
+          std::sin(theta) * (std::cos(phi) * t + std::sin(phi) * b) +
+          std::cos(theta) * n;
+      const double oh = h.dot(wo);
+      const Eigen::Vector3d wi = 2 * oh * h - wo;
+      if (oh <= 0 || n.dot(wi) <= 0) continue;
+      Eigen::Array3d light;
+      SurfaceHit hit;
+      if (!scene.Occluded(point.position, wi)) {
+        light = LookUpMap(map, wi);
+      } else if (bounces > 0 &&
+                 scene.Intersect({point.position, wi}, false, &hit)) {
+        ShadingPoint emitter{};
+        emitter.normal = hit.normal.cast<float>();
+        emitter.wo = -wi.cast<float>();
+        emitter.position = hit.position;
+        light =
+            BruteForce(scene, emitter, brdf, map, bounces - 1, rings, samples);
+      } else {
+        continue;
+      }
+      const HalfDiff a = ToHalfDiff({wi.dot(t), wi.dot(b), wi.dot(n)},
+                                    {wo.dot(t), wo.dot(b), wo.dot(n)});
+      sum += 4 * oh * n.dot(wi) * solid_angle *
+             brdf(a.theta_h, a.theta_d, a.phi_d) * light;
+    }
+  }
+  return sum;
+}
+
+// Emitters are patches seen from a few sides; brute force knows none. The
+// sharper the lobe, the more of the bounce that misses.
+TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {
+  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const std::vector<ShadingPoint> all =
+      FindShadingPoints(scene, TorusCamera(), 40, 40, Mask(), 1).value();
+  const Image map = SmoothMap(32, 64);
+  struct Case {
+    BrdfFunction brdf;
+    double share;  // of |log ratio|, mean, that a missing bounce would have
+  };
+  for (const Case& c :
+       {Case{Lambertian(0.9), 0.06}, Case{Glossy(0.3, 0.5, 12), 0.1},
+        Case{Glossy(0.02, 0.9, 4), 0.3}}) {
+    const TransportOptions options = WithBounces(scene, all, 1);
+    const TransportOptions bare = WithBounces(scene, all, 0);
+    const BrdfGrid grid = BrdfGrid::FromFunction(c.brdf, options.grid);
+    std::vector<double> E(3 * all.size()), direct(E.size());
+    Transport(all, 32, 64, options).Render(grid, map.rgb.data(), E.data());
+    Transport(all, 32, 64, bare).Render(grid, map.rgb.data(), direct.data());
+    // From where least of the light of the map is seen to where most is.
+    std::vector<size_t> order;
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (options.visibility->Hidden(all[i]) != nullptr) order.push_back(i);
+    }
+    std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+      return direct[3 * a] < direct[3 * b];
+    });
+    double error = 0.0, without = 0.0;
+    int count = 0;
+    for (size_t k = 5; k < order.size() / 2; k += order.size() / 20) {
+      const size_t i = order[k];
+      const Eigen::Array3d expected =
+          BruteForce(scene, all[i], c.brdf, map, 1, 24, 48);
+      for (int ch = 0; ch < 3; ++ch) {
+        error += std::abs(std::log(E[3 * i + ch] / expected[ch]));
+        without += std::abs(std::log(direct[3 * i + ch] / expected[ch]));
+        ++count;
+      }
+    }
+    EXPECT_GT(without / count, 0.1);
+    EXPECT_LT(error / without, c.share) << error / count;
+  }
+}
+
+TEST(Interreflection, ConvexObjectsHaveNoEmittersAndTheSameBits) {
+  const Scene scene = Scene::FromMesh(BallMesh(24, 1.0)).value();
+  const std::vector<ShadingPoint> points =
+      FindShadingPoints(scene, Camera(), 12, 12, Mask(), 1).value();
+  const TransportOptions with = WithBounces(scene, points, 2);
+  EXPECT_EQ(0, with.emitters->count());
+  const Image map = RandomMap(32, 64, 1);
+  const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.2, 0.5, 8), with.grid);
+  std::vector<double> a(3 * points.size()), b(a.size());
+  const Transport transport(points, 32, 64, with);
+  EXPECT_EQ(0, transport.bounces());
+  transport.Render(grid, map.rgb.data(), a.data());
+  Transport(points, 32, 64, TransportOptions())
+      .Render(grid, map.rgb.data(), b.data());
+  EXPECT_EQ(a, b);
+}
+
+// Emitters stand for what is seen: next to no light is lost, and their number
+// is kept.
+TEST(Interreflection, EmittersCoverWhatIsSeenWithinTheirNumber) {
+  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const std::vector<ShadingPoint> points =
+      FindShadingPoints(scene, TorusCamera(), 48, 48, Mask(), 1).value();
+  for (const int most : {6000, 200}) {
+    SurfaceEmitterOptions how;
+    how.max_emitters = most;
+    how.max_points = 256;
+    how.bounces = 2;
+    const auto emitters = WithBounces(scene, points, 2, how).emitters;
+    EXPECT_GT(emitters->count(), 20);
+    // The second bounce may add to them.
+    EXPECT_LT(emitters->count(), 1.2 * most);
+    EXPECT_GT(emitters->num_cells(), 1000);
+    EXPECT_LT(emitters->num_lost(), 1e-3 * emitters->num_cells());
+    for (const ShadingPoint& p : emitters->points()) {
+      EXPECT_GE(p.normal.dot(p.wo), 0.9f * kMinViewCosine);
+    }
+  }
+}
+
+class BouncedDerivatives : public ::testing::TestWithParam<int> {
+ protected:
+  BouncedDerivatives()
+      : scene_(Scene::FromMesh(TorusMesh(64, 32)).value()),
+        points_(
+            FindShadingPoints(scene_, TorusCamera(), 9, 9, Mask(), 1).value()),
+        options_(WithBounces(scene_, points_, GetParam(), Few())),
+        transport_(points_, 32, 64, options_),
+        glossy_(BrdfGrid::FromFunction(Glossy(0.5, 0.4, 10), options_.grid)) {}
+
+  static SurfaceEmitterOptions Few() {
+    SurfaceEmitterOptions how;
+    how.max_emitters = 300;
+    return how;
+  }
+  std::vector<double> Render(const BrdfGrid& grid, const Image& map) const {
+    std::vector<double> E(3 * points_.size());
+    transport_.Render(grid, map.rgb.data(), E.data());
+    return E;
+  }
+  std::vector<double> Adjoint() {
+    std::normal_distribution<double> gauss;
+    std::vector<double> adjoint(3 * points_.size(), 0.0);
+    for (double& a : adjoint) a = gauss(rng_);
+    return adjoint;
+  }
+  static double Dot(const std::vector<double>& a,
+                    const std::vector<double>& b) {
+    double sum = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+  }
+
+  std::mt19937 rng_{11};
+  const Scene scene_;
+  const std::vector<ShadingPoint> points_;
+  const TransportOptions options_;
+  const Transport transport_;
+  const BrdfGrid glossy_;
+};
+
+TEST_P(BouncedDerivatives, LightOperatorIsTheRenderAndItsTransposeItsAdjoint) {
+  ASSERT_GT(transport_.bounces(), 0);
+  const Image map = RandomMap(32, 64, 2);
+  const LightOperator op = transport_.ByLight(glossy_);
+  const std::vector<double> E = Render(glossy_, map), adjoint = Adjoint();
+  std::vector<double> applied(E.size());
+  op.Apply(map.rgb.data(), applied.data());
+  for (size_t i = 0; i < E.size(); ++i) {
+    EXPECT_NEAR(E[i], applied[i], kFloatSums * E[i]);
+  }
+  std::vector<float> gradient(map.rgb.size());
+  op.ApplyTranspose(adjoint.data(), gradient.data());
+  double right = 0.0, size = 0.0;
+  for (size_t i = 0; i < gradient.size(); ++i) {
+    right += static_cast<double>(gradient[i]) * map.rgb[i];
+    size += std::abs(static_cast<double>(gradient[i]) * map.rgb[i]);
+  }
+  EXPECT_NEAR(Dot(adjoint, applied), right, 1e-6 * size);
+}
+
+// A sun of one texel, far above all else.
+TEST_P(BouncedDerivatives, LightGradientMatchesDifferencesUnderASun) {
+  Image map = SmoothMap(32, 64);
+  map.At(20, 4)[0] = map.At(20, 4)[1] = 3e5f;
+  const std::vector<double> adjoint = Adjoint();
+  std::vector<float> gradient(map.rgb.size());
+  transport_.ByLight(glossy_).ApplyTranspose(adjoint.data(), gradient.data());
+  const double at = Dot(adjoint, Render(glossy_, map));
+  for (const auto& [c, r] : {std::pair(20, 4), {40, 10}, {0, 0}, {63, 31}}) {
+    for (int k = 0; k < 3; ++k) {
+      Image moved = map;
+      moved.At(c, r)[k] *= 1.5f;
+      const double step = moved.At(c, r)[k] - map.At(c, r)[k];
+      double size = 0.0;
+      for (const double e : Render(glossy_, moved)) size += std::abs(e);
+      // Linear: rounding alone is left.
+      EXPECT_NEAR(
+          (Dot(adjoint, Render(glossy_, moved)) - at) / step,
+          gradient[3 * (r * 64 + c) + k],
+          1e-3 * std::abs(gradient[3 * (r * 64 + c) + k]) + 1e-6 * size / step)
+          << c << " " << r << " " << k;
+    }
+  }
+}
+
+// Along random directions of the grid, from a matte floor to a sharp peak;
+// radiance is a polynomial of degree bounces + 1 in the grid's values, to which
+// five differences are exact up to degree four.
+TEST_P(BouncedDerivatives, GridGradientMatchesDifferences) {
+  const Image map = RandomMap(32, 64, 4);
+  for (const BrdfGrid& at :
+       {glossy_, BrdfGrid::FromFunction(Lambertian(0.95), options_.grid),
+        BrdfGrid::FromFunction(Glossy(0.01, 0.9, 2), options_.grid)}) {
+    const std::vector<double> adjoint = Adjoint();
+    std::vector<float> gradient(at.values.size());
+    transport_.GridGradient(at, map.rgb.data(), adjoint.data(),
+                            gradient.data());
+    std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+    BrdfGrid direction = at;
+    for (float& v : direction.values) v *= uniform(rng_);
+    double slope = 0.0;
+    for (size_t i = 0; i < gradient.size(); ++i) {
+      slope += static_cast<double>(gradient[i]) * direction.values[i];
+    }
+    const auto value = [&](float step) {
+      BrdfGrid moved = at;
+      for (size_t i = 0; i < moved.values.size(); ++i) {
+        moved.values[i] += step * direction.values[i];
+      }
+      return Dot(adjoint, Render(moved, map));
+    };
+    const double numeric =
+        (8 * (value(0.25f) - value(-0.25f)) - (value(0.5f) - value(-0.5f))) /
+        (12 * 0.25);
+    double size = 0.0;
+    for (const double e : Render(at, map)) size += std::abs(e);
+    EXPECT_NEAR(numeric, slope, 1e-5 * size);
+  }
+}
+
+TEST_P(BouncedDerivatives, SameBitsForAnyNumberOfThreads) {
+  const Image map = RandomMap(32, 64, 6);
+  const auto compute = [&](int threads) {
+    SurfaceEmitterOptions how = Few();
+    how.num_threads = threads;
+    const Transport t(points_, 32, 64,
+                      WithBounces(scene_, points_, GetParam(), how));
+    std::vector<double> E(3 * points_.size());
+    t.Render(glossy_, map.rgb.data(), E.data());
+    std::vector<float> light(map.rgb.size()), grid(glossy_.values.size());
+    t.ByLight(glossy_).ApplyTranspose(E.data(), light.data());
+    t.GridGradient(glossy_, map.rgb.data(), E.data(), grid.data());
+    return std::make_tuple(E, light, grid);
+  };
+  const auto one = compute(1);
+  EXPECT_EQ(one, compute(2));
+  EXPECT_EQ(one, compute(3));
+}
+
+INSTANTIATE_TEST_SUITE_P(Bounces, BouncedDerivatives, ::testing::Values(1, 3));
+
+}  // namespace
+}  // namespace ibrdf
