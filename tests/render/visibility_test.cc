@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <random>
+#include <vector>
 
 #include "ibrdf/render/transport.h"
 #include "tests/render/render_testing.h"
@@ -232,6 +235,119 @@ TEST(Visibility, SameBitsForAnyNumberOfThreadsAndAnySelection) {
     if (a != nullptr) {
       EXPECT_TRUE(std::equal(a, a + words, c));
     }
+  }
+}
+
+// The rule by which VisibilityGrid chooses its rays, depth first and ray by
+// ray.
+class PlainTrace {
+ public:
+  PlainTrace(const Scene& scene, const ShadingPoint& point, int rows)
+      : scene_(scene), point_(point), rows_(rows), cast_(2 * rows * rows, -1) {
+    bits.assign(size_t{2} * rows * rows / 64, 0);
+    const int stride = rows / 32;
+    for (int r = 0; r < rows; r += stride) {
+      const int below = std::min(r + stride, rows - 1);
+      for (int c = 0; c < 2 * rows && below > r; c += stride) {
+        Refine(r, below, c, c + stride);
+      }
+    }
+  }
+  std::vector<uint64_t> bits;
+  int64_t rays = 0;
+
+ private:
+  // 0: below the horizon, 1: visible, 2: hidden.
+  int Look(int row, int column) {
+    const int texel = row * 2 * rows_ + column % (2 * rows_);
+    if (cast_[texel] >= 0) return cast_[texel];
+    const double theta = kPi * (row + 0.5) / rows_;
+    const double phi = kPi * (column % (2 * rows_) + 0.5) / rows_;
+    const Eigen::Vector3d d(std::sin(theta) * std::sin(phi), std::cos(theta),
+                            std::sin(theta) * std::cos(phi));
+    int seen = 0;
+    if (point_.normal.cast<double>().normalized().dot(d) > 0.0) {
+      ++rays;
+      seen = scene_.Occluded(point_.position, d) ? 2 : 1;
+    }
+    cast_[texel] = seen;
+    const uint64_t bit = uint64_t{1} << (texel % 64);
+    bits[texel / 64] =
+        seen == 2 ? bits[texel / 64] | bit : bits[texel / 64] & ~bit;
+    return seen;
+  }
+
+  void Refine(int r0, int r1, int c0, int c1) {
+    const int a = Look(r0, c0), b = Look(r0, c1), c = Look(r1, c0),
+              d = Look(r1, c1);
+    if (a == b && a == c && a == d) {
+      for (int k = 0; a == 2 && k < (r1 - r0 + 1) * (c1 - c0 + 1); ++k) {
+        const int texel = (r0 + k / (c1 - c0 + 1)) * 2 * rows_ +
+                          (c0 + k % (c1 - c0 + 1)) % (2 * rows_);
+        if (cast_[texel] < 0) bits[texel / 64] |= uint64_t{1} << (texel % 64);
+      }
+      return;
+    }
+    const int rm = (r0 + r1) / 2, cm = (c0 + c1) / 2;
+    const bool tall = rm > r0, wide = cm > c0;
+    if (!tall && !wide) return;
+    Refine(r0, tall ? rm : r1, c0, wide ? cm : c1);
+    if (wide) Refine(r0, tall ? rm : r1, cm, c1);
+    if (tall) Refine(rm, r1, c0, wide ? cm : c1);
+    if (tall && wide) Refine(rm, r1, cm, c1);
+  }
+
+  const Scene& scene_;
+  const ShadingPoint& point_;
+  int rows_;
+  std::vector<int> cast_;
+};
+
+TEST(VisibilityGrid, PacketsGiveTheBitsOfSingleRays) {
+  const Scene scene = Scene::FromMesh(TorusMesh(48, 24)).value();
+  const std::vector<ShadingPoint> points =
+      FindShadingPoints(scene, TorusCamera(), 16, 16, Mask(), 1).value();
+  int shadowed = 0;
+  for (const int rows : {32, 64, 128}) {
+    const VisibilityGrid grid(scene, rows);
+    VisibilityGrid::Scratch scratch;
+    VisibilityGrid::Bits bits;
+    for (const ShadingPoint& point : points) {
+      int64_t rays = 0;
+      shadowed += grid.Trace(point, &scratch, &bits, &rays) ? 1 : 0;
+      const PlainTrace plain(scene, point, rows);
+      ASSERT_EQ(plain.bits, bits);
+      EXPECT_EQ(plain.rays, rays);
+    }
+  }
+  EXPECT_GT(shadowed, 50);
+}
+
+TEST(Scene, ManyDirectionsAreAsOneByOne) {
+  const Scene torus = Scene::FromMesh(TorusMesh(48, 24)).value();
+  const ShadingPoint point =
+      FindShadingPoints(torus, TorusCamera(), 16, 16, Mask(), 1).value()[40];
+  std::mt19937 rng(6);
+  std::normal_distribution<double> g;
+  for (const size_t count : {0, 1, 7, 8, 9, 500}) {
+    std::vector<Eigen::Vector3f> directions;
+    while (directions.size() < count) {
+      directions.push_back(
+          Eigen::Vector3d(g(rng), g(rng), g(rng)).normalized().cast<float>());
+    }
+    std::vector<uint8_t> hidden(count, 9);
+    torus.Occluded(point.position, directions, hidden.data());
+    int64_t hits = 0;
+    for (size_t k = 0; k < count; ++k) {
+      EXPECT_EQ(torus.Occluded(point.position, directions[k].cast<double>()),
+                hidden[k] == 1);
+      hits += hidden[k];
+    }
+    if (count == 500) {
+      EXPECT_TRUE(hits > 50 && hits < 450) << hits;
+    }
+    Scene::UnitSphere().Occluded(point.position, directions, hidden.data());
+    for (const uint8_t h : hidden) EXPECT_EQ(0, h);
   }
 }
 

@@ -10,26 +10,10 @@
 #include <string>
 #include <utility>
 
-#include "ibrdf/base/parallel_for.h"
+#include "ibrdf/render/face_viewer.h"
 
 namespace ibrdf {
 namespace {
-
-// Turns a normal to the viewer: flipped where the surface shows its back, then
-// tilted about the view so that n.wo >= kMinViewCosine.
-Eigen::Vector3d FaceViewer(Eigen::Vector3d normal,
-                           const Eigen::Vector3d& geometric,
-                           const Eigen::Vector3d& wo) {
-  if (geometric.dot(wo) < 0.0) normal = -normal;
-  const double cosine = normal.dot(wo);
-  // The margin keeps the promise after rounding to float.
-  constexpr double kLeast = kMinViewCosine * (1.0 + 1e-3);
-  if (cosine >= kLeast) return normal;
-  Eigen::Vector3d tangent = normal - cosine * wo;
-  if (!(tangent.norm() > 1e-9)) return wo;  // straight away: no better guess
-  tangent.normalize();
-  return std::sqrt(1.0 - kLeast * kLeast) * tangent + kLeast * wo;
-}
 
 bool IntersectUnitSphere(const Ray& ray, bool from_infinity, SurfaceHit* hit) {
   const double b = ray.origin.dot(ray.direction);
@@ -105,6 +89,9 @@ struct Scene::Impl {
   bool IntersectMesh(const Ray& ray, bool from_infinity, SurfaceHit* hit) const;
   bool MeshOccludes(const Eigen::Vector3d& position,
                     const Eigen::Vector3d& direction) const;
+  void MeshOccludes(const Eigen::Vector3d& position,
+                    const std::vector<Eigen::Vector3f>& directions,
+                    uint8_t* hidden) const;
 };
 
 bool Scene::Impl::BuildEmbree() {
@@ -228,6 +215,39 @@ bool Scene::Impl::MeshOccludes(const Eigen::Vector3d& position,
   return ray.tfar < 0.0f;
 }
 
+void Scene::Impl::MeshOccludes(const Eigen::Vector3d& position,
+                               const std::vector<Eigen::Vector3f>& directions,
+                               uint8_t* hidden) const {
+  constexpr size_t kPacket = 8;
+  const Eigen::Vector3f o = ((position - center) / radius).cast<float>();
+  RTCRay8 rays{};
+  for (size_t k = 0; k < kPacket; ++k) {
+    rays.org_x[k] = o.x();
+    rays.org_y[k] = o.y();
+    rays.org_z[k] = o.z();
+    rays.mask[k] = ~0u;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  for (size_t begin = 0; begin < directions.size(); begin += kPacket) {
+    const size_t count = std::min(kPacket, directions.size() - begin);
+    alignas(32) int valid[kPacket] = {};
+    for (size_t k = 0; k < count; ++k) {
+      const Eigen::Vector3f& direction = directions[begin + k];
+      valid[k] = -1;
+      rays.dir_x[k] = direction.x();
+      rays.dir_y[k] = direction.y();
+      rays.dir_z[k] = direction.z();
+      rays.tnear[k] = 0.0f;
+      rays.tfar[k] = std::numeric_limits<float>::infinity();
+    }
+    rtcOccluded8(valid, embree, &context, &rays);
+    for (size_t k = 0; k < count; ++k) {
+      hidden[begin + k] = rays.tfar[k] < 0.0f ? 1 : 0;
+    }
+  }
+}
+
 Scene Scene::UnitSphere() { return Scene(std::make_shared<Impl>()); }
 
 StatusOr<Scene> Scene::FromMesh(const TriangleMesh& mesh) {
@@ -308,104 +328,18 @@ bool Scene::Occluded(const Eigen::Vector3d& position,
   return CastsShadows() && impl_->MeshOccludes(position, direction);
 }
 
+void Scene::Occluded(const Eigen::Vector3d& position,
+                     const std::vector<Eigen::Vector3f>& directions,
+                     uint8_t* hidden) const {
+  if (CastsShadows()) {
+    impl_->MeshOccludes(position, directions, hidden);
+  } else {
+    std::fill_n(hidden, directions.size(), uint8_t{0});
+  }
+}
+
 bool Scene::CastsShadows() const { return impl_->kind == Impl::Kind::kMesh; }
 
 const Image& Scene::normal_map() const { return impl_->normals; }
-
-namespace {
-
-// Normal at a continuous position: bilinear between the set pixels around it,
-// inside where the pixel that holds the position is set.
-bool NormalAt(const Image& normals, double x, double y,
-              Eigen::Vector3d* normal) {
-  const int px = std::min(static_cast<int>(x), normals.width - 1);
-  const int py = std::min(static_cast<int>(y), normals.height - 1);
-  const Eigen::Map<const Eigen::Vector3f> own(normals.At(px, py));
-  if (own.isZero()) return false;
-  const double x0 = std::floor(x - 0.5), y0 = std::floor(y - 0.5);
-  const double fx = x - 0.5 - x0, fy = y - 0.5 - y0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int corner = 0; corner < 4; ++corner) {
-    const int dx = corner & 1, dy = corner >> 1;
-    const int cx = std::clamp(static_cast<int>(x0) + dx, 0, normals.width - 1);
-    const int cy = std::clamp(static_cast<int>(y0) + dy, 0, normals.height - 1);
-    const Eigen::Map<const Eigen::Vector3f> n(normals.At(cx, cy));
-    sum += (dx ? fx : 1.0 - fx) * (dy ? fy : 1.0 - fy) * n.cast<double>();
-  }
-  *normal = sum.norm() > 1e-6 ? Eigen::Vector3d(sum.normalized())
-                              : Eigen::Vector3d(own.cast<double>());
-  return true;
-}
-
-}  // namespace
-
-StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
-                                                      const Camera& camera,
-                                                      int width, int height,
-                                                      const Mask& mask,
-                                                      int samples_per_side) {
-  CHECK(width > 0 && height > 0 && samples_per_side > 0);
-  const Image& normals = scene.normal_map();
-  const bool orthographic = camera.type == CameraType::kOrthographic;
-  const auto size = [](int w, int h) {
-    return std::to_string(w) + " x " + std::to_string(h);
-  };
-  if (!mask.empty() && (mask.width != width || mask.height != height)) {
-    return InvalidInput("mask", "expected the image's size " +
-                                    size(width, height) + ", found " +
-                                    size(mask.width, mask.height));
-  }
-  if (!IsValidCamera(camera)) {
-    return InvalidInput("camera",
-                        "expected fov_degrees in (0, 180), from apart from to, "
-                        "up not parallel to the view");
-  }
-  if (!normals.empty()) {
-    if (!orthographic) {
-      return InvalidInput("camera", "a normal map needs type orthographic");
-    }
-    if (normals.width != width || normals.height != height) {
-      return InvalidInput("normals", "expected the image's size " +
-                                         size(width, height) + ", found " +
-                                         size(normals.width, normals.height));
-    }
-  }
-
-  std::vector<std::vector<ShadingPoint>> rows(height);
-  const int s = samples_per_side;
-  ParallelFor(height, 0, [&](int64_t y, int) {
-    for (int x = 0; x < width; ++x) {
-      const int pixel = static_cast<int>(y) * width + x;
-      if (!mask.empty() && mask.inside[pixel] == 0) continue;
-      for (int k = 0; k < s * s; ++k) {
-        const double px = x + (k % s + 0.5) / s;
-        const double py = static_cast<double>(y) + (k / s + 0.5) / s;
-        const Ray ray = CameraRay(camera, px, py, width, height);
-        const Eigen::Vector3d wo = -ray.direction;
-        SurfaceHit hit{};
-        if (!normals.empty()) {
-          Eigen::Vector3d normal;
-          if (!NormalAt(normals, px, py, &normal)) continue;
-          hit.normal = FaceViewer(normal, wo, wo);
-        } else if (!scene.Intersect(ray, orthographic, &hit)) {
-          continue;
-        }
-        rows[y].push_back({hit.normal.cast<float>(), wo.cast<float>(), pixel,
-                           1.0f / static_cast<float>(s * s), 0, hit.position});
-      }
-    }
-  });
-  std::vector<ShadingPoint> points;
-  for (const std::vector<ShadingPoint>& row : rows) {
-    points.insert(points.end(), row.begin(), row.end());
-  }
-  if (points.empty()) {
-    return InvalidInput("geometry", "no pixel inside the mask sees the object");
-  }
-  for (size_t i = 0; i < points.size(); ++i) {
-    points[i].index = static_cast<int>(i);
-  }
-  return points;
-}
 
 }  // namespace ibrdf

@@ -1,6 +1,7 @@
 // The object in front of the camera, and its points that pixels see.
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -61,6 +62,11 @@ class Scene {
   // where CastsShadows() is.
   bool Occluded(const Eigen::Vector3d& position,
                 const Eigen::Vector3d& direction) const;
+  // The same in many directions, neighbours best side by side, in packets:
+  // hidden[i] = 1 where directions[i] hits, else 0.
+  void Occluded(const Eigen::Vector3d& position,
+                const std::vector<Eigen::Vector3f>& directions,
+                uint8_t* hidden) const;
 
   // Whether the geometry may hide light from itself: meshes. The sphere is
   // convex, and a normal map has no position.

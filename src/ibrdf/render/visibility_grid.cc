@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ibrdf/light/environment_map.h"
 
@@ -15,7 +16,7 @@ constexpr int kLatticeRows = 32;
 
 // What is known of a direction. What follows from its neighbours (filled) gives
 // way to a ray.
-enum State : uint8_t { kUnknown, kBelow, kVisible, kHidden, kFilled };
+enum State : uint8_t { kUnknown, kBelow, kVisible, kHidden, kFilled, kAsked };
 
 }  // namespace
 
@@ -35,65 +36,96 @@ VisibilityGrid::VisibilityGrid(const Scene& scene, int rows)
 }
 
 struct VisibilityGrid::Tracer {
+  using Cell = Scratch::Cell;
   const VisibilityGrid& grid;
   const ShadingPoint& point;
   const Eigen::Vector3d n;
-  std::vector<uint8_t>& state;
+  Scratch& scratch;
   Bits& bits;
   int64_t rays = 0;
   bool any = false;
 
-  State Look(int row, int column) {
-    const size_t texel = static_cast<size_t>(row) * grid.columns() + column;
-    if (state[texel] != kUnknown && state[texel] != kFilled) {
-      return static_cast<State>(state[texel]);
-    }
-    const Eigen::Vector3d direction = grid.Direction(row, column);
-    State seen = kBelow;
+  // The first column may be given once more.
+  int Wrap(int column) const { return column == grid.columns() ? 0 : column; }
+  size_t Texel(int row, int column) const {
+    return static_cast<size_t>(row) * grid.columns() + Wrap(column);
+  }
+  void Show(size_t texel) {
+    bits[texel / 64] &= ~(uint64_t{1} << (texel % 64));
+  }
+  void Hide(size_t texel) { bits[texel / 64] |= uint64_t{1} << (texel % 64); }
+
+  // Has the direction's ray cast by Cast() where it has not been.
+  void Ask(int row, int column) {
+    const size_t texel = Texel(row, column);
+    uint8_t& state = scratch.state[texel];
+    if (state != kUnknown && state != kFilled) return;
+    const Eigen::Vector3d direction = grid.Direction(row, Wrap(column));
     if (n.dot(direction) > 0.0) {
-      ++rays;
-      seen =
-          grid.scene_.Occluded(point.position, direction) ? kHidden : kVisible;
-    }
-    state[texel] = seen;
-    const uint64_t bit = uint64_t{1} << (texel % 64);
-    if (seen == kHidden) {
-      bits[texel / 64] |= bit;
-      any = true;
+      state = kAsked;
+      scratch.texels.push_back(static_cast<int>(texel));
+      scratch.directions.push_back(direction.cast<float>());
     } else {
-      bits[texel / 64] &= ~bit;
+      state = kBelow;
+      Show(texel);
     }
-    return seen;
   }
 
-  // Rows r0 to r1 and columns c0 to c1, corners included; c1 may be the first
-  // column once more.
-  void Refine(int r0, int r1, int c0, int c1) {
-    const int wrapped = c1 % grid.columns();
-    const State corner = Look(r0, c0);
-    const State others[] = {Look(r0, wrapped), Look(r1, c0), Look(r1, wrapped)};
-    if (std::all_of(others, others + 3,
-                    [corner](State s) { return s == corner; })) {
-      if (corner == kHidden) Fill(r0, r1, c0, c1);
+  void Ask(const Cell& cell) {
+    for (const int r : {cell.row_begin, cell.row_end}) {
+      for (const int c : {cell.column_begin, cell.column_end}) Ask(r, c);
+    }
+    scratch.parts.push_back(cell);
+  }
+
+  // Packets of rays; what they find.
+  void Cast() {
+    const size_t count = scratch.texels.size();
+    scratch.hidden.resize(count);
+    grid.scene_.Occluded(point.position, scratch.directions,
+                         scratch.hidden.data());
+    for (size_t k = 0; k < count; ++k) {
+      const int texel = scratch.texels[k];
+      const bool hidden = scratch.hidden[k] != 0;
+      scratch.state[texel] = hidden ? kHidden : kVisible;
+      if (hidden) {
+        Hide(texel);
+        any = true;
+      } else {
+        Show(texel);
+      }
+    }
+    rays += static_cast<int64_t>(count);
+    scratch.texels.clear();
+    scratch.directions.clear();
+  }
+
+  // Cuts the cell by halves where its corners differ.
+  void Refine(const Cell& cell) {
+    const auto [r0, r1, c0, c1] = cell;
+    const uint8_t corner = scratch.state[Texel(r0, c0)];
+    if (scratch.state[Texel(r0, c1)] == corner &&
+        scratch.state[Texel(r1, c0)] == corner &&
+        scratch.state[Texel(r1, c1)] == corner) {
+      if (corner == kHidden) Fill(cell);
       return;
     }
     const int rm = (r0 + r1) / 2, cm = (c0 + c1) / 2;
     const bool tall = rm > r0, wide = cm > c0;
     if (!tall && !wide) return;
-    Refine(r0, tall ? rm : r1, c0, wide ? cm : c1);
-    if (wide) Refine(r0, tall ? rm : r1, cm, c1);
-    if (tall) Refine(rm, r1, c0, wide ? cm : c1);
-    if (tall && wide) Refine(rm, r1, cm, c1);
+    Ask(Cell{r0, tall ? rm : r1, c0, wide ? cm : c1});
+    if (wide) Ask(Cell{r0, tall ? rm : r1, cm, c1});
+    if (tall) Ask(Cell{rm, r1, c0, wide ? cm : c1});
+    if (tall && wide) Ask(Cell{rm, r1, cm, c1});
   }
 
-  void Fill(int r0, int r1, int c0, int c1) {
-    for (int r = r0; r <= r1; ++r) {
-      for (int c = c0; c <= c1; ++c) {
-        const size_t texel =
-            static_cast<size_t>(r) * grid.columns() + c % grid.columns();
-        if (state[texel] != kUnknown) continue;
-        state[texel] = kFilled;
-        bits[texel / 64] |= uint64_t{1} << (texel % 64);
+  void Fill(const Cell& cell) {
+    for (int r = cell.row_begin; r <= cell.row_end; ++r) {
+      for (int c = cell.column_begin; c <= cell.column_end; ++c) {
+        const size_t texel = Texel(r, c);
+        if (scratch.state[texel] != kUnknown) continue;
+        scratch.state[texel] = kFilled;
+        Hide(texel);
       }
     }
   }
@@ -104,15 +136,23 @@ bool VisibilityGrid::Trace(const ShadingPoint& point, Scratch* scratch,
   bits->assign(words(), 0);
   if (!scene_.CastsShadows()) return false;
   scratch->state.assign(size_t{1} * rows_ * columns(), kUnknown);
+  scratch->parts.clear();
   Tracer tracer{*this, point, point.normal.cast<double>().normalized(),
-                scratch->state, *bits};
+                *scratch, *bits};
   const int stride = rows_ / kLatticeRows;
   for (int r = 0; r < rows_; r += stride) {
     // The last rows end at the pole, one short of a whole step.
     const int below = std::min(r + stride, rows_ - 1);
     for (int c = 0; c < columns() && below > r; c += stride) {
-      tracer.Refine(r, below, c, c + stride);
+      tracer.Ask({r, below, c, c + stride});
     }
+  }
+  // Level by level, so that many rays are cast together.
+  while (!scratch->parts.empty()) {
+    tracer.Cast();
+    std::swap(scratch->cells, scratch->parts);
+    scratch->parts.clear();
+    for (const Scratch::Cell& cell : scratch->cells) tracer.Refine(cell);
   }
   if (rays != nullptr) *rays += tracer.rays;
   return tracer.any;

@@ -26,7 +26,15 @@ class VisibilityGrid {
   using Bits = std::vector<uint64_t>;
   // Of one thread; kept between calls.
   struct Scratch {
+    struct Cell {
+      int row_begin, row_end, column_begin, column_end;  // corners
+    };
     std::vector<uint8_t> state;
+    std::vector<Cell> cells, parts;
+    // Rays to be cast.
+    std::vector<int> texels;
+    std::vector<Eigen::Vector3f> directions;
+    std::vector<uint8_t> hidden;
   };
 
   // rows x 2 rows directions, rows a multiple of 32. Keeps the scene.
