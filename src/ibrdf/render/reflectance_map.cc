@@ -27,9 +27,9 @@ constexpr size_t kWorthCutting = 3 * kNewNodes;
 // Cutting a cell of a smooth function in four divides its error by 8. The error
 // known of a cell is that of the one it was cut from.
 constexpr double kGain = 8.0;
-constexpr double kFirstTolerance = 4.0;  // of the requested error
-constexpr int kRounds = 8;               // each halves the tolerance
-constexpr double kDark = 1e-3;           // of the geometric mean
+constexpr double kFirstTolerance = 32.0;  // of the requested error
+constexpr int kRounds = 12;               // each halves the tolerance
+constexpr double kDark = 1e-3;            // of the geometric mean
 
 // Angle to the view in units of its largest, and turns around it.
 struct Place {
