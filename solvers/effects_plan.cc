@@ -101,6 +101,16 @@ void Choose(bool may_leave_shadows, bool may_bounce, EffectsPlan* plan) {
   }
 }
 
+// Radiance depends on the normal alone.
+bool DependsOnNormal(const Problem& problem, bool visibility) {
+  const EffectsSpec& effects = problem.effects;
+  const bool allowed = effects.mode == EffectsMode::kAuto ||
+                       effects.mode == EffectsMode::kAll ||
+                       Listed(effects, Effect::kReflectanceMap);
+  return allowed && !visibility &&
+         problem.camera.type == CameraType::kOrthographic;
+}
+
 }  // namespace
 
 StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
@@ -110,6 +120,7 @@ StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
                                   int num_threads) {
   EffectsPlan plan;
   plan.threshold = threshold;
+  plan.reflectance_map = DependsOnNormal(problem, false);
   const EffectsSpec& effects = problem.effects;
   const bool interreflection = Listed(effects, Effect::kInterreflection);
   // Where light is bounced it is also blocked.
@@ -155,6 +166,7 @@ StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
       if (interreflection) plan.bounces = std::max(plan.bounces, 1);
       break;
   }
+  plan.reflectance_map = DependsOnNormal(problem, plan.visibility);
   plan.error = plan.visibility ? plan.worth.bounces[plan.bounces]
                                : plan.worth.unshadowed;
   plan.words = InWords(plan, effects.mode);

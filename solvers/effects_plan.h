@@ -20,6 +20,9 @@ inline constexpr double kReferenceLogError = 0.001;
 struct EffectsPlan {
   bool visibility = false;
   int bounces = 0;  // of light from the object to itself; with visibility alone
+  // Whether an image is rendered once for all points of like normals: without
+  // shadows, seen by an orthographic camera.
+  bool reflectance_map = false;
   SceneProbe probe;
   // Predicted under the known light and reflectance; where one is unknown,
   // under a sun in a clear sky, and for a matte and a glossy surface.

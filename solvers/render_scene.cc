@@ -10,6 +10,7 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/light/procedural_sky.h"
 #include "ibrdf/render/reference_renderer.h"
+#include "ibrdf/render/reflectance_map.h"
 #include "ibrdf/render/transport.h"
 #include "io/image_file.h"
 #include "io/merl.h"
@@ -23,6 +24,9 @@ constexpr int kReferenceSamplesPerSide = 2;
 // quality, enough to keep the threads busy.
 constexpr size_t kPointsPerStep = 2048;
 constexpr int kPreviewShadowRows = 128;
+// Log radiance that interpolation between normals may cost.
+constexpr double kReferenceMapError = 3e-4;
+constexpr double kPreviewMapError = 3e-3;
 // Whose sight decides where emitters are.
 constexpr size_t kEmitterPoints = 2048;
 constexpr size_t kReferenceEmitterPoints = 8192;
@@ -224,21 +228,42 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
   const double* const emitted_light =
       emitted.empty() ? nullptr : emitted.data();
   const ReferenceRenderer renderer(*map, quality);
-  std::vector<double> E(3 * points.size());
-  for (size_t begin = 0; begin < points.size(); begin += kPointsPerStep) {
-    if (options.progress &&
-        !options.progress(static_cast<double>(begin) / points.size())) {
-      return Status(StatusCode::kInterrupted, problem.path + ": interrupted");
-    }
-    const size_t end = std::min(begin + kPointsPerStep, points.size());
-    const std::vector<ShadingPoint> step(points.begin() + begin,
-                                         points.begin() + end);
+  const auto render = [&](const std::vector<ShadingPoint>& some, double* E) {
     if (problem.reflectance.analytic.has_value()) {
-      renderer.Render(step, problem.reflectance.analytic->Function(),
-                      &E[3 * begin], emitted_light);
+      renderer.Render(some, problem.reflectance.analytic->Function(), E,
+                      emitted_light);
     } else {
-      renderer.Render(step, table, &E[3 * begin], emitted_light);
+      renderer.Render(some, table, E, emitted_light);
     }
+  };
+  std::vector<double> E(3 * points.size());
+  const auto in_steps = [&](const std::vector<ShadingPoint>& all, double* out) {
+    for (size_t begin = 0; begin < all.size(); begin += kPointsPerStep) {
+      if (options.progress &&
+          !options.progress(static_cast<double>(begin) / points.size())) {
+        return false;
+      }
+      const size_t end = std::min(begin + kPointsPerStep, all.size());
+      render({all.begin() + begin, all.begin() + end}, out + 3 * begin);
+    }
+    return true;
+  };
+  if (effects->reflectance_map) {
+    ReflectanceMapOptions by_normal;
+    by_normal.log_error = reference ? kReferenceMapError : kPreviewMapError;
+    const StatusOr<ReflectanceMapReport> report =
+        RenderByNormal(points, in_steps, by_normal, E.data());
+    if (!report.ok()) {
+      return report.status().code() == StatusCode::kInterrupted
+                 ? Status(StatusCode::kInterrupted,
+                          problem.path + ": interrupted")
+                 : report.status();
+    }
+    effects->words += "; " + std::to_string(report->interpolated) + " of " +
+                      std::to_string(points.size()) +
+                      " points are interpolated by their normal from others";
+  } else if (!in_steps(points, E.data())) {
+    return Status(StatusCode::kInterrupted, problem.path + ": interrupted");
   }
   if (options.progress) options.progress(1.0);
 

@@ -78,6 +78,7 @@ StatusOr<NamedMetrics> EvaluateImageFiles(const std::string& estimate,
         {{"estimate", estimate}, {"reference", reference}, {"mask", mask}});
   }
   return NamedMetrics{{"image_log_rmse", metrics->log_rmse},
+                      {"image_mean_abs_log", metrics->mean_abs_log},
                       {"psnr", metrics->psnr},
                       {"dssim", metrics->dssim}};
 }

@@ -104,6 +104,9 @@ TEST(ImageMetrics, OneScaleChangesLogRmseButNotPsnr) {
   EXPECT_NEAR(std::log(4.0),
               CompareImages(estimate, reference, Mask())->log_rmse,
               kFloorTolerance);
+  EXPECT_NEAR(std::log(4.0),
+              CompareImages(estimate, reference, Mask())->mean_abs_log,
+              kFloorTolerance);
 }
 
 TEST(ImageMetrics, PsnrInClosedForm) {

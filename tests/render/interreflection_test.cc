@@ -7,6 +7,7 @@
 #include <random>
 #include <tuple>
 
+#include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/render/surface_emitters.h"
 #include "ibrdf/render/transport.h"
 #include "tests/render/render_testing.h"
@@ -251,6 +252,29 @@ TEST(Interreflection, EmittersCoverWhatIsSeenWithinTheirNumber) {
     EXPECT_LT(emitters->num_lost(), 1e-3 * emitters->num_cells());
     for (const ShadingPoint& p : emitters->points()) {
       EXPECT_GE(p.normal.dot(p.wo), 0.9f * kMinViewCosine);
+    }
+  }
+}
+
+// Smooth surfaces give back nearly all light at grazing angles, where a table
+// between its nodes gives back more: bounces must not build that up.
+TEST(Interreflection, GlossyObjectsInConstantLightStayDarkerThanIt) {
+  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const std::vector<ShadingPoint> points =
+      FindShadingPoints(scene, TorusCamera(), 24, 24, Mask(), 1).value();
+  const TransportOptions options = WithBounces(scene, points, 4);
+  const Transport transport(points, 32, 64, options);
+  const Image map = ConstantMap(32, 64, 1.0f);
+  for (const double roughness : {0.2, 0.05, 0.01}) {
+    CookTorrance brdf;
+    brdf.diffuse = {0.3, 0.2, 0.0};
+    brdf.specular = Eigen::Array3d::Constant(0.6);
+    brdf.roughness = Eigen::Array3d::Constant(roughness);
+    brdf.f0 = 0.3;
+    const BrdfGrid grid = BrdfGrid::FromFunction(brdf.Function(), options.grid);
+    for (const double e : transport.Emitted(grid, map.rgb.data())) {
+      EXPECT_GT(e, 0.0);
+      EXPECT_LT(e, 1.0) << roughness;
     }
   }
 }

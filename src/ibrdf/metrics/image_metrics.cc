@@ -155,7 +155,7 @@ StatusOr<ImageMetrics> CompareImages(const Image& estimate,
   const double scale = dot_ee > 0.0 ? std::max(dot_er / dot_ee, 0.0) : 0.0;
 
   LogDifferences differences;
-  double squares = 0.0;
+  double squares = 0.0, magnitudes = 0.0;
   for (size_t i = 0; i < compared->size(); ++i) {
     if ((*compared)[i] == 0.0) continue;
     std::array<double, 3> difference;
@@ -163,10 +163,13 @@ StatusOr<ImageMetrics> CompareImages(const Image& estimate,
       const double e = estimate.rgb[3 * i + c], r = reference.rgb[3 * i + c];
       difference[c] = LogDifference(e, r, kRelativeFloor * largest);
       squares += (scale * e - r) * (scale * e - r);
+      magnitudes += std::abs(difference[c]);
     }
     differences.Add(difference, 1.0);
   }
   metrics.log_rmse = differences.Rms(/*aligned=*/false);
+  metrics.mean_abs_log =
+      magnitudes / (3.0 * static_cast<double>(metrics.pixels));
   const double mean_square =
       squares / (3.0 * static_cast<double>(metrics.pixels));
   metrics.psnr = mean_square > 0.0

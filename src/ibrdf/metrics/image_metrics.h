@@ -13,6 +13,8 @@ struct ImageMetrics {
   // Root mean square of log(max(e, 0) + f) - log(max(r, 0) + f), natural
   // logarithm, f = 1e-6 times the largest reference value.
   double log_rmse = 0.0;
+  // Mean magnitude of the same.
+  double mean_abs_log = 0.0;
   // 20 log10(largest r / root mean square of s e - r), dB, with the one s >= 0
   // for all channels that makes it largest; infinite where nothing is left.
   double psnr = 0.0;

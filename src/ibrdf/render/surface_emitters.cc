@@ -20,6 +20,11 @@ constexpr double kPatchGrowth = 1.25;
 constexpr double kLikeNormals = 0.5;
 // Rounds in which emitters find emitters that nothing else sees.
 constexpr int kMaxRounds = 4;
+// Emitters are looked at from no flatter than this: nearer the horizon tables
+// of reflectance are not to be trusted (interpolated, a smooth surface gives
+// back a thousand times what it gets), and every bounce would multiply the
+// error.
+constexpr double kLeastCosine = 0.15;
 // Emitters see in steps this much wider than points.
 constexpr int kCoarser = 2;
 constexpr int64_t kPointsPerChunk = 16;
@@ -46,6 +51,14 @@ std::vector<const ShadingPoint*> Spread(const std::vector<ShadingPoint>& points,
     out.push_back(&points[(2 * k + 1) * points.size() / (2 * count)]);
   }
   return out;
+}
+
+Eigen::Vector3d NotTooFlat(const Eigen::Vector3d& n,
+                           const Eigen::Vector3d& wo) {
+  if (n.dot(wo) >= kLeastCosine) return wo;
+  const Eigen::Vector3d across = wo - n.dot(wo) * n;
+  return kLeastCosine * n +
+         std::sqrt(1.0 - kLeastCosine * kLeastCosine) * across.normalized();
 }
 
 }  // namespace
@@ -235,7 +248,7 @@ bool SurfaceEmitters::Gather(const std::vector<Hit>& hits) {
 void SurfaceEmitters::AddEmitter(uint64_t patch, const Hit& hit) {
   ShadingPoint point{};
   point.normal = hit.normal.cast<float>();
-  point.wo = hit.wo.cast<float>();
+  point.wo = NotTooFlat(hit.normal, hit.wo).cast<float>();
   point.position = hit.position;
   point.pixel = -1;
   point.coverage = 1.0f;

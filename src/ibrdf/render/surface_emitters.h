@@ -63,8 +63,8 @@ class SurfaceEmitters {
 
   int bounces() const { return options_.bounces; }
   int count() const { return static_cast<int>(points_.size()); }
-  // The emitters: surface points, wo towards those that see them, index their
-  // place in the list.
+  // The emitters: surface points, wo towards those that see them (at least 8.6
+  // degrees above the surface), index their place in the list.
   const std::vector<ShadingPoint>& points() const { return points_; }
   // What is hidden from the emitters.
   const std::shared_ptr<const Visibility>& visibility() const {
