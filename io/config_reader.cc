@@ -85,11 +85,12 @@ void ConfigContext::Fail(const std::string& key, const std::string& what) {
 std::string NearestWord(const std::string& word,
                         const std::vector<std::string>& known) {
   const std::string head = word.substr(0, kMaxShown);
-  return *std::min_element(known.begin(), known.end(),
-                           [&](const std::string& a, const std::string& b) {
-                             return EditDistance(head, a) <
-                                    EditDistance(head, b);
-                           });
+  std::vector<int> distances;
+  for (const std::string& other : known) {
+    distances.push_back(EditDistance(head, other));
+  }
+  return known[std::min_element(distances.begin(), distances.end()) -
+               distances.begin()];
 }
 
 std::string Describe(const ConfigNode& node) {
@@ -129,6 +130,7 @@ ConfigReader::ConfigReader(ConfigContext* context, const ConfigNode* node,
   node_ = node;
   for (const auto& [key, value] : node->entries) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    if (!context_->error.ok()) return;  // the first one is told
     context_->Fail(PathOf(key.substr(0, kMaxShown)),
                    "unknown key; the nearest known one is " +
                        PathOf(NearestWord(key, known)));

@@ -19,11 +19,11 @@
 #include <exception>
 #include <map>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "io/atomic_file.h"
-#include "io/image_limits.h"
 
 namespace ibrdf {
 namespace {
@@ -120,7 +120,8 @@ StatusOr<std::array<std::string, 3>> ColourChannels(
                           (found.empty() ? std::string("none") : found));
 }
 
-Status CheckHeader(const std::string& path, const Imf::Header& header) {
+Status CheckHeader(const std::string& path, const Imf::Header& header,
+                   const ImageLimits& limits) {
   if (header.hasType() && !Imf::isImage(header.type())) {
     return InvalidInput(path + ": type",
                         "expected scanlines or tiles, found " + header.type());
@@ -128,11 +129,11 @@ Status CheckHeader(const std::string& path, const Imf::Header& header) {
   const Imath::Box2i& window = header.dataWindow();
   IBRDF_RETURN_IF_ERROR(
       CheckImageSize(path, int64_t{window.max.x} - window.min.x + 1,
-                     int64_t{window.max.y} - window.min.y + 1));
+                     int64_t{window.max.y} - window.min.y + 1, limits));
   if (header.hasTileDescription()) {
     // OpenEXR allocates whole tiles, even of a small image.
     const Imf::TileDescription& tile = header.tileDescription();
-    const Status status = CheckImageSize(path, tile.xSize, tile.ySize);
+    const Status status = CheckImageSize(path, tile.xSize, tile.ySize, limits);
     if (!status.ok()) {
       return InvalidInput(path + ": tile size",
                           "expected at most the limits of an image, found " +
@@ -152,6 +153,29 @@ uint32_t LittleEndian32(const std::string& bytes, size_t at) {
 }
 
 constexpr size_t kHeaderStart = 8;  // after the magic number and the version
+
+// Whether OpenEXR, which goes by the type where that says how long a value is,
+// reads all of `value` and no more.
+bool SizeFitsType(const std::string& type, std::string_view value) {
+  static const std::map<std::string, size_t> kBytes = {
+      {"box2f", 16},   {"box2i", 16},      {"chromaticities", 32},
+      {"double", 8},   {"compression", 1}, {"deepImageState", 1},
+      {"envmap", 1},   {"float", 4},       {"int", 4},
+      {"keycode", 28}, {"lineOrder", 1},   {"m33d", 72},
+      {"m33f", 36},    {"m44d", 128},      {"m44f", 64},
+      {"rational", 8}, {"tiledesc", 9},    {"timecode", 8},
+      {"v2d", 16},     {"v2f", 8},         {"v2i", 8},
+      {"v3d", 24},     {"v3f", 12},        {"v3i", 12}};
+  if (type == "chlist") {  // names with 16 bytes each, then an empty name
+    size_t at = 0;
+    while (at < value.size() && value[at] != '\0') {
+      at = std::min(value.find('\0', at), value.size()) + 17;
+    }
+    return at + 1 == value.size();
+  }
+  const auto bytes = kBytes.find(type);
+  return bytes == kBytes.end() || bytes->second == value.size();
+}
 
 // OpenEXR allocates what an attribute claims before it reads it: every claim
 // must fit into the file. A header that is cut off is left to OpenEXR.
@@ -184,12 +208,20 @@ Status CheckAttributes(const std::string& path, const std::string& bytes) {
                           "expected a size that fits into the file, found " +
                               std::to_string(size) + " bytes");
     }
+    const std::string type =
+        bytes.substr(name_end + 1, type_end - name_end - 1);
+    if (!SizeFitsType(type, std::string_view(bytes).substr(at, size))) {
+      return InvalidInput(path + ": attribute " + name,
+                          "expected the size of its type, found " +
+                              std::to_string(size) + " bytes");
+    }
     at += size;
   }
 }
 
 // Before OpenEXR reads tables that grow with the size that the header claims.
-Status CheckFirstHeader(const std::string& path, const std::string& bytes) {
+Status CheckFirstHeader(const std::string& path, const std::string& bytes,
+                        const ImageLimits& limits) {
   IBRDF_RETURN_IF_ERROR(CheckAttributes(path, bytes));
   if (bytes.size() < kHeaderStart) return OkStatus();
   MemoryInput stream(path, bytes);
@@ -197,16 +229,17 @@ Status CheckFirstHeader(const std::string& path, const std::string& bytes) {
   int version = static_cast<int>(LittleEndian32(bytes, 4));
   Imf::Header header;
   header.readFrom(stream, version);
-  return CheckHeader(path, header);
+  return CheckHeader(path, header, limits);
 }
 
-StatusOr<Image> Decode(const std::string& path, const std::string& bytes) {
-  IBRDF_RETURN_IF_ERROR(CheckFirstHeader(path, bytes));
+StatusOr<Image> Decode(const std::string& path, const std::string& bytes,
+                       const ImageLimits& limits) {
+  IBRDF_RETURN_IF_ERROR(CheckFirstHeader(path, bytes, limits));
   MemoryInput stream(path, bytes);
   Imf::MultiPartInputFile file(stream, Imf::globalThreadCount(),
                                /*reconstructChunkOffsetTable=*/false);
   const Imf::Header& header = file.header(0);
-  IBRDF_RETURN_IF_ERROR(CheckHeader(path, header));
+  IBRDF_RETURN_IF_ERROR(CheckHeader(path, header, limits));
   if (!file.partComplete(0)) {
     return InvalidInput(path, "incomplete file, expected all its pixels");
   }
@@ -282,10 +315,15 @@ std::string Encode(const Image& image, const std::string& path,
 }  // namespace
 
 StatusOr<Image> ReadExr(const std::string& path) {
-  StatusOr<std::string> bytes = ReadFile(path, kMaxImageFileBytes);
+  const StatusOr<std::string> bytes = ReadFile(path, kMaxImageFileBytes);
   if (!bytes.ok()) return bytes.status();
+  return DecodeExr(path, *bytes);
+}
+
+StatusOr<Image> DecodeExr(const std::string& path, const std::string& bytes,
+                          const ImageLimits& limits) {
   try {
-    return Decode(path, *bytes);
+    return Decode(path, bytes, limits);
   } catch (const std::exception& e) {
     return InvalidInput(
         path, std::string("expected an OpenEXR image (") + e.what() + ")");

@@ -4,6 +4,7 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
+#include "io/image_limits.h"
 
 namespace ibrdf {
 
@@ -16,6 +17,10 @@ namespace ibrdf {
 // Refuses other channels (the message lists those found), subsampled channels,
 // deep data, incomplete files, and sizes over those of io/image_limits.h.
 StatusOr<Image> ReadExr(const std::string& path);
+
+// The same of a file's bytes; messages call it `path`.
+StatusOr<Image> DecodeExr(const std::string& path, const std::string& bytes,
+                          const ImageLimits& limits = {});
 
 enum class ExrPixelType {
   kFloat,  // exact

@@ -2,14 +2,15 @@
 
 namespace ibrdf {
 
-Status CheckImageSize(const std::string& path, int64_t width, int64_t height) {
-  const bool sides_ok = width >= 1 && height >= 1 && width <= kMaxImageSide &&
-                        height <= kMaxImageSide;
-  if (sides_ok && width * height <= kMaxImagePixels) return OkStatus();
+Status CheckImageSize(const std::string& path, int64_t width, int64_t height,
+                      const ImageLimits& limits) {
+  const bool sides_ok = width >= 1 && height >= 1 && width <= limits.side &&
+                        height <= limits.side;
+  if (sides_ok && width * height <= limits.pixels) return OkStatus();
   return InvalidInput(path + ": size",
                       "expected sides from 1 to " +
-                          std::to_string(kMaxImageSide) + " and at most " +
-                          std::to_string(kMaxImagePixels) + " pixels, found " +
+                          std::to_string(limits.side) + " and at most " +
+                          std::to_string(limits.pixels) + " pixels, found " +
                           std::to_string(width) + "x" + std::to_string(height));
 }
 

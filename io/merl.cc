@@ -1,8 +1,8 @@
 #include "io/merl.h"
 
 #include <cmath>
-#include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "io/atomic_file.h"
 
@@ -13,36 +13,47 @@ constexpr size_t kTableBytes = size_t{3} * kMerlBins * sizeof(double);
 }  // namespace
 
 StatusOr<MerlTable> ReadMerl(const std::string& path) {
-  StatusOr<std::string> bytes = ReadFile(path, kHeaderBytes + kTableBytes);
+  const StatusOr<std::string> bytes =
+      ReadFile(path, kHeaderBytes + kTableBytes);
   if (!bytes.ok()) return bytes.status();
-  int32_t dims[3];
-  if (bytes->size() < kHeaderBytes) {
+  StatusOr<std::vector<double>> raw = DecodeMerl(path, *bytes);
+  if (!raw.ok()) return raw.status();
+  MerlTable table;
+  table.raw = *std::move(raw);
+  return table;
+}
+
+StatusOr<std::vector<double>> DecodeMerl(const std::string& path,
+                                         const std::string& bytes,
+                                         const std::array<int32_t, 3>& bins) {
+  const auto text = [](const std::array<int32_t, 3>& b) {
+    return std::to_string(b[0]) + " " + std::to_string(b[1]) + " " +
+           std::to_string(b[2]);
+  };
+  std::array<int32_t, 3> found;
+  if (bytes.size() < kHeaderBytes) {
     return InvalidInput(path, "truncated MERL header, expected 12 bytes");
   }
-  std::memcpy(dims, bytes->data(), kHeaderBytes);
-  if (dims[0] != kMerlThetaH || dims[1] != kMerlThetaD ||
-      dims[2] != kMerlPhiD) {
+  std::memcpy(found.data(), bytes.data(), kHeaderBytes);
+  if (found != bins) {
     return InvalidInput(path + ": dimensions",
-                        "expected 90 90 180, found " + std::to_string(dims[0]) +
-                            " " + std::to_string(dims[1]) + " " +
-                            std::to_string(dims[2]));
+                        "expected " + text(bins) + ", found " + text(found));
   }
-  if (bytes->size() != kHeaderBytes + kTableBytes) {
+  std::vector<double> raw(size_t{3} * bins[0] * bins[1] * bins[2]);
+  const size_t size = kHeaderBytes + raw.size() * sizeof(double);
+  if (bytes.size() != size) {
     return InvalidInput(path, "truncated MERL table, expected " +
-                                  std::to_string(kHeaderBytes + kTableBytes) +
-                                  " bytes, found " +
-                                  std::to_string(bytes->size()));
+                                  std::to_string(size) + " bytes, found " +
+                                  std::to_string(bytes.size()));
   }
-  MerlTable table;
-  table.raw.resize(size_t{3} * kMerlBins);
-  std::memcpy(table.raw.data(), bytes->data() + kHeaderBytes, kTableBytes);
-  for (size_t i = 0; i < table.raw.size(); ++i) {
-    if (!std::isfinite(table.raw[i])) {
+  std::memcpy(raw.data(), bytes.data() + kHeaderBytes, size - kHeaderBytes);
+  for (size_t i = 0; i < raw.size(); ++i) {
+    if (!std::isfinite(raw[i])) {
       return InvalidInput(path + ": entry " + std::to_string(i),
                           "expected a finite number");
     }
   }
-  return table;
+  return raw;
 }
 
 Status WriteMerl(const MerlTable& table, const std::string& path) {

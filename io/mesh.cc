@@ -1,20 +1,17 @@
 #include "io/mesh.h"
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
+#include <Eigen/Geometry>
 #include <array>
-#include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <exception>
+#include <numeric>
 #include <unordered_map>
+#include <vector>
 
 #include "io/atomic_file.h"
 #include "io/file_extension.h"
-#include "io/mesh_clean.h"
+#include "io/polygon_mesh.h"
 
 namespace ibrdf {
 namespace {
@@ -45,83 +42,116 @@ VertexKey MakeKey(const Eigen::Vector3f& position) {
   return key;
 }
 
-Eigen::Vector3f ToEigen(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+using Points = std::vector<Eigen::Vector2d>;
 
-// Calls visit(mesh, face) for every triangle of the scene; the transformations
-// of the scene's nodes are the identity in both formats.
-template <typename Visit>
-Status ForEachTriangle(const std::string& path, const aiScene& scene,
-                       const Visit& visit) {
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[m];
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) continue;
-      for (unsigned i = 0; i < 3; ++i) {
-        if (face.mIndices[i] >= mesh.mNumVertices) {
-          return InvalidInput(path + ": face " + std::to_string(f),
-                              "expected indices of existing vertices");
-        }
-      }
-      visit(mesh, face);
-    }
-  }
-  return OkStatus();
+// Twice the area of the triangle, negative where it runs clockwise.
+double Area(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+            const Eigen::Vector2d& c) {
+  const Eigen::Vector2d u = b - a, v = c - a;
+  return u.x() * v.y() - u.y() * v.x();
 }
 
-StatusOr<TriangleMesh> Convert(const std::string& path, const aiScene& scene) {
-  size_t triangles = 0;
-  bool finite = true, normals = true;
-  IBRDF_RETURN_IF_ERROR(
-      ForEachTriangle(path, scene, [&](const aiMesh& mesh, const aiFace& face) {
-        ++triangles;
-        for (unsigned i = 0; i < 3; ++i) {
-          const unsigned v = face.mIndices[i];
-          finite = finite && ToEigen(mesh.mVertices[v]).allFinite();
-          if (!mesh.HasNormals()) {
-            normals = false;
-          } else {
-            const double length =
-                ToEigen(mesh.mNormals[v]).cast<double>().norm();
-            normals = normals && std::isfinite(length) && length > 0.0;
-          }
-        }
-      }));
-  if (triangles == 0) {
-    return InvalidInput(path + ": faces", "expected at least one face");
+// The polygon as its normal sees it, counterclockwise but for rounding: without
+// the coordinate in which the normal is longest.
+Points Project(const std::vector<Eigen::Vector3d>& polygon) {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // twice the area
+  for (size_t i = 1; i + 1 < polygon.size(); ++i) {
+    normal += (polygon[i] - polygon[0]).cross(polygon[i + 1] - polygon[0]);
   }
-  if (!finite) {
-    return InvalidInput(path + ": vertices", "expected finite coordinates");
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+  Points points;
+  for (const Eigen::Vector3d& p : polygon) {
+    points.emplace_back(normal[axis] < 0.0 ? -p[x] : p[x], p[y]);
   }
+  return points;
+}
 
+// Whether the corner left[at] can be cut off: it turns left, and no other
+// corner that is left lies in its triangle.
+bool IsEar(const Points& points, const std::vector<int>& left, size_t at) {
+  const size_t n = left.size();
+  const Eigen::Vector2d& a = points[left[(at + n - 1) % n]];
+  const Eigen::Vector2d& b = points[left[at]];
+  const Eigen::Vector2d& c = points[left[(at + 1) % n]];
+  if (!(Area(a, b, c) > 0.0)) return false;
+  for (const int i : left) {
+    const Eigen::Vector2d& p = points[i];
+    if (p != a && p != b && p != c && Area(a, b, p) >= 0.0 &&
+        Area(b, c, p) >= 0.0 && Area(c, a, p) >= 0.0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Calls visit(i, j, k) for triangles of corners that fill the polygon: cuts
+// ears off (Meisters 1975), from the second corner on, so that a convex polygon
+// becomes a fan. Where none is left, as in one without area or that crosses
+// itself, any corner is cut.
+template <typename Visit>
+void Triangulate(const std::vector<Eigen::Vector3d>& polygon,
+                 const Visit& visit) {
+  const Points points = Project(polygon);
+  std::vector<int> left(polygon.size());
+  std::iota(left.begin(), left.end(), 0);
+  size_t at = 1, refused = 0;
+  while (left.size() > 3) {
+    const size_t n = left.size();
+    if (refused < n && !IsEar(points, left, at)) {
+      at = (at + 1) % n;
+      ++refused;
+      continue;
+    }
+    visit(left[(at + n - 1) % n], left[at], left[(at + 1) % n]);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(at));
+    at %= left.size();
+    refused = 0;
+  }
+  visit(left[0], left[1], left[2]);
+}
+
+// Joins vertices by position; see ReadMesh for the normals.
+TriangleMesh ToTriangles(const PolygonMesh& polygons) {
   TriangleMesh result;
-  result.triangles.reserve(triangles);
   std::unordered_map<VertexKey, int, VertexKeyHash> index_of;
-  IBRDF_RETURN_IF_ERROR(
-      ForEachTriangle(path, scene, [&](const aiMesh& mesh, const aiFace& face) {
-        std::array<int, 3> triangle;
-        for (unsigned i = 0; i < 3; ++i) {
-          const unsigned v = face.mIndices[i];
-          const Eigen::Vector3f position = ToEigen(mesh.mVertices[v]);
-          const Eigen::Vector3f normal =
-              normals ? Eigen::Vector3f(ToEigen(mesh.mNormals[v])
-                                            .cast<double>()
-                                            .normalized()
-                                            .cast<float>())
-                      : Eigen::Vector3f::Zero();
-          const auto [it, added] = index_of.emplace(
-              MakeKey(position), static_cast<int>(result.vertices.size()));
-          if (added) {
-            result.vertices.push_back(position);
-            result.normals.push_back(normal);
-          } else if (result.normals[it->second].dot(normal) <
-                     kMinSameNormalCosine) {
-            normals = false;
-          }
-          triangle[i] = it->second;
-        }
-        result.triangles.push_back(triangle);
-      }));
+  bool normals = !polygons.corner_normals.empty();
+  const auto vertex_of = [&](size_t corner) {
+    const Eigen::Vector3f& position =
+        polygons.vertices[polygons.corners[corner]];
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    if (normals) {
+      const Eigen::Vector3d n =
+          polygons.normals[polygons.corner_normals[corner]].cast<double>();
+      normals = n.norm() > 0.0;
+      normal = n.normalized().cast<float>();
+    }
+    const auto [it, added] = index_of.emplace(
+        MakeKey(position), static_cast<int>(result.vertices.size()));
+    if (added) {
+      result.vertices.push_back(position);
+      result.normals.push_back(normal);
+    } else if (result.normals[it->second].dot(normal) < kMinSameNormalCosine) {
+      normals = false;
+    }
+    return it->second;
+  };
+  std::vector<Eigen::Vector3d> polygon;
+  size_t first = 0;
+  for (const int size : polygons.sizes) {
+    polygon.clear();
+    for (int i = 0; i < size; ++i) {
+      polygon.push_back(
+          polygons.vertices[polygons.corners[first + i]].cast<double>());
+    }
+    Triangulate(polygon, [&](int i, int j, int k) {
+      // Braces: vertices are numbered from left to right.
+      result.triangles.push_back(
+          {vertex_of(first + i), vertex_of(first + j), vertex_of(first + k)});
+    });
+    first += static_cast<size_t>(size);
+  }
   if (!normals) ComputeVertexNormals(&result);
   return result;
 }
@@ -133,24 +163,18 @@ StatusOr<TriangleMesh> ReadMesh(const std::string& path) {
   if (extension != "obj" && extension != "ply") {
     return InvalidInput(path + ": extension", "expected .obj or .ply");
   }
-  StatusOr<std::string> bytes = ReadFile(path, kMaxMeshFileBytes);
+  const StatusOr<std::string> bytes = ReadFile(path, kMaxMeshFileBytes);
   if (!bytes.ok()) return bytes.status();
-  bytes = extension == "obj" ? CleanObj(path, *bytes) : CleanPly(path, *bytes);
-  if (!bytes.ok()) return bytes.status();
-  try {
-    Assimp::Importer importer;
-    // What is imported is the OBJ text made of what was checked.
-    const aiScene* scene = importer.ReadFileFromMemory(
-        bytes->data(), bytes->size(), aiProcess_Triangulate, "obj");
-    if (scene == nullptr) {
-      return InvalidInput(path, "expected a " + extension + " mesh (" +
-                                    importer.GetErrorString() + ")");
-    }
-    return Convert(path, *scene);
-  } catch (const std::exception& e) {
-    return InvalidInput(path,
-                        "expected a " + extension + " mesh (" + e.what() + ")");
-  }
+  return DecodeMesh(path, *bytes);
+}
+
+StatusOr<TriangleMesh> DecodeMesh(const std::string& path,
+                                  const std::string& bytes) {
+  const StatusOr<PolygonMesh> polygons = FileExtension(path) == "obj"
+                                             ? ParseObj(path, bytes)
+                                             : ParsePly(path, bytes);
+  if (!polygons.ok()) return polygons.status();
+  return ToTriangles(*polygons);
 }
 
 }  // namespace ibrdf

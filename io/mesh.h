@@ -19,4 +19,9 @@ namespace ibrdf {
 // with face indices out of range; the message names the file.
 StatusOr<TriangleMesh> ReadMesh(const std::string& path);
 
+// The same of a file's bytes, read as PLY unless `path` says .obj; messages
+// call it `path`.
+StatusOr<TriangleMesh> DecodeMesh(const std::string& path,
+                                  const std::string& bytes);
+
 }  // namespace ibrdf

@@ -112,7 +112,11 @@ Status ParseHeader(const std::string& path, const std::string& text,
 StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
   const StatusOr<std::string> file = ReadFile(path, kMaxBytes);
   if (!file.ok()) return file.status();
-  const std::string& bytes = *file;
+  return DecodeModel(path, *file);
+}
+
+StatusOr<NeuralBrdfModel> DecodeModel(const std::string& path,
+                                      const std::string& bytes) {
   const size_t magic = sizeof(kMagic) - 1;
   size_t at = magic;
   std::string version, length;

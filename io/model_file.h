@@ -9,11 +9,15 @@ namespace ibrdf {
 
 // Format, version 3: the line "ibrdf-model 3\n"; a decimal byte count and "\n";
 // that many bytes of JSON (shape, exponent, fit_lobes, names, note); the
-// float32 arrays weights, codes, log_colours and lobe_fits, little endian; a 64-bit FNV-1a checksum of
-// everything before it. Refused with a message that names file and field:
-// another magic or version, sizes that do not fit, a wrong checksum, numbers
-// that are not finite, codes outside the unit ball.
+// float32 arrays weights, codes, log_colours and lobe_fits, little endian; a
+// 64-bit FNV-1a checksum of everything before it. Refused with a message that
+// names file and field: another magic or version, sizes that do not fit, a
+// wrong checksum, numbers that are not finite, codes outside the unit ball.
 StatusOr<NeuralBrdfModel> ReadModel(const std::string& path);
+
+// The same of a file's bytes; messages call it `path`.
+StatusOr<NeuralBrdfModel> DecodeModel(const std::string& path,
+                                      const std::string& bytes);
 
 Status WriteModel(const NeuralBrdfModel& model, const std::string& path);
 

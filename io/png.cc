@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "io/atomic_file.h"
-#include "io/image_limits.h"
 
 namespace ibrdf {
 namespace {
@@ -129,12 +128,14 @@ Status DecodeError(const std::string& path, const ReadState& state) {
       path, std::string("expected a PNG image (") + state.message + ")");
 }
 
-StatusOr<Mask> Decode(const std::string& path, const std::string& bytes) {
+StatusOr<Mask> Decode(const std::string& path, const std::string& bytes,
+                      const ImageLimits& limits) {
   ReadState state;
   state.bytes = bytes.data();
   state.size = bytes.size();
   if (!ReadHeader(&state)) return DecodeError(path, state);
-  IBRDF_RETURN_IF_ERROR(CheckImageSize(path, state.width, state.height));
+  IBRDF_RETURN_IF_ERROR(
+      CheckImageSize(path, state.width, state.height, limits));
   // Deflate shrinks at most 1032-fold (RFC 1951: 258 bytes in 2 bits), and
   // expansion to four channels of 8 bits grows one-bit pixels 32-fold.
   const size_t total = state.row_bytes * state.height;
@@ -169,8 +170,13 @@ StatusOr<Mask> Decode(const std::string& path, const std::string& bytes) {
 StatusOr<Mask> ReadMask(const std::string& path) {
   const StatusOr<std::string> bytes = ReadFile(path, kMaxImageFileBytes);
   if (!bytes.ok()) return bytes.status();
+  return DecodeMask(path, *bytes);
+}
+
+StatusOr<Mask> DecodeMask(const std::string& path, const std::string& bytes,
+                          const ImageLimits& limits) {
   try {
-    return Decode(path, *bytes);
+    return Decode(path, bytes, limits);
   } catch (const std::bad_alloc&) {
     return InvalidInput(path, "expected an image that fits into memory");
   }

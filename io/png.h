@@ -5,6 +5,7 @@
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
+#include "io/image_limits.h"
 
 namespace ibrdf {
 
@@ -12,6 +13,10 @@ namespace ibrdf {
 // is inside where a colour channel is > 0 and alpha (1 where absent) is > 0.
 // Refuses damaged files and sizes over those of io/image_limits.h.
 StatusOr<Mask> ReadMask(const std::string& path);
+
+// The same of a file's bytes; messages call it `path`.
+StatusOr<Mask> DecodeMask(const std::string& path, const std::string& bytes,
+                          const ImageLimits& limits = {});
 
 // The bytes of an 8-bit RGB file. Sizes over those of io/image_limits.h are
 // kInternal.

@@ -332,7 +332,12 @@ StatusOr<Problem> ReadProblem(const std::string& path,
                               const std::vector<std::string>& overrides) {
   const StatusOr<std::string> text = ReadFile(path, kMaxFileBytes);
   if (!text.ok()) return text.status();
-  StatusOr<ConfigNode> root = ParseConfig(path, *text);
+  return ParseProblem(path, *text, overrides);
+}
+
+StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
+                               const std::vector<std::string>& overrides) {
+  StatusOr<ConfigNode> root = ParseConfig(path, text);
   if (!root.ok()) return root.status();
   for (const std::string& text_of_one : overrides) {
     IBRDF_RETURN_IF_ERROR(ApplyOverride(text_of_one, &*root));

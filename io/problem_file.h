@@ -15,6 +15,10 @@ namespace ibrdf {
 StatusOr<Problem> ReadProblem(const std::string& path,
                               const std::vector<std::string>& overrides);
 
+// The same of a file's text; messages call it `path`.
+StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
+                               const std::vector<std::string>& overrides);
+
 // What an estimate needs: an image file, and known exactly what `problem` says
 // is known.
 Status CheckSolvable(const Problem& problem);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "io/atomic_file.h"
-#include "io/image_limits.h"
 
 namespace ibrdf {
 namespace {
@@ -64,7 +63,7 @@ bool ParseSize(const std::string& line, size_t* position, int64_t* size) {
 }
 
 Status ParseResolution(const std::string& path, const std::string& line,
-                       Header* header) {
+                       const ImageLimits& limits, Header* header) {
   const std::string where = path + ": resolution";
   int64_t height = 0, width = 0;
   size_t position = 3;
@@ -76,14 +75,14 @@ Status ParseResolution(const std::string& path, const std::string& line,
     return InvalidInput(where, "expected \"-Y height +X width\", found \"" +
                                    line.substr(0, 60) + "\"");
   }
-  IBRDF_RETURN_IF_ERROR(CheckImageSize(path, width, height));
+  IBRDF_RETURN_IF_ERROR(CheckImageSize(path, width, height, limits));
   header->width = static_cast<int>(width);
   header->height = static_cast<int>(height);
   return OkStatus();
 }
 
-StatusOr<Header> ParseHeader(const std::string& path,
-                             const std::string& bytes) {
+StatusOr<Header> ParseHeader(const std::string& path, const std::string& bytes,
+                             const ImageLimits& limits) {
   if (bytes.compare(0, 2, "#?") != 0) {
     return InvalidInput(path, "expected a Radiance image, which starts \"#?\"");
   }
@@ -98,7 +97,7 @@ StatusOr<Header> ParseHeader(const std::string& path,
     if (first) {
       first = false;
     } else if (blank) {
-      IBRDF_RETURN_IF_ERROR(ParseResolution(path, line, &header));
+      IBRDF_RETURN_IF_ERROR(ParseResolution(path, line, limits, &header));
       return header;
     } else if (line.empty()) {
       blank = true;
@@ -252,13 +251,19 @@ void AppendPlane(const std::vector<Rgbe>& line, size_t plane,
 StatusOr<Image> ReadRadianceHdr(const std::string& path) {
   const StatusOr<std::string> bytes = ReadFile(path, kMaxImageFileBytes);
   if (!bytes.ok()) return bytes.status();
-  const StatusOr<Header> header = ParseHeader(path, *bytes);
+  return DecodeRadianceHdr(path, *bytes);
+}
+
+StatusOr<Image> DecodeRadianceHdr(const std::string& path,
+                                  const std::string& bytes,
+                                  const ImageLimits& limits) {
+  const StatusOr<Header> header = ParseHeader(path, bytes, limits);
   if (!header.ok()) return header.status();
 
   Image image;
   image.width = header->width;
   image.height = header->height;
-  ScanlineReader reader(*bytes, header->end);
+  ScanlineReader reader(bytes, header->end);
   std::vector<Rgbe> line(static_cast<size_t>(image.width));
   // Grows by scanlines, so that a small file cannot claim much memory.
   for (int y = 0; y < image.height; ++y) {

@@ -4,6 +4,7 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
+#include "io/image_limits.h"
 
 namespace ibrdf {
 
@@ -14,6 +15,11 @@ namespace ibrdf {
 // Refuses 32-bit_rle_xyze, orientations other than "-Y height +X width", and
 // sizes over those of io/image_limits.h; the message names file and field.
 StatusOr<Image> ReadRadianceHdr(const std::string& path);
+
+// The same of a file's bytes; messages call it `path`.
+StatusOr<Image> DecodeRadianceHdr(const std::string& path,
+                                  const std::string& bytes,
+                                  const ImageLimits& limits = {});
 
 // 8-bit mantissas shared exponent (the largest channel is exact to 0.4 %).
 // What the format cannot hold is replaced: NaN and negative values by 0, values

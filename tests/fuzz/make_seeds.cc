@@ -6,14 +6,16 @@
 #include <ImfTileDescription.h>
 #include <ImfTiledOutputFile.h>
 #include <glog/logging.h>
+#include <png.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <vector>
 
 #include "io/exr.h"
 #include "io/model_file.h"
-#include "io/png.h"
 #include "io/radiance_hdr.h"
 #include "tests/fuzz/parsers.h"
 #include "tests/support/temp_dir.h"
@@ -129,6 +131,62 @@ void WriteModels(const std::string& folder) {
   }
 }
 
+// All kinds of pixels, flat and interlaced. Errors end libpng's process.
+void WritePngs(const std::string& folder) {
+  constexpr struct {
+    int type, bits;
+  } kKinds[] = {{PNG_COLOR_TYPE_GRAY, 1},      {PNG_COLOR_TYPE_GRAY, 16},
+                {PNG_COLOR_TYPE_PALETTE, 4},   {PNG_COLOR_TYPE_RGB, 8},
+                {PNG_COLOR_TYPE_RGB, 16},      {PNG_COLOR_TYPE_GRAY_ALPHA, 8},
+                {PNG_COLOR_TYPE_RGB_ALPHA, 16}};
+  for (const auto& [type, bits] : kKinds) {
+    for (const int interlace : {PNG_INTERLACE_NONE, PNG_INTERLACE_ADAM7}) {
+      std::string bytes("\1");  // with checksums that fit
+      png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr,
+                                                nullptr, nullptr);
+      png_infop info = png_create_info_struct(png);
+      png_set_write_fn(
+          png, &bytes,
+          [](png_structp p, png_bytep data, size_t size) {
+            static_cast<std::string*>(png_get_io_ptr(p))
+                ->append(reinterpret_cast<const char*>(data), size);
+          },
+          [](png_structp) {});
+      png_set_IHDR(png, info, 9, 3, bits, type, interlace,
+                   PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+      const png_color palette[3] = {{0, 0, 0}, {9, 9, 9}, {255, 0, 1}};
+      png_byte alpha[2] = {0, 255};
+      png_color_16 clear = {};
+      if (type == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(png, info, palette, 3);
+      if ((type & PNG_COLOR_MASK_ALPHA) == 0) {
+        png_set_tRNS(png, info, alpha, 2, &clear);
+      }
+      png_write_info(png, info);
+      const std::vector<png_byte> row(9 * 8, 0x21);
+      for (int pass = png_set_interlace_handling(png); pass > 0; --pass) {
+        for (int y = 0; y < 3; ++y) png_write_row(png, row.data());
+      }
+      png_write_end(png, info);
+      png_destroy_write_struct(&png, &info);
+      WriteBytes(folder + "/type" + std::to_string(type) + "_" +
+                     std::to_string(bits) + "_" + std::to_string(interlace),
+                 bytes);
+    }
+  }
+}
+
+// A table of ones.
+void WriteMerl(const std::string& folder) {
+  std::string bytes(sizeof(kFuzzedMerlBins), '\0');
+  std::memcpy(bytes.data(), kFuzzedMerlBins.data(), bytes.size());
+  const double one = 1.0;
+  const auto [a, b, c] = kFuzzedMerlBins;
+  for (int i = 0; i < 3 * a * b * c; ++i) {
+    bytes.append(reinterpret_cast<const char*>(&one), sizeof(one));
+  }
+  WriteBytes(folder + "/ones", bytes);
+}
+
 void WriteSeeds(const std::string& folder) {
   const auto in = [&](const std::string& parser) {
     return folder + "/" + parser;
@@ -143,15 +201,8 @@ void WriteSeeds(const std::string& folder) {
              std::string("#?RADIANCE\nEXPOSURE=2\nCOLORCORR=1 2 3\n"
                          "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n"
                          "\x10\x20\x30\x80\1\1\1\x8"));
-  Rgb8Image mask(9, 3);
-  for (size_t i = 0; i < mask.rgb.size(); ++i) {
-    mask.rgb[i] = static_cast<uint8_t>(i % 5 == 0 ? 255 : 0);
-  }
-  CHECK(WritePng(mask, in("png") + "/mask.png").ok());
-  const std::string dims("\x5a\0\0\0\x5a\0\0\0\xb4\0\0\0", 12);
-  WriteBytes(in("merl") + "/header", '\2' + dims);
-  WriteBytes(in("merl") + "/patch",
-             std::string("\1\x0c\0\0\0\0\0\0\0\0\0\xf0\x7f", 13));
+  WritePngs(in("png"));
+  WriteMerl(in("merl"));
   WriteMeshes(in("obj"), in("ply"));
   WriteProblems(in("problem"));
   WriteModels(in("model"));

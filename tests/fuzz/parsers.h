@@ -1,5 +1,6 @@
 // Each parser on arbitrary bytes, and what must hold of its answer.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -7,16 +8,20 @@
 
 namespace ibrdf {
 
+// Of the tables that the parser of `merl` takes here.
+inline constexpr std::array<int32_t, 3> kFuzzedMerlBins = {3, 2, 4};
+
 // Names of the parsers: exr, hdr, png, merl, obj, ply, problem, model.
 const std::vector<std::string>& FuzzedParsers();
 
-// Feeds `input` to the parser of that name through a file; dies (CHECK) where
-// its answer breaks the parser's promises: values of a size that fits, finite
-// where promised, indices in range, or else an error of one line that names the
-// file. How an input becomes a file:
-//   merl     an odd first byte: a valid table with patches, each of 4 bytes
-//            position and 8 bytes value; an even one: the rest as it is
-//   model    an odd first byte: the rest with the checksum that fits it
+// Feeds `input` to the parser of that name as a file's bytes; dies (CHECK)
+// where its answer breaks the parser's promises: values of a size that fits,
+// finite where promised, indices in range, or else an error of one line that
+// names the file. How an input becomes a file:
+//   png      after the first byte; where that is odd, every chunk gets the
+//            checksum that fits it
+//   model    after the first byte; where that is odd, with the checksum that
+//            fits it at the end
 //   problem  the text up to a byte 0xff, then overrides, split there
 //   others   the bytes as they are
 void FuzzParser(const std::string& parser, const uint8_t* input, size_t size);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -92,6 +93,74 @@ TEST(Mesh, ObjCubeIsJoinedAcrossGroupsAndSeams) {
     EXPECT_NEAR(0.0f,
                 (mesh->normals[v] - mesh->vertices[v].normalized()).norm(),
                 kUnitTolerance);
+  }
+}
+
+// Area of the parts and of the whole, in the plane of the polygon: equal only
+// where no part is turned over.
+void ExpectCut(const std::vector<Eigen::Vector3d>& polygon) {
+  const TempDir dir;
+  std::string obj, face = "f";
+  Eigen::Vector3d whole = Eigen::Vector3d::Zero();
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector3d& p = polygon[i];
+    obj += "v " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " +
+           std::to_string(p.z()) + "\n";
+    face += " " + std::to_string(i + 1);
+    whole += p.cross(polygon[(i + 1) % polygon.size()]);
+  }
+  WriteBytes(dir.File("a.obj"), obj + face + "\n");
+  const StatusOr<TriangleMesh> mesh = ReadMesh(dir.File("a.obj"));
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  EXPECT_EQ(polygon.size() - 2, mesh->triangles.size());
+  double parts = 0.0;
+  for (const auto& t : mesh->triangles) {
+    const Eigen::Vector3f& a = mesh->vertices[t[0]];
+    parts += (mesh->vertices[t[1]] - a)
+                 .cross(mesh->vertices[t[2]] - a)
+                 .cast<double>()
+                 .norm();
+  }
+  EXPECT_NEAR(whole.norm(), parts, 1e-5 * whole.norm());
+}
+
+TEST(Mesh, PolygonsAreCutWhereTheyAreConcave) {
+  ExpectCut({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  // Arrowheads: the notch at each corner by turns, and seen from both sides.
+  for (int start = 0; start < 4; ++start) {
+    std::vector<Eigen::Vector3d> arrow = {
+        {0, 0, 1}, {2, 1, 0}, {0, 2, 1}, {0.5, 1, 0.75}};
+    std::rotate(arrow.begin(), arrow.begin() + start, arrow.end());
+    ExpectCut(arrow);
+    std::reverse(arrow.begin(), arrow.end());
+    ExpectCut(arrow);
+  }
+  // A star, and a comb, tilted.
+  std::vector<Eigen::Vector3d> star, comb;
+  for (int i = 0; i < 14; ++i) {
+    const double angle = i * std::acos(-1.0) / 7, radius = i % 2 ? 0.3 : 1.0;
+    star.emplace_back(radius * std::cos(angle), radius * std::sin(angle),
+                      0.5 * radius * std::cos(angle));
+  }
+  for (int i = 0; i < 9; ++i) comb.emplace_back(i % 2 ? 0.1 : 3.0, i, i);
+  comb.emplace_back(0.0, 8.0, 8.0);
+  comb.emplace_back(0.0, 0.0, 0.0);
+  ExpectCut(star);
+  ExpectCut(comb);
+}
+
+// A bow tie and a line: as many triangles as of any polygon.
+TEST(Mesh, PolygonsThatNothingFillsAreCutAllTheSame) {
+  const TempDir dir;
+  const std::string path = dir.File("a.obj");
+  for (const char* vertices : {"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\n",
+                               "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\n",
+                               "v 0 0 0\nv 0 0 0\nv 0 0 0\nv 0 0 0\n"}) {
+    WriteBytes(path, std::string(vertices) + "f 1 2 3 4\n");
+    const StatusOr<TriangleMesh> mesh = ReadMesh(path);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    ExpectValid(*mesh);
+    EXPECT_EQ(2u, mesh->triangles.size());
   }
 }
 

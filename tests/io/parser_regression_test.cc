@@ -12,6 +12,7 @@
 #include "io/problem_file.h"
 #include "io/radiance_hdr.h"
 #include "tests/fuzz/parsers.h"
+#include "tests/support/png_crc.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -73,14 +74,7 @@ TEST(ParserRegression, HugeClaimsAreRefusedBeforeAllocation) {
   // IHDR: width and height at bytes 16 and 20, its CRC at 29.
   const std::string ihdr("\0\0\x7b\x87\0\0\x7b\x87", 8);
   png.replace(16, 8, ihdr);
-  uint32_t crc = 0xffffffffu;  // of ISO 3309, over type and data
-  for (size_t i = 12; i < 29; ++i) {
-    crc ^= static_cast<uint8_t>(png[i]);
-    for (int bit = 0; bit < 8; ++bit) {
-      crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0u);
-    }
-  }
-  crc = ~crc;
+  const uint32_t crc = PngCrc(png.data() + 12, 17);
   for (size_t i = 0; i < 4; ++i) {
     png[29 + i] = static_cast<char>(crc >> (24 - 8 * i));
   }
@@ -106,6 +100,12 @@ TEST(ParserRegression, HugeClaimsAreRefusedBeforeAllocation) {
     EXPECT_TRUE(says) << status.message();
   };
   expect_refused(ReadExr(dir.File("huge.exr")).status(), "huge.exr");
+  // The second attribute hides behind the end of the first one's value.
+  const std::string hidden = "attribute_longer_than_its_type";
+  expect_refused(ReadExr(std::string(IBRDF_SOURCE_DIR) +
+                         "/tests/fuzz/regressions/exr/" + hidden)
+                     .status(),
+                 hidden);
   expect_refused(ReadMask(dir.File("huge.png")).status(), "huge.png");
   expect_refused(ReadRadianceHdr(dir.File("huge.hdr")).status(), "huge.hdr");
   expect_refused(ReadMesh(dir.File("huge.ply")).status(), "huge.ply");

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/mesh_clean.h"
+#include "io/polygon_mesh.h"
 
 namespace ibrdf {
 namespace {
@@ -66,13 +66,13 @@ bool Parse(std::string_view text, Number* value) {
 
 // The vector of a line "v x y z" or "vn x y z".
 bool AppendVector(const std::vector<std::string_view>& words,
-                  std::string* clean) {
+                  std::vector<Eigen::Vector3f>* list) {
   double xyz[3];
   if (words.size() < 4) return false;
   for (size_t i = 0; i < 3; ++i) {
     if (!Parse(words[i + 1], &xyz[i])) return false;
   }
-  return AppendObjVector(words[0] == "v" ? "v" : "vn", xyz, clean);
+  return AppendFinite(xyz, list);
 }
 
 // 1-based index from one that may count back from the last (-1).
@@ -114,27 +114,16 @@ bool ParseCorner(std::string_view word, const Counts& so_far,
 
 }  // namespace
 
-bool AppendObjVector(const char* keyword, const double xyz[3],
-                     std::string* text) {
-  const size_t start = text->size();
-  text->append(keyword);
-  for (int i = 0; i < 3; ++i) {
-    const float single = static_cast<float>(xyz[i]);
-    if (!std::isfinite(single)) {
-      text->resize(start);
-      return false;
-    }
-    char buffer[32];
-    const std::to_chars_result end =
-        std::to_chars(buffer, buffer + sizeof(buffer), single);
-    text->push_back(' ');
-    text->append(buffer, end.ptr);
-  }
-  text->push_back('\n');
+bool AppendFinite(const double xyz[3], std::vector<Eigen::Vector3f>* list) {
+  const Eigen::Vector3f v(static_cast<float>(xyz[0]),
+                          static_cast<float>(xyz[1]),
+                          static_cast<float>(xyz[2]));
+  if (!v.allFinite()) return false;
+  list->push_back(v);
   return true;
 }
 
-StatusOr<std::string> CleanObj(const std::string& path,
+StatusOr<PolygonMesh> ParseObj(const std::string& path,
                                const std::string& bytes) {
   // What is there, so that indices can be checked before they are passed on.
   Counts total;
@@ -159,15 +148,15 @@ StatusOr<std::string> CleanObj(const std::string& path,
     return InvalidInput(path + ": faces", "expected at least one face");
   }
 
-  std::string clean;
-  clean.reserve(bytes.size());
+  PolygonMesh mesh;
   Counts so_far;
   LineReader reader(bytes);
   while (reader.Next(&words)) {
     if (words.empty()) continue;
     so_far.Add(words[0]);
     if (words[0] == "v" || (words[0] == "vn" && all_have_normals)) {
-      if (!AppendVector(words, &clean)) {
+      if (!AppendVector(words,
+                        words[0] == "v" ? &mesh.vertices : &mesh.normals)) {
         return InvalidInput(reader.Where(path),
                             "expected three finite numbers");
       }
@@ -178,7 +167,7 @@ StatusOr<std::string> CleanObj(const std::string& path,
             "expected a face of 3 to " + std::to_string(kMaxPolygonCorners) +
                 " corners, found " + std::to_string(words.size() - 1));
       }
-      clean.push_back('f');
+      mesh.sizes.push_back(static_cast<int>(words.size() - 1));
       for (size_t i = 1; i < words.size(); ++i) {
         int64_t vertex = 0, normal = 0;
         if (!ParseCorner(words[i], so_far, total, &vertex, &normal)) {
@@ -188,13 +177,14 @@ StatusOr<std::string> CleanObj(const std::string& path,
                                   " vertices and " +
                                   std::to_string(total.normals) + " normals");
         }
-        clean += " " + std::to_string(vertex);
-        if (all_have_normals) clean += "//" + std::to_string(normal);
+        mesh.corners.push_back(static_cast<int>(vertex - 1));
+        if (all_have_normals) {
+          mesh.corner_normals.push_back(static_cast<int>(normal - 1));
+        }
       }
-      clean.push_back('\n');
     }
   }
-  return clean;
+  return mesh;
 }
 
 }  // namespace ibrdf

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/mesh_clean.h"
+#include "io/polygon_mesh.h"
 
 namespace ibrdf {
 namespace {
@@ -223,14 +223,6 @@ bool FitsInto(const Element& element, Format format, size_t left) {
   return row == 0 || static_cast<size_t>(element.count) <= (left + 1) / row;
 }
 
-struct Geometry {
-  int64_t vertices = 0;
-  bool normals = false;
-  std::string vertex_text;
-  std::string normal_text;
-  std::vector<std::vector<int64_t>> faces;
-};
-
 // Slots of x y z nx ny nz; -1 for other properties.
 int VertexSlot(const std::string& name) {
   static constexpr const char* kSlots[] = {"x", "y", "z", "nx", "ny", "nz"};
@@ -241,7 +233,7 @@ int VertexSlot(const std::string& name) {
 }
 
 Status ReadElement(const std::string& path, const Element& element,
-                   NumberReader* numbers, Geometry* geometry) {
+                   NumberReader* numbers, PolygonMesh* mesh) {
   const bool is_vertex = element.name == "vertex";
   const bool is_face = element.name == "face";
   unsigned slots_found = 0;
@@ -252,10 +244,7 @@ Status ReadElement(const std::string& path, const Element& element,
   if (is_vertex && (slots_found & 7u) != 7u) {
     return InvalidInput(path + ": vertex", "expected properties x, y and z");
   }
-  if (is_vertex) {
-    geometry->vertices = element.count;
-    geometry->normals = (slots_found & 56u) == 56u;
-  }
+  bool normals = is_vertex && (slots_found & 56u) == 56u;
   if (element.properties.empty()) return OkStatus();
   for (int64_t row = 0; row < element.count; ++row) {
     const auto where = [&] {
@@ -279,7 +268,7 @@ Status ReadElement(const std::string& path, const Element& element,
             "expected a list of " +
                 std::string(corners ? "3 to 4096" : "0 or more") + " numbers");
       }
-      std::vector<int64_t> face;
+      if (corners) mesh->sizes.push_back(static_cast<int>(value));
       for (int i = 0; i < static_cast<int>(value); ++i) {
         double item = 0.0;
         if (!numbers->Next(p.type, &item)) {
@@ -289,32 +278,29 @@ Status ReadElement(const std::string& path, const Element& element,
         if (!(item >= 0.0 && item <= INT32_MAX && item == std::floor(item))) {
           return InvalidInput(where(), "expected indices of vertices");
         }
-        face.push_back(static_cast<int64_t>(item));
+        mesh->corners.push_back(static_cast<int>(item));
       }
-      if (corners) geometry->faces.push_back(std::move(face));
     }
     if (!is_vertex) continue;
-    if (!AppendObjVector("v", slots, &geometry->vertex_text)) {
+    if (!AppendFinite(slots, &mesh->vertices)) {
       return InvalidInput(where(), "expected finite coordinates");
     }
-    geometry->normals =
-        geometry->normals &&
-        AppendObjVector("vn", slots + 3, &geometry->normal_text);
+    normals = normals && AppendFinite(slots + 3, &mesh->normals);
   }
   return OkStatus();
 }
 
 }  // namespace
 
-StatusOr<std::string> CleanPly(const std::string& path,
+StatusOr<PolygonMesh> ParsePly(const std::string& path,
                                const std::string& bytes) {
   const StatusOr<Header> header = ParseHeader(path, bytes);
   if (!header.ok()) return header.status();
-  Geometry geometry;
+  PolygonMesh mesh;
   NumberReader numbers(std::string_view(bytes).substr(header->end),
                        header->format);
   for (const Element& element : header->elements) {
-    if (element.name == "vertex" && geometry.vertices > 0) {
+    if (element.name == "vertex" && !mesh.vertices.empty()) {
       return InvalidInput(path + ": header", "expected one element vertex");
     }
     if (!FitsInto(element, header->format, numbers.Left())) {
@@ -322,30 +308,24 @@ StatusOr<std::string> CleanPly(const std::string& path,
                           "expected a count that fits into the file, found " +
                               std::to_string(element.count));
     }
-    IBRDF_RETURN_IF_ERROR(ReadElement(path, element, &numbers, &geometry));
+    IBRDF_RETURN_IF_ERROR(ReadElement(path, element, &numbers, &mesh));
   }
-  if (geometry.faces.empty()) {
+  if (mesh.sizes.empty()) {
     return InvalidInput(path + ": faces", "expected at least one face");
   }
-
-  std::string text = std::move(geometry.vertex_text);
-  if (geometry.normals) text += geometry.normal_text;
-  for (size_t f = 0; f < geometry.faces.size(); ++f) {
-    text.push_back('f');
-    for (const int64_t v : geometry.faces[f]) {
-      if (v >= geometry.vertices) {
+  const size_t vertices = mesh.vertices.size();
+  size_t at = 0;
+  for (size_t f = 0; f < mesh.sizes.size(); ++f) {
+    for (int i = 0; i < mesh.sizes[f]; ++i) {
+      if (static_cast<size_t>(mesh.corners[at++]) >= vertices) {
         return InvalidInput(path + ": face " + std::to_string(f),
                             "expected indices of the file's " +
-                                std::to_string(geometry.vertices) +
-                                " vertices");
+                                std::to_string(vertices) + " vertices");
       }
-      const std::string index = std::to_string(v + 1);
-      text += " " + index;
-      if (geometry.normals) text += "//" + index;
     }
-    text.push_back('\n');
   }
-  return text;
+  if (mesh.normals.size() == vertices) mesh.corner_normals = mesh.corners;
+  return mesh;
 }
 
 }  // namespace ibrdf
