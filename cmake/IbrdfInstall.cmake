@@ -7,7 +7,8 @@ install(TARGETS ibrdf_core ibrdf_io ibrdf_solvers EXPORT ibrdfTargets
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/ibrdf
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/io ${PROJECT_SOURCE_DIR}/solvers
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
+        PATTERN "solvers/bench" EXCLUDE)
 install(EXPORT ibrdfTargets NAMESPACE ibrdf::
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ibrdf)
 configure_package_config_file(cmake/ibrdf-config.cmake.in

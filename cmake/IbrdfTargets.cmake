@@ -12,6 +12,9 @@ if(IBRDF_SANITIZE)
                       -fno-sanitize-recover=undefined
                       # GCC: instrumented code gives false positives
                       -Wno-maybe-uninitialized)
+  if(IBRDF_SANITIZE_LEAVE_OUT)
+    add_compile_options(-fno-sanitize=${IBRDF_SANITIZE_LEAVE_OUT})
+  endif()
   add_link_options(-fsanitize=address,undefined)
 endif()
 if(IBRDF_BUILD_FUZZERS)

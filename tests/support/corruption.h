@@ -6,31 +6,25 @@
 #include <random>
 #include <string>
 
-#include "tests/support/temp_dir.h"
-
 namespace ibrdf {
 
-// Writes truncated copies of `bytes` to `path` (every length up to 64, and
-// `count` others, never the whole) and calls read(path) after each.
-inline void ForEachTruncation(const std::string& bytes, const std::string& path,
-                              int count, const std::function<void()>& read) {
-  for (size_t n = 0; n < bytes.size() && n < 64; ++n) {
-    WriteBytes(path, bytes.substr(0, n));
-    read();
-  }
+// Calls read(copy) for truncated copies of `bytes`: every length up to 64, and
+// `count` others, never the whole.
+inline void ForEachTruncation(
+    const std::string& bytes, int count,
+    const std::function<void(const std::string&)>& read) {
+  for (size_t n = 0; n < bytes.size() && n < 64; ++n) read(bytes.substr(0, n));
   for (int i = 0; i < count; ++i) {
-    WriteBytes(path, bytes.substr(0, bytes.size() * i / count));
-    read();
+    read(bytes.substr(0, bytes.size() * i / count));
   }
-  WriteBytes(path, bytes.substr(0, bytes.size() - 1));
-  read();
+  read(bytes.substr(0, bytes.size() - 1));
 }
 
-// Writes copies of `bytes` with one to four bytes replaced, half of the time
-// within the first `header_bytes`, and calls read(path) after each.
-inline void ForEachCorruption(const std::string& bytes, const std::string& path,
-                              size_t header_bytes, int count, uint32_t seed,
-                              const std::function<void()>& read) {
+// Calls read(copy) for copies of `bytes` with one to four bytes replaced, half
+// of the time within the first `header_bytes`.
+inline void ForEachCorruption(
+    const std::string& bytes, size_t header_bytes, int count, uint32_t seed,
+    const std::function<void(const std::string&)>& read) {
   std::mt19937 rng(seed);
   const auto below = [&](size_t n) { return rng() % n; };
   for (int i = 0; i < count; ++i) {
@@ -45,8 +39,7 @@ inline void ForEachCorruption(const std::string& bytes, const std::string& path,
       damaged[below(range)] = static_cast<char>(
           choice < 4 ? extremes[choice] : static_cast<uint8_t>(below(256)));
     }
-    WriteBytes(path, damaged);
-    read();
+    read(damaged);
   }
 }
 
