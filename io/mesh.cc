@@ -88,18 +88,20 @@ bool IsEar(const Points& points, const std::vector<int>& left, size_t at) {
 
 // Calls visit(i, j, k) for triangles of corners that fill the polygon: cuts
 // ears off (Meisters 1975), from the second corner on, so that a convex polygon
-// becomes a fan. Where none is left, as in one without area or that crosses
-// itself, any corner is cut.
+// becomes a fan. Where there is none, as in one without area or that crosses
+// itself, what is left becomes a fan.
 template <typename Visit>
 void Triangulate(const std::vector<Eigen::Vector3d>& polygon,
                  const Visit& visit) {
+  if (polygon.size() == 3) return visit(0, 1, 2);
   const Points points = Project(polygon);
   std::vector<int> left(polygon.size());
   std::iota(left.begin(), left.end(), 0);
-  size_t at = 1, refused = 0;
-  while (left.size() > 3) {
+  size_t at = 1, refused = 0;  // since the last cut
+  while (left.size() > 2) {
     const size_t n = left.size();
-    if (refused < n && !IsEar(points, left, at)) {
+    const bool any = refused >= n;
+    if (!any && !IsEar(points, left, at)) {
       at = (at + 1) % n;
       ++refused;
       continue;
@@ -107,9 +109,8 @@ void Triangulate(const std::vector<Eigen::Vector3d>& polygon,
     visit(left[(at + n - 1) % n], left[at], left[(at + 1) % n]);
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(at));
     at %= left.size();
-    refused = 0;
+    if (!any) refused = 0;
   }
-  visit(left[0], left[1], left[2]);
 }
 
 // Joins vertices by position; see ReadMesh for the normals.
