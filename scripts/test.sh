@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs all tests, the hard cases
-# under the sanitizers. With CI=true a compiler warning is an error.
+# Installs what is missing, builds everything and runs all tests. With
+# --sanitize the hard cases run under the sanitizers, in a second build. With
+# CI=true a compiler warning is an error.
 set -euo pipefail
 # shellcheck source=scripts/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "${project_dir}"
 
+sanitize=OFF
+[ "${1:-}" = --sanitize ] && sanitize=ON
 warnings_as_errors=OFF
 [ "${CI:-}" = true ] && warnings_as_errors=ON
 # Tests write gigabytes, flushed file by file: to memory, where there is room.
@@ -17,7 +20,7 @@ fi
 
 step "Install missing packages" scripts/install_dependencies.sh --tests
 step "Configure" cmake --preset release -DIBRDF_BUILD_TESTS=ON \
-  -DIBRDF_SANITIZE_HARD_CASES=ON \
+  -DIBRDF_SANITIZE_HARD_CASES="${sanitize}" \
   -DIBRDF_WARNINGS_AS_ERRORS="${warnings_as_errors}"
 step "Build" cmake --build --preset release -j "$(nproc)"
 echo "==> Test"
