@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """One page from the estimates of a case of run.sh: the image, what each model
-cannot explain, and the light that each takes the shadows for.
+cannot explain, and the light that each takes what it lacks for.
 
-usage: figure.py OUT/CASE FIGURE.png
+usage: figure.py OUT/CASE FIGURE.png [WITHOUT WITH]
+  two of the effects that the case was solved with: none visibility
 needs: python3, Pillow
 """
 import pathlib
@@ -11,13 +12,14 @@ import sys
 from PIL import Image, ImageDraw
 
 case, target = pathlib.Path(sys.argv[1]), sys.argv[2]
+without, having = sys.argv[3:5] if len(sys.argv) > 3 else ("none", "visibility")
 # Caption, file, enlargement.
 rows = [
     [("image", "input.png", 4),
-     ("known light, no shadows", "reflectance-none/residual.png", 1),
-     ("known light, shadows", "reflectance-auto/residual.png", 1)],
-    [("known BRDF, no shadows", "illumination-none/illumination.png", 1),
-     ("known BRDF, shadows", "illumination-auto/illumination.png", 1)],
+     ("known light: " + without, f"reflectance-{without}/residual.png", 1),
+     ("known light: " + having, f"reflectance-{having}/residual.png", 1)],
+    [("known BRDF: " + without, f"illumination-{without}/illumination.png", 1),
+     ("known BRDF: " + having, f"illumination-{having}/illumination.png", 1)],
 ]
 margin, caption = 12, 30
 

@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Estimates from shadowed images with and without shadows in the model.
+# Estimates from images with shadows or bounces, with and without them in the
+# model.
 # usage: experiments/shadows/run.sh DATA TABLES OUT
 #   DATA    folder with meshes/*.obj and envmaps/*.hdr
 #   TABLES  folder with MERL .binary files
 #   OUT     images, estimates and results.csv
 # BIN (folder of the programs), MODEL, MESHES, MATERIALS, MAPS, SECONDS_EACH,
-# ROUNDS and THREADS may be set in the environment.
+# ROUNDS, THREADS, IMAGE (effects that the images show) and EFFECTS (those of
+# the estimates) may be set in the environment.
 set -euo pipefail
 data=$(realpath "$1") tables=$(realpath "$2")
 mkdir -p "$3"
@@ -35,7 +37,9 @@ m = result["metrics"]
 names = ["seconds", "misfit", "brdf_log_rmse", "brdf_log_rmse_below80",
          "illumination_relative_log_rmse",
          "illumination_relative_log_rmse_aligned"]
-simulated = result["effects_plan"]["visibility"]["simulated"]
+plan = result["effects_plan"]
+bounces = plan["interreflection"]["bounces"]
+simulated = "%d-bounce" % bounces if bounces else plan["visibility"]["simulated"]
 print(",".join(case + [str(simulated).lower()] +
                ["%.4f" % m[n] if m.get(n) is not None else "" for n in names]))
 PY
@@ -78,10 +82,10 @@ solver: {seconds: $seconds}
 YAML
       if [[ ! -e $folder/input.exr ]]; then
         "$bin/ibrdf_render" --scene "$folder/scene.yaml" --threads "$threads" \
-          --seed 1 --set "${!mesh}" --set effects=all \
+          --seed 1 --set "${!mesh}" --set effects="${IMAGE:-visibility}" \
           --out "$folder/input.exr" --mask "$folder/mask.png"
       fi
-      for effects in none auto; do
+      for effects in ${EFFECTS:-none visibility}; do
         solve reflectance "$mesh" "$material" "$map" "$effects" \
           --set "${!mesh}" --set reflectance.model="$model" \
           --set "illumination={known: $data/envmaps/$map.hdr}"
