@@ -305,6 +305,44 @@ TEST_F(MarginalReflectanceTest, SearchLowersTheCostWhateverTheThreads) {
   EXPECT_EQ(one->log_radiance, two->log_radiance);
 }
 
+// What the object throws on itself, told by the caller, is taken out.
+TEST_F(MarginalReflectanceTest, BouncesAreTakenOutOfTheImage) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  std::vector<double> gain(radiance_.size()), brighter = radiance_;
+  for (size_t i = 0; i < gain.size(); ++i) {
+    gain[i] = 1.0 + 0.8 * std::pow(std::sin(1.7 * (i / 3)), 2);
+    brighter[i] *= gain[i];
+  }
+  ReflectanceSearchOptions options = Options();
+  const ReflectanceSearchResult clean =
+      SearchReflectance(model_, prior, points_, radiance_, options).value();
+  const ReflectanceSearchResult left =
+      SearchReflectance(model_, prior, points_, brighter, options).value();
+  int calls = 0;
+  options.bounce_gain = [&](const std::vector<double>& lobes,
+                            const std::vector<double>& log_radiance) {
+    ++calls;
+    EXPECT_EQ(14u, lobes.size());
+    EXPECT_EQ(size_t{3} * left.map_width * left.map_height,
+              log_radiance.size());
+    return gain;
+  };
+  const ReflectanceSearchResult taken =
+      SearchReflectance(model_, prior, points_, brighter, options).value();
+  EXPECT_EQ(options.bounce_rounds, calls);
+  EXPECT_GT(left.cost, clean.cost + 20.0);
+  EXPECT_LT(taken.misfit, 1.2 * clean.misfit);
+  EXPECT_NEAR(clean.cost, taken.cost, 0.1 * (left.cost - clean.cost));
+  // Where there is nothing to be had all stays.
+  options.bounce_gain = [](const auto&, const auto&) {
+    return std::vector<double>();
+  };
+  EXPECT_EQ(left.parameters,
+            SearchReflectance(model_, prior, points_, brighter, options)
+                .value()
+                .parameters);
+}
+
 TEST_F(MarginalReflectanceTest, MoreFinalistsNeverEndAtAHigherCost) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   ReflectanceSearchOptions options = Options();
