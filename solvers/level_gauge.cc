@@ -33,9 +33,7 @@ double LevelGauge::Fix(double* parameters) const {
 }
 
 double LevelGauge::MeanLog(const double* parameters) const {
-  std::vector<float> fields;
-  lobes_.Tabulate(parameters, false, &fields);
-  const BrdfGrid grid = lobes_.Combine(parameters, fields, 1);
+  const BrdfGrid grid = lobes_.Grid(parameters);
   double sum = 0.0;
   for (const float v : grid.values) {
     sum += std::log(std::max(static_cast<double>(v), 0.0) + kFloor);

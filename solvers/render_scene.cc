@@ -51,10 +51,7 @@ std::vector<double> EmittedLight(const Scene& scene,
                                  const BrdfGrid& grid,
                                  ReferenceOptions* quality) {
   const size_t most = reference ? kReferenceEmitterPoints : kEmitterPoints;
-  std::vector<ShadingPoint> few;
-  for (size_t k = 0; k < std::min(points.size(), most); ++k) {
-    few.push_back(points[k * points.size() / std::min(points.size(), most)]);
-  }
+  const std::vector<ShadingPoint> few = SpreadPoints(points, most);
   VisibilityOptions rays;
   rays.num_threads = quality->num_threads;
   SurfaceEmitterOptions options = EmittersFor(points.size(), bounces);

@@ -135,10 +135,8 @@ class MarginalStudy {
     options.grid = resolution_.grid;
     const Transport transport(points_, 8, 16, options);
     const LobeModel lobes(model_, 2, resolution_.grid, 0);
-    std::vector<float> fields;
-    lobes.Tabulate(truth.data(), false, &fields);
     std::vector<double> radiance(3 * points_.size());
-    transport.Render(lobes.Combine(truth.data(), fields, 1),
+    transport.Render(lobes.Grid(truth.data()),
                      testing::SmoothMap(8, 16).rgb.data(), radiance.data());
     const MarginalReflectance reflectance(model_, 2, points_, radiance,
                                           LightProcess(), resolution_, 0);

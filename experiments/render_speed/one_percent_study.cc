@@ -24,10 +24,7 @@ struct Setting {
 void StudyShape(const std::string& meshes, const std::string& shape) {
   const Scene scene = LoadShape(meshes, shape);
   const std::vector<ShadingPoint> all = PointsByAngle(scene, kSize, 1);
-  std::vector<ShadingPoint> points;
-  for (int k = 0; k < kPoints; ++k) {
-    points.push_back(all[(2 * k + 1) * all.size() / (2 * kPoints)]);
-  }
+  const std::vector<ShadingPoint> points = SpreadPoints(all, kPoints);
   const double scale = static_cast<double>(all.size()) / kPoints;
   const std::vector<Light> lights = Lights();
   const std::vector<Look> looks = Materials();

@@ -32,11 +32,8 @@ std::vector<double> Interleaved(
 
 void PairStudy(const std::string& meshes) {
   const Scene scene = LoadShape(meshes, "bunny");
-  const std::vector<ShadingPoint> all = PointsByAngle(scene, 128, 1);
-  std::vector<ShadingPoint> points;
-  for (int k = 0; k < kPoints; ++k) {
-    points.push_back(all[(2 * k + 1) * all.size() / (2 * kPoints)]);
-  }
+  const std::vector<ShadingPoint> points =
+      SpreadPoints(PointsByAngle(scene, 128, 1), kPoints);
   const Image map = Lights()[1].map;
   const BrdfGrid grid = BrdfGrid::FromMerl(Materials()[1].table, {});
   TransportOptions options;

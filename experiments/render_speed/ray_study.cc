@@ -133,13 +133,8 @@ void Packets(const std::vector<RTCRay>& rays, const Call& call,
 void StudyShape(const std::string& meshes, const std::string& name) {
   const Scene scene = LoadShape(meshes, name);
   const PlainEmbree plain(LoadMesh(meshes, name));
-  std::vector<ShadingPoint> points;
-  {
-    const std::vector<ShadingPoint> all = PointsByAngle(scene, 128, 1);
-    for (int k = 0; k < kPoints; ++k) {
-      points.push_back(all[(2 * k + 1) * all.size() / (2 * kPoints)]);
-    }
-  }
+  const std::vector<ShadingPoint> points =
+      SpreadPoints(PointsByAngle(scene, 128, 1), kPoints);
   const std::vector<ShadowRay> list = LatticeRays(points);
   std::vector<RTCRay> rays(list.size());
   for (size_t k = 0; k < list.size(); ++k) {

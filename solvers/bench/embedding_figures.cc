@@ -105,7 +105,7 @@ class Figures {
                           static_cast<size_t>(materials_[i].first_code) * size;
       for (int k = 0; k < 3 * size; ++k) points(i, k) = code[k];
       const BrdfGrid brdf =
-          Brdf(MaterialLobes(model_, materials_[i].first_code));
+          lobes_.Grid(MaterialLobes(model_, materials_[i].first_code).data());
       gloss.push_back(Gloss(brdf));
       spheres_.push_back({materials_[i].name, studio_.Render(brdf)});
     }
@@ -133,12 +133,6 @@ class Figures {
     return options_.out + "/" + name;
   }
 
-  BrdfGrid Brdf(const std::vector<double>& parameters) const {
-    std::vector<float> fields;
-    lobes_.Tabulate(parameters.data(), false, &fields);
-    return lobes_.Combine(parameters.data(), fields, 1);
-  }
-
   Rgb8Image Walk(const Eigen::MatrixXd& points, int from, int to) const {
     const std::vector<double> a =
         MaterialLobes(model_, materials_[from].first_code);
@@ -149,7 +143,8 @@ class Figures {
       const double t = i / (kWalkSteps - 1.0);
       char label[32];
       std::snprintf(label, sizeof(label), "t = %.3g", t);
-      steps.push_back({label, studio_.Render(Brdf(Blend(a, b, t)))});
+      steps.push_back(
+          {label, studio_.Render(lobes_.Grid(Blend(a, b, t).data()))});
     }
     return WalkPage(steps, materials_[from].name, materials_[to].name,
                     (points.row(from) - points.row(to)).norm(),

@@ -99,9 +99,7 @@ bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
   };
   std::optional<LightOperator> light;
   if (transport.bounces() > 0 && dE != nullptr) {
-    std::vector<float> fields;
-    lobes.Tabulate(parameters, false, &fields);
-    light = transport.ByLight(lobes.Combine(parameters, fields, 1));
+    light = transport.ByLight(lobes.Grid(parameters));
   }
   for (int b = 0; b < transport.bounces(); ++b) {
     std::vector<double> next, d_next;
@@ -194,10 +192,8 @@ bool LogRadianceCost::Evaluate(double const* const* parameters,
   }
   if (want_lobes) ScaleRows(dr_dE, dE, lobes_->num_parameters(), jacobians[0]);
   if (want_weights) {
-    std::vector<float> fields;
-    lobes_->Tabulate(parameters[0], false, &fields);
-    const BrdfGrid grid = lobes_->Combine(parameters[0], fields, 1);
-    const LightOperator light = transport_->ByLight(grid);
+    const LightOperator light =
+        transport_->ByLight(lobes_->Grid(parameters[0]));
     std::vector<double> adjoint(E.size(), 0.0);
     std::vector<float> by_map(map.size()), by_output(map.size()),
         by_weight(weights);

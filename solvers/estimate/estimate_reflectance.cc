@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,26 @@ constexpr double kMostBounceGain = 10.0;
 constexpr double kStartRadius = 10.0;
 constexpr double kRoundRadius = 300.0;
 
+// Radiance [points][3] with bounces over that without, under a map of log
+// radiance [3][texels].
+std::vector<double> BounceGain(const Transport& transport, const BrdfGrid& grid,
+                               const std::vector<double>& log_radiance) {
+  const int texels = transport.map_height() * transport.map_width();
+  if (log_radiance.size() != size_t{3} * texels) return {};
+  // The level cancels in the ratio.
+  const std::vector<float> map = RelativeMap(log_radiance.data(), texels);
+  std::vector<double> direct(size_t{3} * transport.num_points());
+  std::vector<double> all(direct.size());
+  transport.RenderBounces(grid, map.data(), 0, direct.data());
+  transport.Render(grid, map.data(), all.data());
+  for (size_t i = 0; i < all.size(); ++i) {
+    const double gain = all[i] / direct[i];
+    all[i] = std::isfinite(gain) && gain > 0.0 ? std::min(gain, kMostBounceGain)
+                                               : 1.0;
+  }
+  return all;
+}
+
 }  // namespace
 
 Status Estimator::SearchMarginal(JointState* state) {
@@ -53,11 +74,18 @@ Status Estimator::SearchMarginal(JointState* state) {
     entry.seconds = Elapsed();
     Report(entry);
   };
+  // Of all points, made when it is first asked for.
+  std::unique_ptr<Transport> transport;
   if (problem_.transport.emitters != nullptr) {
     o.bounce_gain = [&](const std::vector<double>& lobes,
                         const std::vector<double>& log_radiance) {
-      return BounceGain(lobes, log_radiance, o.fine.map_height,
-                        o.fine.map_width);
+      if (transport == nullptr) {
+        TransportOptions options = problem_.transport;
+        options.num_threads = problem_.num_threads;
+        transport = std::make_unique<Transport>(
+            problem_.points, o.fine.map_height, o.fine.map_width, options);
+      }
+      return BounceGain(*transport, lobes_->Grid(lobes.data()), log_radiance);
     };
   }
   const StatusOr<ReflectanceSearchResult> found =
@@ -86,38 +114,6 @@ Status Estimator::SearchMarginal(JointState* state) {
     if (std::isfinite(tried.cost)) tried_.push_back(tried);
   }
   return OkStatus();
-}
-
-std::vector<double> Estimator::BounceGain(
-    const std::vector<double>& lobes, const std::vector<double>& log_radiance,
-    int height, int width) const {
-  const size_t texels = static_cast<size_t>(height) * width;
-  if (log_radiance.size() != 3 * texels) return {};
-  // The level cancels in the ratio.
-  const double highest =
-      *std::max_element(log_radiance.begin(), log_radiance.end());
-  std::vector<float> map(3 * texels);
-  for (size_t t = 0; t < texels; ++t) {
-    for (size_t c = 0; c < 3; ++c) {
-      map[3 * t + c] =
-          static_cast<float>(std::exp(log_radiance[c * texels + t] - highest));
-    }
-  }
-  TransportOptions options = problem_.transport;
-  options.num_threads = problem_.num_threads;
-  const Transport transport(problem_.points, height, width, options);
-  std::vector<float> fields;
-  lobes_->Tabulate(lobes.data(), false, &fields);
-  const BrdfGrid grid = lobes_->Combine(lobes.data(), fields, 1);
-  std::vector<double> direct(3 * problem_.points.size()), all(direct.size());
-  transport.RenderBounces(grid, map.data(), 0, direct.data());
-  transport.Render(grid, map.data(), all.data());
-  for (size_t i = 0; i < all.size(); ++i) {
-    const double gain = all[i] / direct[i];
-    all[i] = std::isfinite(gain) && gain > 0.0 ? std::min(gain, kMostBounceGain)
-                                               : 1.0;
-  }
-  return all;
 }
 
 void Estimator::StartAtMeanMaterial(JointState* state) {

@@ -78,11 +78,6 @@ class Estimator {
   // estimate_reflectance.cc
   // The reflectance whose posterior is highest with the light integrated out.
   Status SearchMarginal(JointState* state);
-  // Radiance [points][3] of all the problem's points with bounces over that
-  // without, under a map of log radiance [3][height * width].
-  std::vector<double> BounceGain(const std::vector<double>& lobes,
-                                 const std::vector<double>& log_radiance,
-                                 int height, int width) const;
   // The first of the spread materials.
   void StartAtMeanMaterial(JointState* state);
   // The materials under the known light, the best few refined.

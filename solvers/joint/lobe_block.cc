@@ -18,9 +18,7 @@ LobeBlock::LobeBlock(const Transport* transport, const LobeModel* lobes,
 }
 
 BrdfGrid LobeBlock::Grid(const double* parameters) const {
-  std::vector<float> fields;
-  lobes_->Tabulate(parameters, false, &fields);
-  return lobes_->Combine(parameters, fields, 1);
+  return lobes_->Grid(parameters);
 }
 
 RowMajorMatrix LobeBlock::RadianceJacobian(const double* parameters,

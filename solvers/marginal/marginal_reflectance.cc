@@ -15,6 +15,19 @@ double Colour(double log_colour, int channel) {
 
 }  // namespace
 
+std::vector<float> RelativeMap(const double* log_radiance, int num_texels) {
+  const size_t t = num_texels;
+  const double highest = *std::max_element(log_radiance, log_radiance + 3 * t);
+  std::vector<float> map(3 * t);
+  for (size_t i = 0; i < t; ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      map[3 * i + c] =
+          static_cast<float>(std::exp(log_radiance[c * t + i] - highest));
+    }
+  }
+  return map;
+}
+
 MarginalReflectance::MarginalReflectance(
     const NeuralBrdfModel& model, int num_lobes,
     const std::vector<ShadingPoint>& points,
@@ -143,19 +156,13 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
     const LightMode& mode) const {
   const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
   const int num_fields = num_lobes * (1 + size);
-  const Eigen::Index t = likelihood_->num_texels(), P = cells_.num_cells();
+  const Eigen::Index P = cells_.num_cells();
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<const float*> field(num_fields);
   for (int i = 0; i < num_fields; ++i) field[i] = &fields[i * nodes];
   // The level of the light cancels in the ratios below.
-  const double highest = mode.l.maxCoeff();
-  std::vector<float> map(3 * t);
-  for (Eigen::Index i = 0; i < t; ++i) {
-    for (int c = 0; c < 3; ++c) {
-      map[3 * i + c] =
-          static_cast<float>(std::exp(mode.l[c * t + i] - highest));
-    }
-  }
+  const std::vector<float> map =
+      RelativeMap(mode.l.data(), likelihood_->num_texels());
   std::vector<float> by_point(size_t{3} * cells_.points.size() * num_fields);
   transport_->RenderLobes(field.data(), num_fields, map.data(),
                           by_point.data());

@@ -45,9 +45,7 @@ class LobeModelTest : public ::testing::Test {
     return sum;
   }
   BrdfGrid Combined(const std::vector<double>& p) const {
-    std::vector<float> fields;
-    lobes_.Tabulate(p.data(), false, &fields);
-    return lobes_.Combine(p.data(), fields, 1);
+    return lobes_.Grid(p.data());
   }
 };
 

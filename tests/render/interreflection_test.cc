@@ -35,19 +35,6 @@ TransportOptions WithBounces(const Scene& scene,
   return options;
 }
 
-// The inside of a unit sphere that is open within `degrees` of the y axis.
-TriangleMesh BowlMesh(double degrees) {
-  const double opening = degrees * kPi / 180;
-  return GridMesh(
-      64, 128, false,
-      [opening](double u, double v, Eigen::Vector3d* p, Eigen::Vector3d* n) {
-        const double theta = opening + u * (kPi - opening);
-        const double phi = 2 * kPi * v, s = std::sin(theta);
-        *p = {s * std::sin(phi), std::cos(theta), s * std::cos(phi)};
-        *n = -*p;
-      });
-}
-
 std::vector<ShadingPoint> BowlPoints(double opening_degrees) {
   std::vector<ShadingPoint> points;
   for (const double share : {0.1, 0.35, 0.6, 0.9}) {
@@ -124,53 +111,6 @@ TEST(Interreflection, WhiteObjectInConstantLightDisappears) {
   EXPECT_NEAR(1.0, mean, 0.005);
 }
 
-// Radiance towards wo with `bounces`, by a ray for every direction.
-Eigen::Array3d BruteForce(const Scene& scene, const ShadingPoint& point,
-                          const BrdfFunction& brdf, const Image& map,
-                          int bounces, int rings, int samples) {
-  const Eigen::Vector3d n = point.normal.cast<double>().normalized();
-  const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
-  const Eigen::Vector3d t = n.unitOrthogonal(), b = n.cross(t);
-  Eigen::Array3d sum = Eigen::Array3d::Zero();
-  const auto edge = [rings](int i) {
-    return std::pow(static_cast<double>(i) / rings, 2) * kPi / 2;
-  };
-  for (int i = 0; i < rings; ++i) {
-    const double theta = 0.5 * (edge(i) + edge(i + 1));
-    const double solid_angle =
-        (std::cos(edge(i)) - std::cos(edge(i + 1))) * 2 * kPi / samples;
-    for (int k = 0; k < samples; ++k) {
-      const double phi = 2 * kPi * (k + 0.5) / samples;
-      const Eigen::Vector3d h =
-          std::sin(theta) * (std::cos(phi) * t + std::sin(phi) * b) +
-          std::cos(theta) * n;
-      const double oh = h.dot(wo);
-      const Eigen::Vector3d wi = 2 * oh * h - wo;
-      if (oh <= 0 || n.dot(wi) <= 0) continue;
-      Eigen::Array3d light;
-      SurfaceHit hit;
-      if (!scene.Occluded(point.position, wi)) {
-        light = LookUpMap(map, wi);
-      } else if (bounces > 0 &&
-                 scene.Intersect({point.position, wi}, false, &hit)) {
-        ShadingPoint emitter{};
-        emitter.normal = hit.normal.cast<float>();
-        emitter.wo = -wi.cast<float>();
-        emitter.position = hit.position;
-        light =
-            BruteForce(scene, emitter, brdf, map, bounces - 1, rings, samples);
-      } else {
-        continue;
-      }
-      const HalfDiff a = ToHalfDiff({wi.dot(t), wi.dot(b), wi.dot(n)},
-                                    {wo.dot(t), wo.dot(b), wo.dot(n)});
-      sum += 4 * oh * n.dot(wi) * solid_angle *
-             brdf(a.theta_h, a.theta_d, a.phi_d) * light;
-    }
-  }
-  return sum;
-}
-
 // Emitters are patches seen from a few sides; brute force knows none. The
 // sharper the lobe, the more of the bounce that misses.
 TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {
@@ -204,7 +144,7 @@ TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {
     for (size_t k = 5; k < order.size() / 2; k += order.size() / 20) {
       const size_t i = order[k];
       const Eigen::Array3d expected =
-          BruteForce(scene, all[i], c.brdf, map, 1, 24, 48);
+          BruteForceShadowed(scene, all[i], c.brdf, map, 1, 24, 48, 2);
       for (int ch = 0; ch < 3; ++ch) {
         error += std::abs(std::log(E[3 * i + ch] / expected[ch]));
         without += std::abs(std::log(direct[3 * i + ch] / expected[ch]));

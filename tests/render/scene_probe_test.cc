@@ -70,14 +70,7 @@ TEST(SceneProbe, HiddenShareOfAWallIsTheClosedForm) {
 // bowl of albedo a lacks log (1 / (1 - a / 2)) without bounces and
 // log (1 / (1 - (a / 2)^(b + 1))) with b.
 TEST(SceneProbe, BouncesOfABowlAreWorthTheClosedForm) {
-  const TriangleMesh bowl =
-      GridMesh(64, 128, false,
-               [](double u, double v, Eigen::Vector3d* p, Eigen::Vector3d* n) {
-                 const double theta = kPi / 2 * (1 + u), phi = 2 * kPi * v;
-                 *p = {std::sin(theta) * std::sin(phi), std::cos(theta),
-                       std::sin(theta) * std::cos(phi)};
-                 *n = -*p;
-               });
+  const TriangleMesh bowl = BowlMesh(90);
   std::vector<ShadingPoint> points;
   for (int i = 0; i < 12; ++i) {
     const double theta = kPi / 2 * (1.05 + 0.07 * i);

@@ -93,5 +93,68 @@ inline Camera TorusCamera() {
   return camera;
 }
 
+// The inside of a unit sphere that is open within `degrees` of the y axis.
+inline TriangleMesh BowlMesh(double degrees) {
+  const double opening = degrees * kPi / 180;
+  return GridMesh(
+      64, 128, false,
+      [opening](double u, double v, Eigen::Vector3d* p, Eigen::Vector3d* n) {
+        const double theta = opening + u * (kPi - opening);
+        const double phi = 2 * kPi * v, s = std::sin(theta);
+        *p = {s * std::sin(phi), std::cos(theta), s * std::cos(phi)};
+        *n = -*p;
+      });
+}
+
+// BruteForceRadiance with a ray for every direction, and so many bounces; the
+// rings of half-vectors widen with the given power.
+inline Eigen::Array3d BruteForceShadowed(const Scene& scene,
+                                         const ShadingPoint& point,
+                                         const BrdfFunction& brdf,
+                                         const Image& map, int bounces,
+                                         int rings, int samples, int power) {
+  const Eigen::Vector3d n = point.normal.cast<double>().normalized();
+  const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
+  const Eigen::Vector3d t = n.unitOrthogonal(), b = n.cross(t);
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  const auto edge = [rings, power](int i) {
+    return std::pow(static_cast<double>(i) / rings, power) * kPi / 2;
+  };
+  for (int i = 0; i < rings; ++i) {
+    const double theta = 0.5 * (edge(i) + edge(i + 1));
+    const double solid_angle =
+        (std::cos(edge(i)) - std::cos(edge(i + 1))) * 2 * kPi / samples;
+    for (int k = 0; k < samples; ++k) {
+      const double phi = 2 * kPi * (k + 0.5) / samples;
+      const Eigen::Vector3d h =
+          std::sin(theta) * (std::cos(phi) * t + std::sin(phi) * b) +
+          std::cos(theta) * n;
+      const double oh = h.dot(wo);
+      const Eigen::Vector3d wi = 2 * oh * h - wo;
+      if (oh <= 0 || n.dot(wi) <= 0) continue;
+      Eigen::Array3d light;
+      SurfaceHit hit;
+      if (!scene.Occluded(point.position, wi)) {
+        light = LookUpMap(map, wi);
+      } else if (bounces > 0 &&
+                 scene.Intersect({point.position, wi}, false, &hit)) {
+        ShadingPoint emitter{};
+        emitter.normal = hit.normal.cast<float>();
+        emitter.wo = -wi.cast<float>();
+        emitter.position = hit.position;
+        light = BruteForceShadowed(scene, emitter, brdf, map, bounces - 1,
+                                   rings, samples, power);
+      } else {
+        continue;
+      }
+      const HalfDiff a = ToHalfDiff({wi.dot(t), wi.dot(b), wi.dot(n)},
+                                    {wo.dot(t), wo.dot(b), wo.dot(n)});
+      sum += 4 * oh * n.dot(wi) * solid_angle *
+             brdf(a.theta_h, a.theta_d, a.phi_d) * light;
+    }
+  }
+  return sum;
+}
+
 }  // namespace testing
 }  // namespace ibrdf

@@ -291,9 +291,7 @@ TEST_P(BouncedRadiance, TangentsOfLobesMatchDifferences) {
     std::vector<double> E, dE, direct(3 * points_.size());
     ASSERT_TRUE(RenderLobeModel(*transport_, scene_.lobes, p.data(), map.data(),
                                 &E, &dE));
-    std::vector<float> fields;
-    scene_.lobes.Tabulate(p.data(), false, &fields);
-    const BrdfGrid grid = scene_.lobes.Combine(p.data(), fields, 1);
+    const BrdfGrid grid = scene_.lobes.Grid(p.data());
     std::vector<double> rendered(E.size());
     transport_->Render(grid, map.data(), rendered.data());
     transport_->RenderBounces(grid, map.data(), 0, direct.data());

@@ -34,9 +34,7 @@ class InverseRenderingTest : public ::testing::TestWithParam<ProblemKind> {
     parameters_ = {0.3,  -0.4, 0.2, 0.1,  5.0, 4.6, 4.2,
                    -0.5, 0.1,  0.3, -0.2, 3.0, 3.5, 3.3};
     const LobeModel lobes(problem_.model, 2, problem_.transport.grid, 1);
-    std::vector<float> fields;
-    lobes.Tabulate(parameters_.data(), false, &fields);
-    truth_ = lobes.Combine(parameters_.data(), fields, 1);
+    truth_ = lobes.Grid(parameters_.data());
     const Transport transport(problem_.points, 8, 16, problem_.transport);
     std::vector<double> E(3 * problem_.points.size());
     transport.Render(truth_, map_.rgb.data(), E.data());

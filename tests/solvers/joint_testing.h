@@ -28,9 +28,7 @@ struct JointScene {
         light(unet ? MakeUnetIllumination(TiniestUnetOptions())
                    : MakeFreeIllumination(16, 8)) {
     truth = TinyScene().Parameters();
-    std::vector<float> fields;
-    lobes.Tabulate(truth.data(), false, &fields);
-    grid = lobes.Combine(truth.data(), fields, 1);
+    grid = lobes.Grid(truth.data());
     std::vector<double> E(3 * points.size());
     transport.Render(grid, SmoothMap(8, 16).rgb.data(), E.data());
     observed = MakeObservations(E);

@@ -54,11 +54,8 @@ struct TinyScene {
   // E of the parameters under a map.
   std::vector<double> Render(const std::vector<double>& parameters,
                              const std::vector<float>& map) const {
-    std::vector<float> fields;
-    lobes.Tabulate(parameters.data(), false, &fields);
     std::vector<double> E(3 * points.size());
-    transport.Render(lobes.Combine(parameters.data(), fields, 1), map.data(),
-                     E.data());
+    transport.Render(lobes.Grid(parameters.data()), map.data(), E.data());
     return E;
   }
 };

@@ -106,6 +106,12 @@ void LobeModel::TabulateReference(const double* parameters, bool derivatives,
   }
 }
 
+BrdfGrid LobeModel::Grid(const double* parameters) const {
+  std::vector<float> fields;
+  Tabulate(parameters, false, &fields);
+  return Combine(parameters, fields, 1);
+}
+
 BrdfGrid LobeModel::Combine(const double* parameters,
                             const std::vector<float>& fields,
                             int stride) const {

@@ -46,6 +46,8 @@ class LobeModel {
   // BRDF on the grid from shapes [num_lobes][stride fields][nodes].
   BrdfGrid Combine(const double* parameters, const std::vector<float>& fields,
                    int stride) const;
+  // Tabulated and combined.
+  BrdfGrid Grid(const double* parameters) const;
 
   // At the bin centres of a MERL table; -1 in bins below the horizon.
   MerlTable ToMerl(const double* parameters) const;

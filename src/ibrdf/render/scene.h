@@ -92,4 +92,8 @@ StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
                                                       const Mask& mask,
                                                       int samples_per_side);
 
+// At most `most` of the points, evenly spread over the list.
+std::vector<ShadingPoint> SpreadPoints(const std::vector<ShadingPoint>& points,
+                                       size_t most);
+
 }  // namespace ibrdf

@@ -22,17 +22,6 @@ constexpr double kDarkest = 1e-3;
 constexpr double kProbePatch = 0.2;
 constexpr int kProbeEmitters = 500;
 
-// At most `most` of the points, evenly spread over the list.
-std::vector<ShadingPoint> Spread(const std::vector<ShadingPoint>& points,
-                                 int most) {
-  const size_t count = std::min(points.size(), static_cast<size_t>(most));
-  std::vector<ShadingPoint> out;
-  for (size_t k = 0; k < count; ++k) {
-    out.push_back(points[(2 * k + 1) * points.size() / (2 * count)]);
-  }
-  return out;
-}
-
 }  // namespace
 
 SceneProbe ProbeScene(const Scene& scene,
@@ -41,7 +30,8 @@ SceneProbe ProbeScene(const Scene& scene,
   CHECK(options.max_points > 0 && options.rays_per_point > 0);
   SceneProbe probe;
   if (!scene.CastsShadows() || points.empty()) return probe;
-  const std::vector<ShadingPoint> few = Spread(points, options.max_points);
+  const std::vector<ShadingPoint> few =
+      SpreadPoints(points, options.max_points);
   const int rays = options.rays_per_point;
   std::vector<double> hidden(few.size());
   ParallelFor(static_cast<int64_t>(few.size()), options.num_threads,
@@ -83,7 +73,8 @@ EffectsWorth PredictEffects(const Scene& scene,
   CHECK(!looks.empty());
   EffectsWorth worth;
   if (!scene.CastsShadows() || points.empty()) return worth;
-  const std::vector<ShadingPoint> few = Spread(points, options.max_points);
+  const std::vector<ShadingPoint> few =
+      SpreadPoints(points, options.max_points);
   const int height = looks[0].map->height, width = looks[0].map->width;
   TransportOptions bare, all;
   bare.num_threads = options.num_threads;

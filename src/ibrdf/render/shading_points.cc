@@ -105,4 +105,14 @@ StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
   return points;
 }
 
+std::vector<ShadingPoint> SpreadPoints(const std::vector<ShadingPoint>& points,
+                                       size_t most) {
+  const size_t count = std::min(points.size(), most);
+  std::vector<ShadingPoint> out;
+  for (size_t k = 0; k < count; ++k) {
+    out.push_back(points[(2 * k + 1) * points.size() / (2 * count)]);
+  }
+  return out;
+}
+
 }  // namespace ibrdf

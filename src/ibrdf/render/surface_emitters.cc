@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "ibrdf/base/parallel_for.h"
@@ -27,7 +26,6 @@ constexpr int kMaxRounds = 4;
 constexpr double kLeastCosine = 0.15;
 // Emitters see in steps this much wider than points.
 constexpr int kCoarser = 2;
-constexpr int64_t kPointsPerChunk = 16;
 
 // The square of a cube's face, n x n of them each, that a direction goes
 // through.
@@ -40,17 +38,6 @@ int CubeBin(const Eigen::Vector3d& d, int n) {
   };
   const int face = 2 * axis + (d[axis] < 0.0 ? 1 : 0);
   return (face * n + bin(d[(axis + 1) % 3])) * n + bin(d[(axis + 2) % 3]);
-}
-
-// Up to `most` of the points, evenly spread over the list.
-std::vector<const ShadingPoint*> Spread(const std::vector<ShadingPoint>& points,
-                                        int most) {
-  const size_t count = std::min(points.size(), static_cast<size_t>(most));
-  std::vector<const ShadingPoint*> out;
-  for (size_t k = 0; k < count; ++k) {
-    out.push_back(&points[(2 * k + 1) * points.size() / (2 * count)]);
-  }
-  return out;
 }
 
 Eigen::Vector3d NotTooFlat(const Eigen::Vector3d& n,
@@ -80,28 +67,26 @@ SurfaceEmitters::SurfaceEmitters(const Scene& scene,
   CHECK_EQ(visibility->grid().rows() % options.lattice_rows, 0);
   CHECK_LE(2 * options.lattice_rows * options.lattice_rows, 65536);
   CHECK(options.max_emitters >= 200 && options.max_emitters < kNoEmitter);
-  const std::vector<const ShadingPoint*> few =
-      Spread(points, options.max_points);
-  const auto count = static_cast<int64_t>(few.size());
-  const int64_t chunks = (count + kPointsPerChunk - 1) / kPointsPerChunk;
-  std::vector<std::vector<Hit>> found(chunks);
-  ParallelFor(chunks, options.num_threads, [&](int64_t index, int) {
-    std::vector<HiddenCell> cells;
-    const int64_t end = std::min((index + 1) * kPointsPerChunk, count);
-    for (int64_t i = index * kPointsPerChunk; i < end; ++i) {
-      const uint64_t* const hidden = visibility->Hidden(*few[i]);
-      if (hidden == nullptr) continue;
-      HiddenCells(visibility->grid(), *few[i], hidden, options_.lattice_rows,
-                  &cells);
-      for (const HiddenCell& cell : cells) {
-        Hit hit;
-        if (Meet(*few[i], cell.direction, &hit)) found[index].push_back(hit);
-      }
-    }
-  });
+  const std::vector<ShadingPoint> few =
+      SpreadPoints(points, options.max_points);
+  std::vector<std::vector<Hit>> found(few.size());
+  ParallelFor(static_cast<int64_t>(few.size()), options.num_threads,
+              [&](int64_t i, int) {
+                const uint64_t* const hidden = visibility->Hidden(few[i]);
+                if (hidden == nullptr) return;
+                std::vector<HiddenCell> cells;
+                HiddenCells(visibility->grid(), few[i], hidden,
+                            options_.lattice_rows, &cells);
+                for (const HiddenCell& cell : cells) {
+                  Hit hit;
+                  if (Meet(few[i], cell.direction, &hit)) {
+                    found[i].push_back(hit);
+                  }
+                }
+              });
   std::vector<Hit> hits;
-  for (const std::vector<Hit>& chunk : found) {
-    hits.insert(hits.end(), chunk.begin(), chunk.end());
+  for (const std::vector<Hit>& of_point : found) {
+    hits.insert(hits.end(), of_point.begin(), of_point.end());
   }
   Eigen::Vector3d high = Eigen::Vector3d::Zero();
   if (!hits.empty()) low_ = high = hits[0].position;
