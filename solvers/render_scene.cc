@@ -2,77 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <random>
 #include <string>
 #include <utility>
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/light/procedural_sky.h"
-#include "ibrdf/render/reference_renderer.h"
+#include "ibrdf/render/pixel_samples.h"
 #include "ibrdf/render/reflectance_map.h"
-#include "ibrdf/render/transport.h"
 #include "io/image_file.h"
 #include "io/merl.h"
 #include "io/mesh.h"
+#include "solvers/scene_radiance.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr int kReferenceSamplesPerSide = 2;
-// Points between two calls of progress: well below a second at reference
-// quality, enough to keep the threads busy.
-constexpr size_t kPointsPerStep = 2048;
-constexpr int kPreviewShadowRows = 128;
-// Log radiance that interpolation between normals may cost.
+// Of pixels at reference quality and, in a preview, of those that call for it.
+constexpr int kSamplesPerSide = 2;
+// Log radiance that interpolation between normals, and taking the centre of a
+// pixel for all of it, may cost.
 constexpr double kReferenceMapError = 3e-4;
 constexpr double kPreviewMapError = 3e-3;
-// Whose sight decides where emitters are.
-constexpr size_t kEmitterPoints = 2048;
-constexpr size_t kReferenceEmitterPoints = 8192;
-
-// A quarter of the reference's rings: within 1 % but for mirrors.
-ReferenceOptions QualityOptions(RenderQuality quality, int num_threads) {
-  ReferenceOptions options;
-  options.num_threads = num_threads;
-  if (quality == RenderQuality::kPreview) {
-    options.near_rings /= 4;
-    options.near_ring_samples /= 4;
-    options.far_width = 64;
-  }
-  return options;
-}
-
-// Sets the emitters of `quality` and returns their radiance [emitters, 3]. They
-// are placed and lit as in a solve, at reference quality with more of them.
-std::vector<double> EmittedLight(const Scene& scene,
-                                 const std::vector<ShadingPoint>& points,
-                                 int bounces, bool reference, const Image& map,
-                                 const BrdfGrid& grid,
-                                 ReferenceOptions* quality) {
-  const size_t most = reference ? kReferenceEmitterPoints : kEmitterPoints;
-  const std::vector<ShadingPoint> few = SpreadPoints(points, most);
-  VisibilityOptions rays;
-  rays.num_threads = quality->num_threads;
-  SurfaceEmitterOptions options = EmittersFor(points.size(), bounces);
-  options.num_threads = quality->num_threads;
-  options.max_points = static_cast<int>(most);
-  if (reference) {
-    options.patch = 0.05;
-    options.views = 4;
-    options.max_emitters = 16000;
-    options.lattice_rows = 64;
-  }
-  TransportOptions transport;
-  transport.grid = grid.shape;
-  transport.num_threads = quality->num_threads;
-  transport.visibility = std::make_shared<Visibility>(scene, few, rays);
-  transport.emitters = std::make_shared<SurfaceEmitters>(
-      scene, few, transport.visibility, options);
-  quality->emitters = transport.emitters;
-  return Transport({}, map.height, map.width, transport)
-      .Emitted(grid, map.rgb.data());
-}
+constexpr double kPreviewPixelError = 3e-3;
 
 // Box-Muller on bits of the generator, which the standard fixes (unlike
 // std::normal_distribution): the same seed gives the same noise anywhere.
@@ -92,6 +44,104 @@ class NormalNumbers {
   std::mt19937_64 rng_;
 };
 
+// Those of one view angle share work.
+void SortByAngle(std::vector<ShadingPoint>* points) {
+  std::stable_sort(points->begin(), points->end(),
+                   [](const ShadingPoint& a, const ShadingPoint& b) {
+                     return a.normal.dot(a.wo) < b.normal.dot(b.wo);
+                   });
+}
+
+// Pixels of one scene, in one or two passes.
+class PixelRenderer {
+ public:
+  PixelRenderer(const Problem& problem, const SceneRadiance& radiance,
+                bool reflectance_map, const RenderSceneOptions& options)
+      : problem_(problem),
+        radiance_(radiance),
+        reflectance_map_(reflectance_map),
+        options_(options) {}
+
+  // Calls progress with shares of [begin, end].
+  StatusOr<Image> Render(const std::vector<ShadingPoint>& points, double begin,
+                         double end) {
+    std::vector<double> E(3 * points.size());
+    const auto all = [&](const std::vector<ShadingPoint>& some, double* out) {
+      const auto progress = [&](double share) {
+        return options_.progress(begin + (end - begin) * share);
+      };
+      return radiance_.Render(
+          some, options_.progress ? progress : std::function<bool(double)>(),
+          out);
+    };
+    num_points_ += points.size();
+    const Status interrupted(StatusCode::kInterrupted,
+                             problem_.path + ": interrupted");
+    if (reflectance_map_) {
+      ReflectanceMapOptions by_normal;
+      by_normal.log_error = problem_.quality == RenderQuality::kReference
+                                ? kReferenceMapError
+                                : kPreviewMapError;
+      const StatusOr<ReflectanceMapReport> report =
+          RenderByNormal(points, all, by_normal, E.data());
+      if (!report.ok()) {
+        return report.status().code() == StatusCode::kInterrupted
+                   ? interrupted
+                   : report.status();
+      }
+      num_interpolated_ += report->interpolated;
+    } else if (!all(points, E.data())) {
+      return interrupted;
+    }
+    return PixelMeans(points, E.data(), problem_.image.width,
+                      problem_.image.height);
+  }
+
+  // Renders the pixels anew whose centre does not stand for them.
+  Status Refine(const Scene& scene, const Mask& mask, double begin, double end,
+                Image* image) {
+    const Mask unclear = PixelsToSample(*image, mask, kPreviewPixelError);
+    if (unclear.empty()) return Status();
+    StatusOr<std::vector<ShadingPoint>> points =
+        FindShadingPoints(scene, problem_.camera, image->width, image->height,
+                          unclear, kSamplesPerSide);
+    if (!points.ok()) return points.status();
+    SortByAngle(&*points);
+    const StatusOr<Image> finer = Render(*points, begin, end);
+    if (!finer.ok()) return finer.status();
+    // All samples of a pixel may pass by what its centre meets.
+    std::vector<char> met(image->num_pixels(), 0);
+    for (const ShadingPoint& p : *points) met[p.pixel] = 1;
+    for (size_t k = 0; k < image->rgb.size(); ++k) {
+      if (met[k / 3] != 0) image->rgb[k] = finer->rgb[k];
+    }
+    num_refined_ = unclear.CountInside();
+    return Status();
+  }
+
+  // For the user, after the plan's.
+  std::string words() const {
+    std::string text;
+    if (num_refined_ > 0) {
+      text += "; " + std::to_string(num_refined_) + " pixels are sampled " +
+              std::to_string(kSamplesPerSide * kSamplesPerSide) + " times";
+    }
+    if (reflectance_map_) {
+      text += "; " + std::to_string(num_interpolated_) + " of " +
+              std::to_string(num_points_) +
+              " points are interpolated by their normal from others";
+    }
+    return text;
+  }
+
+ private:
+  const Problem& problem_;
+  const SceneRadiance& radiance_;
+  const bool reflectance_map_;
+  const RenderSceneOptions& options_;
+  size_t num_points_ = 0, num_interpolated_ = 0, num_refined_ = 0;
+};
+
 }  // namespace
 
 void AddNoise(double sigma, uint64_t seed, Image* image) {
@@ -108,8 +158,7 @@ StatusOr<ViewPoints> FindViewPoints(const Problem& problem) {
   const int width = problem.image.width, height = problem.image.height;
   StatusOr<std::vector<ShadingPoint>> found = FindShadingPoints(
       *scene, problem.camera, width, height, Mask(),
-      problem.quality == RenderQuality::kReference ? kReferenceSamplesPerSide
-                                                   : 1);
+      problem.quality == RenderQuality::kReference ? kSamplesPerSide : 1);
   if (!found.ok()) {
     return InvalidInput(problem.path, found.status().message());
   }
@@ -118,10 +167,7 @@ StatusOr<ViewPoints> FindViewPoints(const Problem& problem) {
   view.points = *std::move(found);
   view.mask = Mask(width, height, 0);
   for (const ShadingPoint& p : view.points) view.mask.inside[p.pixel] = 255;
-  std::stable_sort(view.points.begin(), view.points.end(),
-                   [](const ShadingPoint& a, const ShadingPoint& b) {
-                     return a.normal.dot(a.wo) < b.normal.dot(b.wo);
-                   });
+  SortByAngle(&view.points);
   return view;
 }
 
@@ -191,83 +237,38 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
   StatusOr<Image> map = LoadKnownIllumination(problem.illumination);
   if (!map.ok()) return map.status();
 
-  MerlTable table;
-  if (!problem.reflectance.known_file.empty()) {
+  KnownBrdf brdf;
+  if (problem.reflectance.analytic.has_value()) {
+    brdf.function = problem.reflectance.analytic->Function();
+  } else {
     StatusOr<MerlTable> read = ReadMerl(problem.reflectance.known_file);
     if (!read.ok()) return read.status();
-    table = *std::move(read);
+    brdf.table = *std::move(read);
   }
-
   BrdfGrid grid;
-  if (view->scene.CastsShadows()) {
-    const auto& analytic = problem.reflectance.analytic;
-    grid = analytic.has_value()
-               ? BrdfGrid::FromFunction(analytic->Function(), {})
-               : BrdfGrid::FromMerl(table, {});
-  }
+  if (view->scene.CastsShadows()) grid = brdf.Grid();
   const bool reference = problem.quality == RenderQuality::kReference;
   StatusOr<EffectsPlan> effects =
       PlanEffects(problem, view->scene, points, &*map, &grid,
                   reference ? kReferenceLogError : kWorthwhileLogError,
                   options.num_threads);
   if (!effects.ok()) return effects.status();
-  ReferenceOptions quality =
-      QualityOptions(problem.quality, options.num_threads);
-  if (effects->visibility) {
-    quality.shadows = std::make_shared<VisibilityGrid>(
-        view->scene, reference ? kReferenceShadowRows : kPreviewShadowRows);
-  }
-  std::vector<double> emitted;
-  if (effects->bounces > 0) {
-    emitted = EmittedLight(view->scene, points, effects->bounces, reference,
-                           *map, grid, &quality);
-  }
-  const double* const emitted_light =
-      emitted.empty() ? nullptr : emitted.data();
-  const ReferenceRenderer renderer(*map, quality);
-  const auto render = [&](const std::vector<ShadingPoint>& some, double* E) {
-    if (problem.reflectance.analytic.has_value()) {
-      renderer.Render(some, problem.reflectance.analytic->Function(), E,
-                      emitted_light);
-    } else {
-      renderer.Render(some, table, E, emitted_light);
-    }
-  };
-  std::vector<double> E(3 * points.size());
-  const auto in_steps = [&](const std::vector<ShadingPoint>& all, double* out) {
-    for (size_t begin = 0; begin < all.size(); begin += kPointsPerStep) {
-      if (options.progress &&
-          !options.progress(static_cast<double>(begin) / points.size())) {
-        return false;
-      }
-      const size_t end = std::min(begin + kPointsPerStep, all.size());
-      render({all.begin() + begin, all.begin() + end}, out + 3 * begin);
-    }
-    return true;
-  };
-  if (effects->reflectance_map) {
-    ReflectanceMapOptions by_normal;
-    by_normal.log_error = reference ? kReferenceMapError : kPreviewMapError;
-    const StatusOr<ReflectanceMapReport> report =
-        RenderByNormal(points, in_steps, by_normal, E.data());
-    if (!report.ok()) {
-      return report.status().code() == StatusCode::kInterrupted
-                 ? Status(StatusCode::kInterrupted,
-                          problem.path + ": interrupted")
-                 : report.status();
-    }
-    effects->words += "; " + std::to_string(report->interpolated) + " of " +
-                      std::to_string(points.size()) +
-                      " points are interpolated by their normal from others";
-  } else if (!in_steps(points, E.data())) {
-    return Status(StatusCode::kInterrupted, problem.path + ": interrupted");
+  const SceneRadiance radiance(view->scene, points, *map, &brdf, grid, *effects,
+                               problem.quality, options.num_threads);
+  PixelRenderer pixels(problem, radiance, effects->reflectance_map, options);
+  // The second pass is of fewer pixels but more points.
+  const double first = reference ? 1.0 : 0.5;
+  RenderedScene out;
+  StatusOr<Image> image = pixels.Render(points, 0.0, first);
+  if (!image.ok()) return image.status();
+  out.image = *std::move(image);
+  out.mask = view->mask;
+  if (!reference) {
+    IBRDF_RETURN_IF_ERROR(
+        pixels.Refine(view->scene, out.mask, first, 1.0, &out.image));
   }
   if (options.progress) options.progress(1.0);
-
-  RenderedScene out;
-  out.image =
-      PixelMeans(points, E.data(), problem.image.width, problem.image.height);
-  out.mask = view->mask;
+  effects->words += pixels.words();
   out.effects = *std::move(effects);
   out.illumination = *std::move(map);
   AddNoise(problem.noise,

@@ -54,9 +54,10 @@ struct RenderedScene {
   EffectsPlan effects;
 };
 
-// Reference quality: 2x2 samples a pixel; preview: one, and a coarser
-// quadrature. Analytic BRDFs are evaluated, not tabulated. Noise multiplies
-// each channel of each pixel by exp(noise * normal). CheckRenderable first.
+// Reference quality: 2x2 samples a pixel; preview: one, but for pixels that it
+// does not stand for (PixelsToSample), and a coarser quadrature. Analytic BRDFs
+// are evaluated, not tabulated. Noise multiplies each channel of each pixel by
+// exp(noise * normal). CheckRenderable first.
 StatusOr<RenderedScene> RenderScene(const Problem& problem,
                                     const RenderSceneOptions& options);
 

@@ -62,6 +62,28 @@ TEST(RenderScene, NoiseHasTheAskedSizeAndFollowsTheSeed) {
               5 * 0.02 / std::sqrt(2.0 * count));
 }
 
+// A preview samples pixels where the image asks for it: against four samples
+// everywhere it must be several times nearer than centres alone, and say so.
+TEST(RenderScene, PreviewSamplesThePixelsThatNeedIt) {
+  Problem problem = Scene24();
+  problem.illumination.sky->sun_phi_degrees = 35;
+  const RenderedScene preview = RenderScene(problem, {}).value();
+  EXPECT_NE(std::string::npos, preview.effects.words.find("sampled 4 times"))
+      << preview.effects.words;
+  problem.quality = RenderQuality::kReference;
+  const RenderedScene reference = RenderScene(problem, {}).value();
+  // Twice as many pixels a side: the middle four are not the centre, but a
+  // quarter of a pixel from it.
+  double error = 0.0;
+  int count = 0;
+  for (size_t k = 0; k < preview.image.rgb.size(); ++k) {
+    if (preview.mask.inside[k / 3] == 0) continue;
+    error += std::abs(std::log(preview.image.rgb[k] / reference.image.rgb[k]));
+    ++count;
+  }
+  EXPECT_LT(error / count, 0.006);
+}
+
 TEST(RenderScene, ProgressMayStopIt) {
   RenderSceneOptions options;
   options.progress = [](double) { return false; };

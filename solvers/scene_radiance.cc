@@ -1,0 +1,108 @@
+#include "solvers/scene_radiance.h"
+
+#include <algorithm>
+
+#include "ibrdf/render/transport.h"
+
+namespace ibrdf {
+namespace {
+
+// Points between two calls of progress: well below a second at reference
+// quality, enough to keep the threads busy.
+constexpr size_t kPointsPerStep = 2048;
+constexpr int kPreviewShadowRows = 128;
+// Whose sight decides where emitters are.
+constexpr size_t kEmitterPoints = 2048;
+constexpr size_t kReferenceEmitterPoints = 8192;
+// A small image of an intricate object shows as much of it as a large one.
+constexpr size_t kLeastEmitters = 2048;
+
+// A quarter of the reference's rings: within 1 % but for mirrors.
+ReferenceOptions QualityOptions(bool reference, int num_threads) {
+  ReferenceOptions options;
+  options.num_threads = num_threads;
+  if (!reference) {
+    options.near_rings /= 4;
+    options.near_ring_samples /= 4;
+    options.far_width = 64;
+  }
+  return options;
+}
+
+}  // namespace
+
+BrdfGrid KnownBrdf::Grid() const {
+  return function ? BrdfGrid::FromFunction(function, {})
+                  : BrdfGrid::FromMerl(table, {});
+}
+
+SceneRadiance::SceneRadiance(const Scene& scene,
+                             const std::vector<ShadingPoint>& points,
+                             const Image& map, const KnownBrdf* brdf,
+                             const BrdfGrid& grid, const EffectsPlan& effects,
+                             RenderQuality quality, int num_threads)
+    : brdf_(brdf), num_threads_(num_threads) {
+  const bool reference = quality == RenderQuality::kReference;
+  ReferenceOptions options = QualityOptions(reference, num_threads);
+  if (effects.visibility) {
+    options.shadows = std::make_shared<VisibilityGrid>(
+        scene, reference ? kReferenceShadowRows : kPreviewShadowRows);
+  }
+  if (effects.bounces > 0) {
+    LightObject(scene, points, map, grid, effects.bounces, reference, &options);
+  }
+  renderer_ = std::make_unique<ReferenceRenderer>(map, options);
+}
+
+// They are placed and lit as in a solve, at reference quality with more of
+// them.
+void SceneRadiance::LightObject(const Scene& scene,
+                                const std::vector<ShadingPoint>& points,
+                                const Image& map, const BrdfGrid& grid,
+                                int bounces, bool reference,
+                                ReferenceOptions* options) {
+  const size_t most = reference ? kReferenceEmitterPoints : kEmitterPoints;
+  const std::vector<ShadingPoint> few = SpreadPoints(points, most);
+  VisibilityOptions rays;
+  rays.num_threads = num_threads_;
+  SurfaceEmitterOptions emitters =
+      EmittersFor(std::max(points.size(), kLeastEmitters), bounces);
+  emitters.num_threads = num_threads_;
+  emitters.max_points = static_cast<int>(most);
+  if (reference) {
+    emitters.patch = 0.05;
+    emitters.views = 4;
+    emitters.max_emitters = 16000;
+    emitters.lattice_rows = 64;
+  }
+  TransportOptions transport;
+  transport.grid = grid.shape;
+  transport.num_threads = num_threads_;
+  transport.visibility = std::make_shared<Visibility>(scene, few, rays);
+  transport.emitters = std::make_shared<SurfaceEmitters>(
+      scene, few, transport.visibility, emitters);
+  options->emitters = transport.emitters;
+  emitted_ = Transport({}, map.height, map.width, transport)
+                 .Emitted(grid, map.rgb.data());
+}
+
+bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
+                           const Progress& progress, double* E) const {
+  for (size_t begin = 0; begin < points.size(); begin += kPointsPerStep) {
+    if (progress && !progress(static_cast<double>(begin) / points.size())) {
+      return false;
+    }
+    const size_t end = std::min(begin + kPointsPerStep, points.size());
+    const std::vector<ShadingPoint> some(points.begin() + begin,
+                                         points.begin() + end);
+    const double* const emitted = emitted_.empty() ? nullptr : emitted_.data();
+    if (brdf_->function) {
+      renderer_->Render(some, brdf_->function, E + 3 * begin, emitted);
+    } else {
+      renderer_->Render(some, brdf_->table, E + 3 * begin, emitted);
+    }
+  }
+  return true;
+}
+
+}  // namespace ibrdf

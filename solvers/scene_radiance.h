@@ -1,0 +1,54 @@
+// Radiance of a known scene, with the effects of a plan.
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/render/reference_renderer.h"
+#include "ibrdf/render/scene.h"
+#include "io/problem.h"
+#include "solvers/effects_plan.h"
+
+namespace ibrdf {
+
+// A reflectance as it is known.
+struct KnownBrdf {
+  BrdfFunction function;  // empty: the table
+  MerlTable table;
+  BrdfGrid Grid() const;
+};
+
+class SceneRadiance {
+ public:
+  // Called with the share of a call's points that are done, in [0, 1], from the
+  // calling thread; false stops. May be empty.
+  using Progress = std::function<bool(double)>;
+
+  // `points`: of the image; where the object lights itself, what they see of it
+  // decides where emitters are. `brdf`, which must live as long as this, `map`:
+  // as in the problem; `grid`: the BRDF's, empty where nothing casts shadows.
+  SceneRadiance(const Scene& scene, const std::vector<ShadingPoint>& points,
+                const Image& map, const KnownBrdf* brdf, const BrdfGrid& grid,
+                const EffectsPlan& effects, RenderQuality quality,
+                int num_threads);
+
+  // [points, 3]; false: stopped.
+  bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
+              double* E) const;
+
+ private:
+  // Places and lights emitters.
+  void LightObject(const Scene& scene, const std::vector<ShadingPoint>& points,
+                   const Image& map, const BrdfGrid& grid, int bounces,
+                   bool reference, ReferenceOptions* options);
+
+  const KnownBrdf* brdf_;
+  int num_threads_;
+  std::vector<double> emitted_;  // [emitters, 3]
+  std::unique_ptr<const ReferenceRenderer> renderer_;
+};
+
+}  // namespace ibrdf
