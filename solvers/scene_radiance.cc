@@ -14,6 +14,7 @@ constexpr int kPreviewShadowRows = 128;
 // Whose sight decides where emitters are.
 constexpr size_t kEmitterPoints = 2048;
 constexpr size_t kReferenceEmitterPoints = 8192;
+constexpr int kLobeRays = 8, kReferenceLobeRays = 16;
 // A small image of an intricate object shows as much of it as a large one.
 constexpr size_t kLeastEmitters = 2048;
 
@@ -82,6 +83,7 @@ void SceneRadiance::LightObject(const Scene& scene,
   transport.emitters = std::make_shared<SurfaceEmitters>(
       scene, few, transport.visibility, emitters);
   options->emitters = transport.emitters;
+  options->lobe_rays = reference ? kReferenceLobeRays : kLobeRays;
   emitted_ = Transport({}, map.height, map.width, transport)
                  .Emitted(grid, map.rgb.data());
 }

@@ -13,7 +13,8 @@ struct CaseRun {
 };
 
 // Every run: ends by itself, with no sanitizer's report. With 0 or 3, all
-// files are whole, every number in them is finite, and the cost at the end is
+// files are whole, every number in them is finite (none that is missing for
+// not being so, but where nothing can be said), and the cost at the end is
 // not above that at the start. With 2, one line that starts with "error:", and
 // no file at all.
 //
@@ -26,5 +27,8 @@ struct CaseRun {
 //   image: [a, b]                range of render.exr on the object
 // Reports by googletest.
 void CheckRun(const YAML::Node& holds, const CaseRun& run);
+
+// That two runs ended alike, with the same bits in what they estimated.
+void CheckSameBits(const CaseRun& a, const CaseRun& b);
 
 }  // namespace ibrdf

@@ -192,13 +192,15 @@ Status MakeBrdf(const YAML::Node& brdf, const std::string& path) {
 
 // rings: of latitude. radius, centre: [x, y, z]; flip: turns triangles over;
 // flip_half: every other one; hole: leaves out the triangles with a vertex
-// beyond this height; spike: adds triangles without area.
+// beyond this height, or hole_towards: z; spike: adds triangles without area.
 Status MakeSphereMesh(const YAML::Node& recipe, const std::string& path) {
   const int rings = recipe["sphere_mesh"].as<int>();
   const double radius = Get(recipe, "radius", 1.0);
   const std::vector<double> centre =
       Get(recipe, "centre", std::vector<double>{0.0, 0.0, 0.0});
   const double hole = Get(recipe, "hole", 2.0);
+  const bool hole_towards_z =
+      Get(recipe, "hole_towards", std::string("y")) == "z";
   const bool flip = Get(recipe, "flip", false);
   const bool flip_half = Get(recipe, "flip_half", false);
   std::ostringstream obj;
@@ -212,7 +214,7 @@ Status MakeSphereMesh(const YAML::Node& recipe, const std::string& path) {
                    z = std::sin(theta) * std::cos(phi);
       obj << "v " << centre[0] + radius * x << ' ' << centre[1] + radius * y
           << ' ' << centre[2] + radius * z << '\n';
-      height.push_back(y);
+      height.push_back(hole_towards_z ? z : y);
     }
   }
   int count = 0;
@@ -252,9 +254,11 @@ Status WriteModelOf(const YAML::Node& recipe, const std::string& path) {
       }
     }
   }
-  if (recipe["log_colour"]) {
-    std::fill(model.log_colours.begin(), model.log_colours.end(),
-              Value(recipe["log_colour"]));
+  if (const YAML::Node colour = recipe["log_colour"]) {
+    for (size_t i = 0; i < model.log_colours.size(); ++i) {
+      model.log_colours[i] =
+          Value(colour.IsSequence() ? colour[i % 3] : colour);
+    }
   }
   return WriteModel(model, path);
 }

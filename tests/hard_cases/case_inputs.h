@@ -22,7 +22,7 @@ namespace ibrdf {
 //   brdf: {specular: s, ...}     .binary; see MakeBrdf
 //   model: 2                     .ibrdf of so many random materials;
 //                                curvature: of its splines; code_norm: of its
-//                                codes
+//                                codes; log_colour: of all, or [r, g, b]
 //   sphere_mesh: 12              .obj of so many rings; see MakeSphereMesh
 //
 // Images and maps take `edit`, a list of changes in order:

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/render/reference_renderer.h"
 #include "ibrdf/render/surface_emitters.h"
 #include "ibrdf/render/transport.h"
 #include "tests/render/render_testing.h"
@@ -154,6 +155,56 @@ TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {
     EXPECT_GT(without / count, 0.1);
     EXPECT_LT(error / without, c.share) << error / count;
   }
+}
+
+// A mirror-like torus in itself: patches blur what narrow lobes show, rays of
+// the lobes' own do not. One bounce, at points whose mirrored view is hidden.
+TEST(Interreflection, RaysOfNarrowLobesAgreeWithBruteForce) {
+  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const std::vector<ShadingPoint> all =
+      FindShadingPoints(scene, TorusCamera(), 32, 32, Mask(), 1).value();
+  std::vector<ShadingPoint> points;
+  for (const ShadingPoint& p : all) {
+    const Eigen::Vector3d n = p.normal.cast<double>();
+    const Eigen::Vector3d wo = p.wo.cast<double>();
+    if (scene.Occluded(p.position, 2 * n.dot(wo) * n - wo)) points.push_back(p);
+  }
+  ASSERT_GT(points.size(), 20u);
+  const Image map = SmoothMap(32, 64);
+  const BrdfFunction brdf = Glossy(0.0, 0.9, 2.0);
+  const TransportOptions options = WithBounces(scene, all, 1);
+  const std::vector<double> emitted =
+      Transport({}, 32, 64, options)
+          .Emitted(BrdfGrid::FromFunction(brdf, options.grid), map.rgb.data());
+  const auto render = [&](int lobe_rays, const double* light) {
+    ReferenceOptions reference;
+    reference.shadows = std::make_shared<VisibilityGrid>(scene, 256);
+    reference.emitters = options.emitters;
+    reference.lobe_rays = lobe_rays;
+    std::vector<double> E(3 * points.size());
+    ReferenceRenderer(map, reference).Render(points, brdf, E.data(), light);
+    return E;
+  };
+  const std::vector<double> bare = render(0, nullptr),
+                            patches = render(0, emitted.data()),
+                            few = render(4, emitted.data()),
+                            many = render(32, emitted.data());
+  double of_bare = 0.0, of_patches = 0.0, of_few = 0.0, of_many = 0.0;
+  for (size_t i = 0; i < points.size(); i += points.size() / 12) {
+    const Eigen::Array3d expected =
+        BruteForceShadowed(scene, points[i], brdf, map, 1, 36, 72, 4);
+    for (int c = 0; c < 3; ++c) {
+      const size_t k = 3 * i + c;
+      of_bare += std::abs(std::log(bare[k] / expected[c]));
+      of_patches += std::abs(std::log(patches[k] / expected[c]));
+      of_few += std::abs(std::log(few[k] / expected[c]));
+      of_many += std::abs(std::log(many[k] / expected[c]));
+    }
+  }
+  EXPECT_GT(of_patches, 0.05 * of_bare);
+  EXPECT_LT(of_few, 0.5 * of_patches);
+  EXPECT_LT(of_many, 0.1 * of_patches);
+  EXPECT_LT(of_many, 0.01 * of_bare);
 }
 
 TEST(Interreflection, ConvexObjectsHaveNoEmittersAndTheSameBits) {

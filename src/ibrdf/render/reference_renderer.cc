@@ -9,6 +9,7 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/render/lobe_bundles.h"
 
 namespace ibrdf {
 namespace {
@@ -18,6 +19,13 @@ constexpr double kPi = 3.14159265358979323846;
 // times brighter than its mean, is split into texels.
 constexpr double kBrightBlock = 4.0;
 constexpr double kUnevenBlock = 1.5;
+
+// A lobe whose half-vectors fall to half within this angle gets rays of its
+// own, within this many times that angle of the normal.
+constexpr double kNarrowLobe = 4.0 * kPi / 180;
+constexpr double kLobeWidths = 2.5;
+// Fewer from bounce to bounce.
+constexpr int kFewerRays = 4;
 
 using Float4 [[gnu::vector_size(16)]] = float;
 
@@ -124,11 +132,20 @@ ReferenceRenderer::Light ReferenceRenderer::GatherLight(
 
 ReferenceRenderer::ReferenceRenderer(const Image& map,
                                      const ReferenceOptions& options)
-    : ReferenceRenderer(map, GatherLight(map, options), options) {}
+    : ReferenceRenderer(map, GatherLight(map, options), options) {
+  const ReferenceOptions defaults;
+  if (lobe_rays_ == 0 || options.near_rings < defaults.near_rings) return;
+  ReferenceOptions coarser = options;
+  coarser.near_rings /= 4;
+  coarser.near_ring_samples /= 4;
+  coarser.far_width = std::min(options.far_width, 64);
+  coarser_ = std::make_unique<ReferenceRenderer>(map, coarser);
+}
 
 ReferenceRenderer::ReferenceRenderer(const Image& map, Light light,
                                      const ReferenceOptions& options)
     : num_threads_(options.num_threads),
+      lobe_rays_(options.lobe_rays),
       map_({&map}, 4),
       power_(std::move(light.power)),
       solid_angle_(std::move(light.solid_angle)),
@@ -137,18 +154,32 @@ ReferenceRenderer::ReferenceRenderer(const Image& map, Light light,
       ranges_(std::move(light.ranges)),
       quadrature_(std::move(light.cells), NearOptions(map.width, options)) {
   CHECK(emitters_ == nullptr || shadows_ != nullptr);
+  CHECK(lobe_rays_ >= 0 && (lobe_rays_ & (lobe_rays_ - 1)) == 0);
 }
 
 struct ReferenceRenderer::Rays {
   std::vector<float> x, y, z;  // direction
   std::vector<float> f;        // weight times BRDF, four lanes
+  std::vector<int> bundle;     // of the first rays, -1: none
 };
 
 Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
                                          const Eigen::Matrix3f& axes,
-                                         const uint64_t* hidden,
-                                         const SeenEmitters& seen,
-                                         const double* emitted) const {
+                                         const Sight& sight) const {
+  const uint64_t* const hidden = sight.hidden;
+  // Radiance of what hides ray k; null: black.
+  const auto object = [&](size_t k) -> const double* {
+    if (sight.lobe != nullptr && k < rays.bundle.size() &&
+        rays.bundle[k] >= 0) {
+      const double* const R = sight.lobe + size_t{3} * rays.bundle[k];
+      if (R[0] >= 0.0) return R;
+    }
+    if (sight.seen.empty()) return nullptr;
+    const Eigen::Vector3f wi =
+        axes * Eigen::Vector3f(rays.x[k], rays.y[k], rays.z[k]);
+    const int emitter = emitters_->Along(sight.seen, wi.cast<double>());
+    return emitter < 0 ? nullptr : sight.emitted + size_t{3} * emitter;
+  };
   const Eigen::Vector3d normal = axes.col(2).cast<double>();
   const auto load = [](const float* p) {
     Float4 v;
@@ -175,13 +206,8 @@ Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
     }
     Float4 block = {0.0f, 0.0f, 0.0f, 0.0f};
     for (int k = 0; k < n; ++k) {
-      if (hidden != nullptr && visible[k] < 1.0f && !seen.empty()) {
-        const Eigen::Vector3f wi =
-            axes * Eigen::Vector3f(rays.x[begin + k], rays.y[begin + k],
-                                   rays.z[begin + k]);
-        const int emitter = emitters_->Along(seen, wi.cast<double>());
-        if (emitter >= 0) {
-          const double* const R = emitted + size_t{3} * emitter;
+      if (hidden != nullptr && visible[k] < 1.0f) {
+        if (const double* const R = object(begin + k)) {
           const Float4 light = {static_cast<float>(R[0]),
                                 static_cast<float>(R[1]),
                                 static_cast<float>(R[2]), 0.0f};
@@ -215,6 +241,7 @@ void ReferenceRenderer::ShadeNear(const PointFrame& frame, const Lookup& lookup,
   const size_t count = samples->size();
   for (std::vector<float>* v : {&rays->x, &rays->y, &rays->z}) v->resize(count);
   rays->f.resize(4 * count);
+  rays->bundle.clear();
   for (size_t k = 0; k < count; ++k) {
     const NearSample& s = (*samples)[k];
     const Eigen::Array3d f = s.weight * lookup(s.theta_h, s.theta_d, s.phi_d);
@@ -226,11 +253,105 @@ void ReferenceRenderer::ShadeNear(const PointFrame& frame, const Lookup& lookup,
   }
 }
 
+std::vector<Eigen::Vector3f> ReferenceRenderer::Bundle(
+    const std::vector<NearSample>& samples, double lobe_width, int count,
+    Rays* rays) {
+  std::vector<Eigen::Vector3f> directions;
+  std::vector<float> weights;
+  std::vector<size_t> place;
+  for (size_t k = 0; k < samples.size(); ++k) {
+    if (samples[k].theta_h > lobe_width) continue;
+    const float* const f = &rays->f[4 * k];
+    directions.emplace_back(rays->x[k], rays->y[k], rays->z[k]);
+    weights.push_back(std::max(f[0] + f[1] + f[2], 0.0f));
+    place.push_back(k);
+  }
+  LobeBundles bundles = BundleDirections(directions, weights, count);
+  rays->bundle.assign(samples.size(), -1);
+  for (size_t i = 0; i < place.size(); ++i) {
+    rays->bundle[place[i]] = bundles.of[i];
+  }
+  return std::move(bundles.means);
+}
+
+template <typename Lookup>
+std::vector<double> ReferenceRenderer::LightOfLobes(
+    int depth, int count, double lobe_width, const ViewGroups& groups,
+    const std::vector<ShadingPoint>& points, const Lookup& lookup,
+    const double* emitted) const {
+  if (points.empty()) return {};
+  std::vector<ShadingPoint> met(points.size() * count, points[0]);
+  std::vector<char> is_met(met.size(), 0);
+  struct Scratch {
+    std::vector<NearSample> near;
+    Rays rays;
+  };
+  std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
+                                                : HardwareThreads());
+  ParallelFor(groups.count(), num_threads_, [&](int64_t group, int worker) {
+    Scratch& s = scratch[worker];
+    const size_t begin = groups.begins[group];
+    ShadeNear(PointFrame(points[groups.order[begin]]), lookup, &s.near,
+              &s.rays);
+    const std::vector<Eigen::Vector3f> lobe =
+        Bundle(s.near, lobe_width, count, &s.rays);
+    for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
+      const int i = groups.order[k];
+      const Eigen::Matrix3d axes = PointFrame(points[i]).Axes().cast<double>();
+      for (size_t r = 0; r < lobe.size(); ++r) {
+        if (lobe[r].isZero()) continue;
+        const size_t at = size_t{1} * i * count + r;
+        const Eigen::Vector3d wi = axes * lobe[r].cast<double>();
+        is_met[at] = emitters_->Meet(points[i], wi, &met[at]) ? 1 : 0;
+      }
+    }
+  });
+  std::vector<ShadingPoint> some;
+  for (size_t k = 0; k < met.size(); ++k) {
+    if (is_met[k] != 0) some.push_back(met[k]);
+  }
+  std::vector<double> radiance(3 * some.size());
+  if (!some.empty()) {
+    const ReferenceRenderer& next = coarser_ != nullptr ? *coarser_ : *this;
+    // The last bounce shows what the map alone lights.
+    next.RenderAt(depth + 1, lobe_width, some, lookup,
+                  depth + 1 < emitters_->bounces() ? emitted : nullptr,
+                  radiance.data());
+  }
+  std::vector<double> light(3 * met.size(), -1.0);
+  for (size_t k = 0, from = 0; k < met.size(); ++k) {
+    if (is_met[k] != 0) std::copy_n(&radiance[3 * from++], 3, &light[3 * k]);
+  }
+  return light;
+}
+
 template <typename Lookup>
 void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
                                    const Lookup& lookup, const double* emitted,
                                    double* E) const {
+  double lobe_width = 0.0;
+  if (lobe_rays_ > 0 && emitters_ != nullptr && emitted != nullptr) {
+    const double half = LobeHalfWidth(lookup);
+    if (half < kNarrowLobe) lobe_width = kLobeWidths * half;
+  }
+  RenderAt(0, lobe_width, points, lookup, emitted, E);
+}
+
+template <typename Lookup>
+void ReferenceRenderer::RenderAt(int depth, double lobe_width,
+                                 const std::vector<ShadingPoint>& points,
+                                 const Lookup& lookup, const double* emitted,
+                                 double* E) const {
   const ViewGroups groups(points);
+  int lobe_rays = 0;
+  std::vector<double> of_lobes;
+  if (lobe_width > 0.0 && depth < emitters_->bounces()) {
+    lobe_rays = lobe_rays_;
+    for (int k = 0; k < depth; ++k) lobe_rays /= kFewerRays;
+    lobe_rays = std::max(lobe_rays, 1);
+    of_lobes = LightOfLobes(depth, lobe_rays, lobe_width, groups, points,
+                            lookup, emitted);
+  }
   struct Scratch {
     std::vector<NearSample> near;
     std::vector<FarSample> far;
@@ -247,29 +368,35 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
     const size_t begin = groups.begins[group];
     ShadeNear(PointFrame(points[groups.order[begin]]), lookup, &s.near,
               &s.rays);
+    if (lobe_rays > 0) Bundle(s.near, lobe_width, lobe_rays, &s.rays);
     for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
       const int i = groups.order[k];
       const PointFrame frame(points[i]);
-      const uint64_t* const hidden =
-          shadows_ != nullptr && shadows_->Trace(points[i], &s.trace, &s.bits)
-              ? s.bits.data()
-              : nullptr;
-      SeenEmitters seen;
-      if (hidden != nullptr && emitted != nullptr && emitters_ != nullptr) {
-        seen = emitters_->Look(points[i], *shadows_, hidden, &s.seen);
+      Sight sight;
+      if (shadows_ != nullptr &&
+          shadows_->Trace(points[i], &s.trace, &s.bits)) {
+        sight.hidden = s.bits.data();
       }
-      Eigen::Array3d sum = Gather(s.rays, frame.Axes(), hidden, seen, emitted);
+      if (sight.hidden != nullptr && emitted != nullptr &&
+          emitters_ != nullptr) {
+        sight.seen =
+            emitters_->Look(points[i], *shadows_, sight.hidden, &s.seen);
+        sight.emitted = emitted;
+      }
+      if (lobe_rays > 0) sight.lobe = &of_lobes[size_t{3} * lobe_rays * i];
+      Eigen::Array3d sum = Gather(s.rays, frame.Axes(), sight);
       quadrature_.SampleFar(frame.n, frame.wo, &s.far);
       for (const FarSample& far : s.far) {
         const double visible =
-            hidden == nullptr
+            sight.hidden == nullptr
                 ? 1.0
-                : shadows_->VisibleShare(hidden, frame.n, ranges_[far.cell]);
-        if (visible == 0.0 && seen.empty()) continue;
+                : shadows_->VisibleShare(sight.hidden, frame.n,
+                                         ranges_[far.cell]);
+        if (visible == 0.0 && sight.seen.empty()) continue;
         Eigen::Array3d light = visible * power_[far.cell];
-        if (visible < 1.0 && !seen.empty()) {
-          emitters_->SharesIn(*shadows_, hidden, frame.n, ranges_[far.cell],
-                              seen, &s.shares);
+        if (visible < 1.0 && !sight.seen.empty()) {
+          emitters_->SharesIn(*shadows_, sight.hidden, frame.n,
+                              ranges_[far.cell], sight.seen, &s.shares);
           for (const EmitterShare& e : s.shares) {
             light += e.share * solid_angle_[far.cell] *
                      Eigen::Map<const Eigen::Array3d>(emitted +

@@ -35,6 +35,12 @@ class ReferenceRenderer {
   template <typename Lookup>
   void RenderWith(const std::vector<ShadingPoint>& points, const Lookup& lookup,
                   const double* emitted, double* E) const;
+  // After so many bounces along rays of a lobe whose half-vectors lie within
+  // lobe_width, radians, of the normal (0: no such rays).
+  template <typename Lookup>
+  void RenderAt(int depth, double lobe_width,
+                const std::vector<ShadingPoint>& points, const Lookup& lookup,
+                const double* emitted, double* E) const;
 
   // Cells of the far rule, their radiance times solid angle, and, under
   // shadows, their texels in the grid.
@@ -48,20 +54,43 @@ class ReferenceRenderer {
 
   // Directions and BRDF values of near samples.
   struct Rays;
+  // What a point sees.
+  struct Sight {
+    const uint64_t* hidden = nullptr;  // its bits; null: nothing is
+    SeenEmitters seen;
+    const double* emitted = nullptr;
+    // Radiance along the rays of the lobe [rays, 3], negative where they meet
+    // nothing; null: there are none.
+    const double* lobe = nullptr;
+  };
   // Sum of f_k L(wi_k) V(wi_k), wi = x t + y b + z n of unit length; axes t, b,
-  // n. hidden: the point's bits; null: V = 1.
+  // n.
   Eigen::Array3d Gather(const Rays& rays, const Eigen::Matrix3f& axes,
-                        const uint64_t* hidden, const SeenEmitters& seen,
-                        const double* emitted) const;
+                        const Sight& sight) const;
+  // Radiance along `count` rays of the lobe of each point [points, count, 3],
+  // negative where they meet nothing.
+  template <typename Lookup>
+  std::vector<double> LightOfLobes(int depth, int count, double lobe_width,
+                                   const ViewGroups& groups,
+                                   const std::vector<ShadingPoint>& points,
+                                   const Lookup& lookup,
+                                   const double* emitted) const;
   // Near samples of one view angle, in the frame of ViewFrame.
   template <typename Lookup>
   void ShadeNear(const PointFrame& frame, const Lookup& lookup,
                  std::vector<NearSample>* samples, Rays* rays) const;
+  // Gathers the rays within lobe_width of the normal into `count` bundles of
+  // like directions and weight; sets rays->bundle and returns their means.
+  static std::vector<Eigen::Vector3f> Bundle(
+      const std::vector<NearSample>& samples, double lobe_width, int count,
+      Rays* rays);
 
   ReferenceRenderer(const Image& map, Light light,
                     const ReferenceOptions& options);
 
-  int num_threads_;
+  int num_threads_, lobe_rays_;
+  // Renders what lobes' rays meet.
+  std::unique_ptr<const ReferenceRenderer> coarser_;
   const ReferenceKernels& kernels_ = ActiveReferenceKernels();
   PaddedMaps map_;
   std::vector<Eigen::Array3d> power_;

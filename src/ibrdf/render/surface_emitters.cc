@@ -169,6 +169,21 @@ bool SurfaceEmitters::Meet(const ShadingPoint& point,
   return true;
 }
 
+bool SurfaceEmitters::Meet(const ShadingPoint& point,
+                           const Eigen::Vector3d& direction,
+                           ShadingPoint* met) const {
+  Hit hit;
+  if (!Meet(point, direction, &hit)) return false;
+  ShadingPoint point_met{};
+  point_met.normal = hit.normal.cast<float>();
+  point_met.wo = hit.wo.cast<float>();
+  point_met.position = hit.position;
+  point_met.pixel = -1;
+  point_met.coverage = 1.0f;
+  *met = point_met;
+  return true;
+}
+
 uint64_t SurfaceEmitters::PatchOf(const Eigen::Vector3d& position,
                                   const Eigen::Vector3d& normal) const {
   uint64_t key = 0;

@@ -80,6 +80,10 @@ class SurfaceEmitters {
                     const uint64_t* hidden,
                     std::vector<SeenEmitter>* seen) const;
 
+  // The point that a ray from `point` meets, wo back along it; false: none.
+  bool Meet(const ShadingPoint& point, const Eigen::Vector3d& direction,
+            ShadingPoint* met) const;
+
   // The emitters behind a range of grid texels, and which share of the
   // cosine-weighted light of the range, all of one radiance, each stands for.
   void SharesIn(const VisibilityGrid& grid, const uint64_t* hidden,
