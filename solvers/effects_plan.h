@@ -12,9 +12,11 @@
 namespace ibrdf {
 
 // `auto` simulates an effect where leaving it out is predicted to change log
-// radiance by more than this, mean over the image: in a solve, and in a render
-// at reference quality, which others measure themselves against.
+// radiance by more than this, mean over the image: in a solve, in a preview,
+// and in a render at reference quality, which others measure themselves
+// against.
 inline constexpr double kWorthwhileLogError = 0.01;
+inline constexpr double kPreviewLogError = 0.005;
 inline constexpr double kReferenceLogError = 0.001;
 
 struct EffectsPlan {

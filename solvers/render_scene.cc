@@ -250,7 +250,7 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
   const bool reference = problem.quality == RenderQuality::kReference;
   StatusOr<EffectsPlan> effects =
       PlanEffects(problem, view->scene, points, &*map, &grid,
-                  reference ? kReferenceLogError : kWorthwhileLogError,
+                  reference ? kReferenceLogError : kPreviewLogError,
                   options.num_threads);
   if (!effects.ok()) return effects.status();
   const SceneRadiance radiance(view->scene, points, *map, &brdf, grid, *effects,

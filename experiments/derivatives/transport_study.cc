@@ -18,6 +18,9 @@ namespace {
 using testing::PointAt;
 using testing::SmoothMap;
 
+// A point's reference takes all emitters'.
+constexpr size_t kBouncePoints = 3;
+
 BrdfGridShape SmallGrid() { return {12, 8, 6}; }
 
 // Signed, as tangents are.
@@ -58,7 +61,8 @@ void AddScene(const std::string& kind, const std::vector<ShadingPoint>& points,
 
     std::vector<float> by_map(map.rgb.size()), by_grid(3 * nodes);
     by_light.ApplyTranspose(adjoint.data(), by_map.data());
-    transport.GridGradient(grid, map.rgb.data(), adjoint.data(), by_grid.data());
+    transport.GridGradient(grid, map.rgb.data(), adjoint.data(),
+                           by_grid.data());
     std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
     for (int c = 0; c < 3; ++c) {
       const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
@@ -113,6 +117,47 @@ void AddScene(const std::string& kind, const std::vector<ShadingPoint>& points,
       add("transport: radiance of fields / sum of magnitudes", found[k]);
       add("transport: the same by the stored operator", found_stored[k]);
     }
+  }
+}
+
+// E is linear in the light and a polynomial in the BRDF. At a few of the points
+// that see emitters.
+void AddBounces(const std::string& kind,
+                const std::vector<ShadingPoint>& points, const Image& map,
+                const BrdfGrid& grid, const TransportOptions& options,
+                ErrorTable* table) {
+  const Transport transport(points, map.height, map.width, options);
+  const ReferenceBounces reference(points, map.height, map.width, options);
+  const std::vector<Real> light(map.rgb.begin(), map.rgb.end());
+  const LightOperator by_light = transport.ByLight(grid);
+  const size_t nodes = grid.shape.num_nodes(), texels = map.num_pixels();
+  std::vector<size_t> seeing;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (!options.emitters->SeenFrom(points[i]).empty()) seeing.push_back(i);
+  }
+  const size_t few = std::min(seeing.size(), kBouncePoints);
+  for (size_t k = 0; k < few; ++k) {
+    const size_t i = seeing[k * seeing.size() / few];
+    const std::string where = "point " + std::to_string(i);
+    std::vector<double> adjoint(3 * points.size(), 0.0);
+    for (int c = 0; c < 3; ++c) adjoint[3 * i + c] = 1.0;
+    std::vector<float> by_map(map.rgb.size()), by_grid(3 * nodes);
+    by_light.ApplyTranspose(adjoint.data(), by_map.data());
+    transport.GridGradient(grid, map.rgb.data(), adjoint.data(),
+                           by_grid.data());
+    std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
+    for (int c = 0; c < 3; ++c) {
+      const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
+      const ReferenceBounces::Rows rows =
+          reference.Derivatives(static_cast<int>(i), c, light, field);
+      for (size_t t = 0; t < texels; ++t) map_row[3 * t + c] = rows.by_map[t];
+      std::copy(rows.by_grid.begin(), rows.by_grid.end(),
+                grid_row.begin() + c * nodes);
+    }
+    table->Add("transport: radiance by map", kind, where, ToDoubles(by_map),
+               map_row);
+    table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by_grid),
+               grid_row);
   }
 }
 
@@ -198,6 +243,19 @@ void StudyTransport(const StudyOptions& options, ErrorTable* table) {
   AddScene("shadows", points, SmoothMap(32, 64), glossy, shadowed, table);
   AddScene("shadows, map in blocks", points, SmoothMap(64, 128), glossy,
            shadowed, table);
+
+  for (const int bounces : {1, 3}) {
+    SurfaceEmitterOptions how;
+    how.bounces = bounces;
+    how.max_emitters = 200;
+    TransportOptions lit = shadowed;
+    lit.emitters = std::make_shared<SurfaceEmitters>(torus, points,
+                                                     shadowed.visibility, how);
+    const std::string name = std::to_string(bounces) + " bounces";
+    AddBounces(name, points, SmoothMap(16, 32), matte, lit, table);
+    AddBounces(name + ", glossy, sun of one texel", points, sun, glossy, lit,
+               table);
+  }
 
   AddAdjoints("sphere", sphere, SmoothMap(32, 64), RandomGrid(&rng), plain,
               &rng, table);

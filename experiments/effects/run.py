@@ -41,7 +41,7 @@ SETTINGS = {  # name: effects, quality
     "visibility": ("[visibility]", "preview"),
     "none": ("none", "preview"),
 }
-WORTH = 0.01  # what `auto` counts as worth simulating, mean |log radiance|
+WORTH = 0.005  # what `auto` counts as worth simulating, mean |log radiance|
 COLUMNS = (["mesh", "material", "light"] + [f"seconds_{s}" for s in SETTINGS] +
            [f"error_{s}" for s in SETTINGS if s != "reference"] +
            ["needed", "chosen", "words"])

@@ -44,8 +44,11 @@ fuzz() {
   row+=,$(($(column "${parser}" 3) + SECONDS - begin))
   row+=,$(grep -o 'ft: [0-9]*' "${log}" | tail -n 1 | cut -c5- || true)
   row+=,$(find build/fuzz/findings -name "${parser}-*" | wc -l)
-  { grep -v "^${parser}," "${table}"; echo "${row}"; } > "${table}.new"
-  mv "${table}.new" "${table}"
+  (
+    flock 9  # other runs, of other parsers
+    { grep -v "^${parser}," "${table}"; echo "${row}"; } > "${table}.new"
+    mv "${table}.new" "${table}"
+  ) 9> build/fuzz/table.lock
   echo "${row}"
   return "${status}"
 }
