@@ -19,7 +19,7 @@ using testing::PointAt;
 using testing::SmoothMap;
 
 // A point's reference takes all emitters'.
-constexpr size_t kBouncePoints = 3;
+constexpr size_t kBouncePoints = 6;
 
 BrdfGridShape SmallGrid() { return {12, 8, 6}; }
 
@@ -251,7 +251,8 @@ void StudyTransport(const StudyOptions& options, ErrorTable* table) {
     TransportOptions lit = shadowed;
     lit.emitters = std::make_shared<SurfaceEmitters>(torus, points,
                                                      shadowed.visibility, how);
-    const std::string name = std::to_string(bounces) + " bounces";
+    const std::string name =
+        std::to_string(bounces) + (bounces == 1 ? " bounce" : " bounces");
     AddBounces(name, points, SmoothMap(16, 32), matte, lit, table);
     AddBounces(name + ", glossy, sun of one texel", points, sun, glossy, lit,
                table);
