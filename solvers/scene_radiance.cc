@@ -18,18 +18,6 @@ constexpr int kLobeRays = 8, kReferenceLobeRays = 16;
 // A small image of an intricate object shows as much of it as a large one.
 constexpr size_t kLeastEmitters = 2048;
 
-// A quarter of the reference's rings: within 1 % but for mirrors.
-ReferenceOptions QualityOptions(bool reference, int num_threads) {
-  ReferenceOptions options;
-  options.num_threads = num_threads;
-  if (!reference) {
-    options.near_rings /= 4;
-    options.near_ring_samples /= 4;
-    options.far_width = 64;
-  }
-  return options;
-}
-
 }  // namespace
 
 BrdfGrid KnownBrdf::Grid() const {
@@ -44,7 +32,9 @@ SceneRadiance::SceneRadiance(const Scene& scene,
                              RenderQuality quality, int num_threads)
     : brdf_(brdf), num_threads_(num_threads) {
   const bool reference = quality == RenderQuality::kReference;
-  ReferenceOptions options = QualityOptions(reference, num_threads);
+  ReferenceOptions options;
+  if (!reference) options = Coarser(options);
+  options.num_threads = num_threads;
   if (effects.visibility) {
     options.shadows = std::make_shared<VisibilityGrid>(
         scene, reference ? kReferenceShadowRows : kPreviewShadowRows);

@@ -31,6 +31,24 @@ BrdfGrid RandomGrid(std::mt19937_64* rng) {
   return grid;
 }
 
+// Of a point's radiance, channel c by channel c of the light and of the BRDF.
+struct PointGradients {
+  std::vector<float> map;   // [texels, 3]
+  std::vector<float> grid;  // [3, nodes]
+};
+
+PointGradients GradientsOf(const Transport& transport,
+                           const LightOperator& by_light, const BrdfGrid& grid,
+                           const Image& map, size_t point) {
+  std::vector<double> adjoint(size_t{3} * transport.num_points(), 0.0);
+  for (int c = 0; c < 3; ++c) adjoint[3 * point + c] = 1.0;
+  PointGradients by{std::vector<float>(map.rgb.size()),
+                    std::vector<float>(grid.values.size())};
+  by_light.ApplyTranspose(adjoint.data(), by.map.data());
+  transport.GridGradient(grid, map.rgb.data(), adjoint.data(), by.grid.data());
+  return by;
+}
+
 void AddScene(const std::string& kind, const std::vector<ShadingPoint>& points,
               const Image& map, const BrdfGrid& grid,
               const TransportOptions& options, ErrorTable* table) {
@@ -56,13 +74,7 @@ void AddScene(const std::string& kind, const std::vector<ShadingPoint>& points,
                               ", cosine of view " +
                               Coordinates({points[i].normal.dot(points[i].wo)});
     const std::vector<Real> gathered = reference.Gather(point, light);
-    std::vector<double> adjoint(3 * points.size(), 0.0);
-    for (int c = 0; c < 3; ++c) adjoint[3 * i + c] = 1.0;
-
-    std::vector<float> by_map(map.rgb.size()), by_grid(3 * nodes);
-    by_light.ApplyTranspose(adjoint.data(), by_map.data());
-    transport.GridGradient(grid, map.rgb.data(), adjoint.data(),
-                           by_grid.data());
+    const PointGradients by = GradientsOf(transport, by_light, grid, map, i);
     std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
     for (int c = 0; c < 3; ++c) {
       const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
@@ -87,9 +99,9 @@ void AddScene(const std::string& kind, const std::vector<ShadingPoint>& points,
                    ToDoubles(by_field), expected);
       }
     }
-    table->Add("transport: radiance by map", kind, where, ToDoubles(by_map),
+    table->Add("transport: radiance by map", kind, where, ToDoubles(by.map),
                map_row);
-    table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by_grid),
+    table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by.grid),
                grid_row);
     // Entry by entry: radiance of signed fields cancels.
     std::vector<Real> exact(9, 0);
@@ -139,12 +151,7 @@ void AddBounces(const std::string& kind,
   for (size_t k = 0; k < few; ++k) {
     const size_t i = seeing[k * seeing.size() / few];
     const std::string where = "point " + std::to_string(i);
-    std::vector<double> adjoint(3 * points.size(), 0.0);
-    for (int c = 0; c < 3; ++c) adjoint[3 * i + c] = 1.0;
-    std::vector<float> by_map(map.rgb.size()), by_grid(3 * nodes);
-    by_light.ApplyTranspose(adjoint.data(), by_map.data());
-    transport.GridGradient(grid, map.rgb.data(), adjoint.data(),
-                           by_grid.data());
+    const PointGradients by = GradientsOf(transport, by_light, grid, map, i);
     std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
     for (int c = 0; c < 3; ++c) {
       const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
@@ -154,9 +161,9 @@ void AddBounces(const std::string& kind,
       std::copy(rows.by_grid.begin(), rows.by_grid.end(),
                 grid_row.begin() + c * nodes);
     }
-    table->Add("transport: radiance by map", kind, where, ToDoubles(by_map),
+    table->Add("transport: radiance by map", kind, where, ToDoubles(by.map),
                map_row);
-    table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by_grid),
+    table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by.grid),
                grid_row);
   }
 }

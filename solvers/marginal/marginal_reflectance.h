@@ -21,11 +21,11 @@ struct MarginalResolution {
   std::shared_ptr<const Visibility> visibility = nullptr;  // of the points
 };
 
-// Lobe parameters as LobeModel's. Immutable but for what its callers keep; may
-// be used from several threads.
 // The map [H W, 3] of log radiance [3][H W], its largest value 1.
 std::vector<float> RelativeMap(const double* log_radiance, int num_texels);
 
+// Lobe parameters as LobeModel's. Immutable but for what its callers keep; may
+// be used from several threads.
 class MarginalReflectance {
  public:
   // radiance [points][3]. CHECKs that at least one point can be used.

@@ -62,8 +62,8 @@ TEST(RenderScene, NoiseHasTheAskedSizeAndFollowsTheSeed) {
               5 * 0.02 / std::sqrt(2.0 * count));
 }
 
-// A preview samples pixels where the image asks for it: against four samples
-// everywhere it must be several times nearer than centres alone, and say so.
+// A preview samples pixels where the image asks for it, says so, and is near
+// the reference, which samples all of them.
 TEST(RenderScene, PreviewSamplesThePixelsThatNeedIt) {
   Problem problem = Scene24();
   problem.illumination.sky->sun_phi_degrees = 35;
@@ -72,8 +72,6 @@ TEST(RenderScene, PreviewSamplesThePixelsThatNeedIt) {
       << preview.effects.words;
   problem.quality = RenderQuality::kReference;
   const RenderedScene reference = RenderScene(problem, {}).value();
-  // Twice as many pixels a side: the middle four are not the centre, but a
-  // quarter of a pixel from it.
   double error = 0.0;
   int count = 0;
   for (size_t k = 0; k < preview.image.rgb.size(); ++k) {

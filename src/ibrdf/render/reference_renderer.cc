@@ -135,11 +135,7 @@ ReferenceRenderer::ReferenceRenderer(const Image& map,
     : ReferenceRenderer(map, GatherLight(map, options), options) {
   const ReferenceOptions defaults;
   if (lobe_rays_ == 0 || options.near_rings < defaults.near_rings) return;
-  ReferenceOptions coarser = options;
-  coarser.near_rings /= 4;
-  coarser.near_ring_samples /= 4;
-  coarser.far_width = std::min(options.far_width, 64);
-  coarser_ = std::make_unique<ReferenceRenderer>(map, coarser);
+  coarser_ = std::make_unique<ReferenceRenderer>(map, Coarser(options));
 }
 
 ReferenceRenderer::ReferenceRenderer(const Image& map, Light light,
