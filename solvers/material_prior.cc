@@ -90,6 +90,18 @@ double MaterialPrior::Cost(const Eigen::VectorXd& x,
   return 0.5 * y.squaredNorm() + WallCost(x, gradient);
 }
 
+double MaterialPrior::CostAtBestLevel(const Eigen::VectorXd& x) const {
+  const auto lower = factor.triangularView<Eigen::Lower>();
+  const Eigen::VectorXd y = lower.solve(x - mean);
+  Eigen::VectorXd level = Eigen::VectorXd::Zero(x.size());
+  for (int k = 0; k < num_lobes(); ++k) {
+    level.segment<3>(static_cast<Eigen::Index>(k) * (code_size + 3) + code_size)
+        .setOnes();
+  }
+  const Eigen::VectorXd along = lower.solve(level).normalized();
+  return 0.5 * (y - y.dot(along) * along).squaredNorm() + WallCost(x, nullptr);
+}
+
 MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,
                         double code_sigma) {
   const LobePrior embedding = EmbeddingPrior(model, code_sigma);

@@ -28,6 +28,9 @@ struct MaterialPrior {
   // 1/2 |factor^-1 (x - mean)|^2 + 1/2 wall^2 sum_k max(0, |z_k| - 1)^2;
   // gradient (may be null) is added to.
   double Cost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;
+  // The least of it over one level added to the log colours of all lobes and
+  // channels: what the prior says where a gauge has set the level.
+  double CostAtBestLevel(const Eigen::VectorXd& x) const;
   // The wall's part alone, with y = factor^-1 (x - mean) in its place.
   double WallCost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;
   // Adds the wall's Gauss-Newton Hessian to the first rows and columns.

@@ -54,38 +54,50 @@ void Estimator::SetLight(std::unique_ptr<IlluminationModel> light,
                          bool process_prior) {
   light_ = std::move(light);
   has_process_prior_ = process_prior;
-  light_priors_.clear();
+  const double zero[3] = {0, 0, 0};
+  light_priors_ = {light_->ConstantMap(zero), {}};
 }
 
-void Estimator::MatchLight(JointState* state) {
+Eigen::Array3d Estimator::MatchedLevel(const std::vector<double>& lobes) {
   const double zero[3] = {0, 0, 0};
-  state->light = light_mean_ = light_->ConstantMap(zero);
   const LevelObjective on = ObjectiveOn(cells_.get());
-  on.objective->Evaluate(*state);
+  on.objective->Evaluate(JointState{lobes, light_->ConstantMap(zero)});
   const std::vector<double>& E = on.objective->radiance();
   const Observations& o = cells_->observed;
-  std::fill(level_, level_ + 3, 0.0);
+  Eigen::Array3d level = Eigen::Array3d::Zero();
   for (size_t i = 0; i < E.size(); ++i) {
     if (!o.valid[i / 3]) continue;
-    level_[i % 3] +=
+    level[static_cast<Eigen::Index>(i % 3)] +=
         (std::log(o.radiance[i]) - std::log(std::max(E[i], 0.0) + 1e-30)) /
         o.num_valid;
   }
+  return level;
+}
+
+Estimator::LightPriors Estimator::PriorsAt(const Eigen::Array3d& level) const {
+  LightPriors priors;
+  priors.mean = light_->ConstantMap(level.data());
+  if (has_process_prior_) {
+    priors.on_map.push_back(std::make_unique<ProcessPrior>(
+        light_->height(), light_->width(), LightProcess(), light_amplitude_,
+        level.mean()));
+  }
+  return priors;
+}
+
+void Estimator::MatchLight(JointState* state) {
+  level_ = MatchedLevel(state->lobes);
   StartAtLevel(state);
 }
 
 void Estimator::StartAtLevel(JointState* state) {
-  state->light = light_mean_ = light_->ConstantMap(level_);
-  if (!has_process_prior_) return;
-  light_priors_.clear();
-  light_priors_.push_back(std::make_unique<ProcessPrior>(
-      light_->height(), light_->width(), LightProcess(), light_amplitude_,
-      (level_[0] + level_[1] + level_[2]) / 3));
+  light_priors_ = PriorsAt(level_);
+  state->light = light_priors_.mean;
 }
 
-void Estimator::StartLightAt(const JointState& state) {
-  first_.light = state.light;
-  first_mean_ = light_mean_;
+void Estimator::StartFirstLight() {
+  first_priors_ = PriorsAt(MatchedLevel(first_.lobes));
+  first_.light = first_priors_.mean;
 }
 
 Status Estimator::EstimateBoth(JointState* state) {
@@ -94,7 +106,8 @@ Status Estimator::EstimateBoth(JointState* state) {
   MatchLight(state);
   FixGauge(state);
   first_.lobes = state->lobes;
-  StartLightAt(*state);
+  MatchLight(state);
+  StartFirstLight();
   Report("start", cells_.get(), *state);
   return Rounds("maximum", MethodFor(JointBlocks::kBoth), JointBlocks::kBoth,
                 kMapShare, state);
@@ -106,7 +119,7 @@ Status Estimator::EstimateLight(JointState* state) {
   if (none || problem_.solver.max_iterations == 0) {
     SetLight(MakeLight(), !none);
     MatchLight(state);
-    StartLightAt(*state);
+    StartFirstLight();
     Report("constant map", cells_.get(), *state);
     return Rounds("map", method, JointBlocks::kLight, kMapShare, state);
   }
@@ -130,7 +143,7 @@ Status Estimator::EstimateDraw(int width, int height, JointMethod method,
       MakeProcessIllumination(width, height, LightProcess(), light_amplitude_),
       false);
   MatchLight(state);
-  StartLightAt(*state);
+  StartFirstLight();
   Report("constant map", cells_.get(), *state);
   if (mode_.num_pixels() > 0) {
     LogMapFitOptions o;
@@ -148,7 +161,7 @@ Status Estimator::EstimateNetwork(JointState* state) {
   process->Forward(draw.data(), log_map.data());
   SetLight(MakeLight(), true);
   StartAtLevel(state);
-  StartLightAt(*state);
+  StartFirstLight();
   LogMapFitOptions o;
   o.should_stop = StopAfter(kMapShare / 2);
   FitLogMap(Resampled(FromPlanes(log_map, process->width(), process->height()),
@@ -162,7 +175,7 @@ Status Estimator::EstimateNetwork(JointState* state) {
       process->width() == problem_.map_width) {
     SetLight(std::move(process), false);
     StartAtLevel(state);
-    StartLightAt(*state);
+    StartFirstLight();
     state->light = draw;
     Report("map: network unfinished", cells_.get(), *state);
   }

@@ -121,8 +121,8 @@ Estimator::LevelObjective Estimator::ObjectiveOn(Level* level) {
   }
   if (light_unknown()) {
     terms.illumination = light_.get();
-    terms.light_mean = light_mean_;
-    for (const auto& prior : light_priors_) {
+    terms.light_mean = light_priors_.mean;
+    for (const auto& prior : light_priors_.on_map) {
       terms.light_priors.push_back(prior.get());
     }
   } else {
@@ -130,6 +130,12 @@ Estimator::LevelObjective Estimator::ObjectiveOn(Level* level) {
   }
   out.objective = std::make_unique<JointObjective>(std::move(terms));
   return out;
+}
+
+double Estimator::ReflectancePrior(const JointState& state) const {
+  const Eigen::VectorXd lobes = VectorOf(state.lobes);
+  return light_unknown() ? materials_.CostAtBestLevel(lobes)
+                         : materials_.Cost(lobes, nullptr);
 }
 
 TraceEntry Estimator::Entry(const std::string& stage, const Level& level,
@@ -140,10 +146,9 @@ TraceEntry Estimator::Entry(const std::string& stage, const Level& level,
   entry.scale = likelihood_.scale;
   entry.pixels = level.observed.num_valid;
   entry.likelihood = cost.likelihood;
-  entry.reflectance_prior =
-      lobes_unknown() && !joint_maximum()
-          ? materials_.Cost(VectorOf(state.lobes), nullptr)
-          : cost.reflectance_prior;
+  entry.reflectance_prior = lobes_unknown() && !joint_maximum()
+                                ? ReflectancePrior(state)
+                                : cost.reflectance_prior;
   entry.illumination_prior = cost.illumination_prior;
   entry.cost =
       entry.likelihood + entry.reflectance_prior + entry.illumination_prior;

@@ -62,8 +62,11 @@ class Estimator {
     std::unique_ptr<JointObjective> objective;
   };
   LevelObjective ObjectiveOn(Level* level);
-  // The reflectance's prior is the materials', as in the searches, except for
-  // the joint maximum, whose objective has the paper's.
+  // The reflectance's prior is the materials', as in the searches; where the
+  // light is unknown, at the level that suits it best, as the gauge and not the
+  // prior says where the level is. The joint maximum's objective has the
+  // paper's.
+  double ReflectancePrior(const JointState& state) const;
   TraceEntry Entry(const std::string& stage, const Level& level,
                    const JointState& state, const JointCost& cost) const;
   TraceEntry Evaluate(const std::string& stage, Level* level,
@@ -92,14 +95,24 @@ class Estimator {
   std::unique_ptr<IlluminationModel> MakeLight() const;
   // process_prior: it is no part of the model itself.
   void SetLight(std::unique_ptr<IlluminationModel> light, bool process_prior);
-  // A constant map at the image's level; the light's priors are centred there.
+  // Log radiance by channel of the constant map that has the image's level
+  // under these lobes (any, where they are known).
+  Eigen::Array3d MatchedLevel(const std::vector<double>& lobes);
+  // A constant map at that level; the light's priors are centred there.
   void MatchLight(JointState* state);
   // The same at the level that MatchLight found, for the present model.
   void StartAtLevel(JointState* state);
+  // Priors of the light centred at a constant map.
+  struct LightPriors {
+    std::vector<float> mean;  // of the light's parameters
+    std::vector<std::unique_ptr<LightPrior>> on_map;
+  };
+  LightPriors PriorsAt(const Eigen::Array3d& level) const;
   // Reflectance and map at once, from the mean material.
   Status EstimateBoth(JointState* state);
-  // Makes the state what the end is held against, with its light's mean.
-  void StartLightAt(const JointState& state);
+  // What the end is held against: the first lobes under a constant map at
+  // their own level.
+  void StartFirstLight();
   // The map given the reflectance, by the prior that the problem asks for.
   Status EstimateLight(JointState* state);
   // As a draw of the light's process, whose parameters are as good as whitened
@@ -144,11 +157,9 @@ class Estimator {
   MaterialPrior materials_;
   std::unique_ptr<IlluminationModel> light_;  // null: known
   bool has_process_prior_ = false;
-  std::vector<std::unique_ptr<LightPrior>> light_priors_;
-  double level_[3] = {0.0, 0.0, 0.0};  // log radiance of a constant map
-  // Where the prior of the light's parameters is centred: a constant map at the
-  // image's level, whatever the image's unit.
-  std::vector<float> light_mean_, first_mean_;
+  Eigen::Array3d level_ = Eigen::Array3d::Zero();  // of MatchLight
+  // Centred at the image's level, whatever its unit; those of first_.
+  LightPriors light_priors_, first_priors_;
   double light_amplitude_ = 1.0;
   JointState first_;
   double finish_seconds_ = 0.0;  // predicted

@@ -10,15 +10,16 @@ namespace ibrdf {
 
 StatusOr<Estimate> Estimator::Finish(JointState best) {
   Estimate estimate;
-  // The start with its own mean of the light's priors.
-  std::swap(light_mean_, first_mean_);
+  // The start with its own centre of the light's priors.
+  std::swap(light_priors_, first_priors_);
   const TraceEntry start = Evaluate("start", full_.get(), first_);
-  std::swap(light_mean_, first_mean_);
+  std::swap(light_priors_, first_priors_);
   const LevelObjective on = ObjectiveOn(full_.get());
   TraceEntry end = Entry("end", *full_, best, on.objective->Evaluate(best));
   if (!(end.cost < start.cost)) {
     best = first_;
-    end = Entry("end", *full_, best, on.objective->Evaluate(best));
+    end = start;
+    end.stage = "end";
     estimate.status = Status(StatusCode::kNoImprovement,
                              "the solver could not improve on its start");
   }

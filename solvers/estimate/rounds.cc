@@ -40,7 +40,7 @@ void Estimator::FixGauge(JointState* state) {
   lobes_->ShiftColours(d.data(), state->lobes.data());
   const double back[3] = {-d[0], -d[1], -d[2]};
   light_->ShiftChannels(back, state->light.data());
-  light_->ShiftChannels(back, light_mean_.data());
+  light_->ShiftChannels(back, light_priors_.mean.data());
 }
 
 JointMethod Estimator::MethodFor(JointBlocks blocks) const {
@@ -88,13 +88,13 @@ Status Estimator::Rounds(const std::string& stage, JointMethod method,
     before = Entry(stage, *level, *state, on.objective->Evaluate(*state));
     JointState next = *state;
     MinimiseJoint(method, on.objective.get(), &next, o);
-    const std::vector<float> mean = light_mean_;
+    const std::vector<float> mean = light_priors_.mean;
     if (blocks == JointBlocks::kBoth) FixGauge(&next);
     const TraceEntry after =
         Evaluate(stage + " round " + std::to_string(round + 1), level, next);
     ++iterations_;
     if (!(after.cost < before.cost)) {
-      light_mean_ = mean;
+      light_priors_.mean = mean;
       if (whole_schedule) continue;
       break;
     }
