@@ -1,7 +1,9 @@
 #include "solvers/conditioning.h"
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 namespace ibrdf {
 
@@ -22,6 +24,22 @@ double ScaledCondition(const Eigen::MatrixXd& matrix) {
                           static_cast<double>(matrix.rows());
   if (smallest <= rounding) return std::numeric_limits<double>::infinity();
   return largest / smallest;
+}
+
+double LanczosCondition(const CgCoefficients& coefficients) {
+  const std::vector<double>& alpha = coefficients.alpha;
+  const std::vector<double>& beta = coefficients.beta;
+  const auto n = static_cast<Eigen::Index>(alpha.size());
+  if (n == 0) return std::numeric_limits<double>::quiet_NaN();
+  Eigen::VectorXd diagonal(n), beside(n - 1);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    diagonal[k] = 1.0 / alpha[k];
+    if (k > 0) diagonal[k] += beta[k - 1] / alpha[k - 1];
+    if (k + 1 < n) beside[k] = std::sqrt(beta[k]) / alpha[k];
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().maxCoeff() / solver.eigenvalues().minCoeff();
 }
 
 }  // namespace ibrdf

@@ -2,6 +2,8 @@
 #pragma once
 #include <Eigen/Core>
 
+#include "solvers/conjugate_gradients.h"
+
 namespace ibrdf {
 
 // Ratio of the largest to the smallest eigenvalue of a symmetric matrix after
@@ -10,5 +12,11 @@ namespace ibrdf {
 // interact. Infinite where the matrix is singular to rounding; NaN where it is
 // empty, not finite or a diagonal entry is not positive.
 double ScaledCondition(const Eigen::MatrixXd& matrix);
+
+// Of the preconditioned system that conjugate gradients were run on, at least:
+// the ratio of the extreme eigenvalues of Lanczos' tridiagonal matrix, which
+// are inside the system's and reach them as steps are made (Golub and Van Loan,
+// Matrix Computations, 11.3). NaN without a step.
+double LanczosCondition(const CgCoefficients& coefficients);
 
 }  // namespace ibrdf

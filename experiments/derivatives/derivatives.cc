@@ -34,6 +34,7 @@ int Run(const std::string& csv, const std::string& only,
       {"joint", [&] { StudyJoint(model, options, &table); }},
       {"marginal", [&] { StudyMarginal(model, options, &table); }},
       {"transport", [&] { StudyTransport(options, &table); }},
+      {"harmonics", [&] { StudyHarmonics(options, &table); }},
   };
   for (const auto& [name, study] : studies) {
     if (!only.empty() && only != name) continue;

@@ -18,6 +18,7 @@ void StudyFlows(const NeuralBrdfModel& model, const StudyOptions& options,
 void StudyLobes(const NeuralBrdfModel& model, const StudyOptions& options,
                 ErrorTable* table);
 void StudyTransport(const StudyOptions& options, ErrorTable* table);
+void StudyHarmonics(const StudyOptions& options, ErrorTable* table);
 void StudyUnet(const StudyOptions& options, ErrorTable* table);
 void StudyCosts(const StudyOptions& options, ErrorTable* table);
 void StudyBaselines(const StudyOptions& options, ErrorTable* table);

@@ -1,8 +1,11 @@
 // Matrix-free Gauss-Newton with damping over the free blocks.
+#include <glog/logging.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/conditioning.h"
 #include "solvers/conjugate_gradients.h"
 #include "solvers/joint/method_run.h"
 
@@ -67,10 +70,17 @@ void GaussNewtonSteps(MethodRun* run, int max_iterations, bool report) {
       linearised = true;
     }
     const DampedSystem system(objective, damping);
+    CgCoefficients coefficients;
     const Eigen::VectorXd step = ConjugateGradients(
         [&](const Eigen::VectorXd& v) { return system.Product(v); },
         [&](const Eigen::VectorXd& r) { return system.Precondition(r); },
-        -objective->gradient(), options.max_cg_iterations, kForcing);
+        -objective->gradient(), options.max_cg_iterations, kForcing,
+        &coefficients);
+    VLOG(1) << "Gauss-Newton step " << k + 1 << ": "
+            << coefficients.alpha.size()
+            << " conjugate gradients, condition of the damped and "
+               "preconditioned system at least "
+            << LanczosCondition(coefficients);
     // Along the step first (cheap: forward passes only), then shorter steps.
     bool accepted = false;
     for (double length = 1.0; length > 0.02; length *= 0.4) {

@@ -84,10 +84,18 @@ int Main(int argc, char** argv) {
                  "e.g. --set solver.seconds=30")
       ->expected(1)
       ->take_all();
+  bool verbose = false;
+  app.add_flag("--verbose", verbose,
+               "log steps and the conditioning of their normal equations, on "
+               "standard error");
   bool explain = false;
   app.add_flag("--explain", explain,
                "print which effects would be simulated and why; solve nothing");
   return RunProgram(&app, argc, argv, [&] {
+    if (verbose) {
+      FLAGS_minloglevel = google::GLOG_INFO;
+      FLAGS_v = 1;
+    }
     return Solve(file, overrides, folder, explain, flags);
   });
 }

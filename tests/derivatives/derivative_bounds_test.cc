@@ -86,6 +86,12 @@ TEST(Derivatives, RadianceByLightAndReflectance) {
   ExpectWithin(table, kSums);
 }
 
+TEST(Derivatives, RadianceInHarmonics) {
+  ErrorTable table;
+  StudyHarmonics(Few(80), &table);
+  ExpectWithin(table, kSums);
+}
+
 TEST(Derivatives, MapByNetworkWeights) {
   ErrorTable table;
   StudyUnet(Few(20), &table);

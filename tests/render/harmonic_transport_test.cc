@@ -15,27 +15,6 @@ using namespace testing;  // NOLINT
 
 constexpr BrdfGridShape kGrid = {36, 16, 12};
 
-// Poles, the view's own direction, grazing views, several wo.
-std::vector<ShadingPoint> Extremes() {
-  std::vector<ShadingPoint> points;
-  for (const Eigen::Vector3d& wo :
-       {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 1, 0),
-        Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(-0.6, 0.3, -0.7)}) {
-    for (const double degrees : {0.0, 1e-4, 30.0, 60.0, 85.0, 89.9}) {
-      const Eigen::Vector3d o = wo.normalized(), t = o.unitOrthogonal();
-      const double theta = degrees * kPi / 180, phi = 1.0 + degrees;
-      ShadingPoint p = PointAt(0.0, 0.0);
-      p.wo = o.cast<float>();
-      p.normal =
-          (std::cos(theta) * o +
-           std::sin(theta) * (std::cos(phi) * t + std::sin(phi) * o.cross(t)))
-              .cast<float>();
-      points.push_back(p);
-    }
-  }
-  return points;
-}
-
 HarmonicOptions Order(int order) {
   HarmonicOptions options;
   options.order = order;
@@ -75,7 +54,7 @@ double MeanLogError(const std::vector<double>& a,
 
 TEST(HarmonicTransport, WhiteFurnaceIsOneAtEveryOrderAndPoint) {
   const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kGrid);
-  const std::vector<ShadingPoint> points = Extremes();
+  const std::vector<ShadingPoint> points = PolarAndGrazingPoints();
   for (const int order : {0, 2, 8}) {
     for (const double e :
          ByHarmonics(points, grid, ConstantMap(16, 32, 1.0f), order)) {
@@ -95,7 +74,7 @@ TEST(HarmonicTransport, LambertUnderALinearMapMatchesTheClosedForm) {
       map.At(c, r)[0] = static_cast<float>(1.0 + d);
     }
   }
-  const std::vector<ShadingPoint> points = Extremes();
+  const std::vector<ShadingPoint> points = PolarAndGrazingPoints();
   const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kGrid);
   const std::vector<double> E = ByHarmonics(points, grid, map, 2);
   for (size_t i = 0; i < points.size(); ++i) {
@@ -122,7 +101,7 @@ Image Blurred(const Image& map, int height, int width) {
 // roughness and the light's set.
 TEST(HarmonicTransport, ConvergesToTransport) {
   std::vector<ShadingPoint> points = SpherePoints(14);
-  for (const ShadingPoint& p : Extremes()) points.push_back(p);
+  for (const ShadingPoint& p : PolarAndGrazingPoints()) points.push_back(p);
   struct Case {
     BrdfFunction brdf;
     Image map;
@@ -149,7 +128,7 @@ TEST(HarmonicTransport, ConvergesToTransport) {
 }
 
 TEST(HarmonicTransport, BothGradientsAreTransposes) {
-  std::vector<ShadingPoint> points = Extremes();
+  std::vector<ShadingPoint> points = PolarAndGrazingPoints();
   for (const ShadingPoint& p : SpherePoints(6)) points.push_back(p);
   const HarmonicTransport transport(points, 8, 16, Order(5));
   std::mt19937 rng(4);
@@ -177,7 +156,7 @@ TEST(HarmonicTransport, BothGradientsAreTransposes) {
 }
 
 TEST(HarmonicTransport, SameBitsForAnyNumberOfThreads) {
-  const std::vector<ShadingPoint> points = Extremes();
+  const std::vector<ShadingPoint> points = PolarAndGrazingPoints();
   const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGrid);
   const Image map = RandomMap(8, 16, 2);
   const std::vector<double> adjoint(3 * points.size(), 0.7);

@@ -76,6 +76,27 @@ inline ShadingPoint PointAt(double theta, double azimuth) {
   return p;
 }
 
+// Poles, the view's own direction, grazing views, several wo.
+inline std::vector<ShadingPoint> PolarAndGrazingPoints() {
+  std::vector<ShadingPoint> points;
+  for (const Eigen::Vector3d& wo :
+       {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 1, 0),
+        Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(-0.6, 0.3, -0.7)}) {
+    for (const double degrees : {0.0, 1e-4, 30.0, 60.0, 85.0, 89.9}) {
+      const Eigen::Vector3d o = wo.normalized(), t = o.unitOrthogonal();
+      const double theta = degrees * kPi / 180, phi = 1.0 + degrees;
+      ShadingPoint p = PointAt(0.0, 0.0);
+      p.wo = o.cast<float>();
+      p.normal =
+          (std::cos(theta) * o +
+           std::sin(theta) * (std::cos(phi) * t + std::sin(phi) * o.cross(t)))
+              .cast<float>();
+      points.push_back(p);
+    }
+  }
+  return points;
+}
+
 inline std::vector<ShadingPoint> SpherePoints(int size) {
   return FindShadingPoints(Scene::UnitSphere(), Camera(), size, size, Mask(), 1)
       .value();

@@ -33,5 +33,34 @@ TEST(ScaledCondition, NamesWhatHasNone) {
   EXPECT_TRUE(std::isnan(ScaledCondition({})));
 }
 
+// All steps of conjugate gradients make all of Lanczos' matrix; fewer see less.
+TEST(LanczosCondition, IsThePreconditionedSystems) {
+  constexpr int kSize = 12;
+  Eigen::VectorXd system(kSize), metric(kSize);
+  for (int i = 0; i < kSize; ++i) {
+    metric[i] = std::pow(10.0, i - 6);
+    system[i] = metric[i] * (1.0 + i * i);  // preconditioned: 1 to 122
+  }
+  const auto run = [&](int steps) {
+    CgCoefficients coefficients;
+    const Eigen::VectorXd b = metric.cwiseSqrt();
+    const Eigen::VectorXd x = ConjugateGradients(
+        [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+          return system.cwiseProduct(v);
+        },
+        [&](const Eigen::VectorXd& r) -> Eigen::VectorXd {
+          return r.cwiseQuotient(metric);
+        },
+        b, steps, 0.0, &coefficients);
+    EXPECT_EQ(static_cast<size_t>(steps), coefficients.alpha.size());
+    return LanczosCondition(coefficients);
+  };
+  EXPECT_NEAR(122.0, run(kSize), 1e-6);
+  EXPECT_LT(run(4), 122.0);
+  EXPECT_GT(run(4), run(2));
+  EXPECT_DOUBLE_EQ(1.0, run(1));
+  EXPECT_TRUE(std::isnan(LanczosCondition({})));
+}
+
 }  // namespace
 }  // namespace ibrdf
