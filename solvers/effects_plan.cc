@@ -117,7 +117,8 @@ StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
                                   const std::vector<ShadingPoint>& points,
                                   const Image* known_map,
                                   const BrdfGrid* known_brdf, double threshold,
-                                  int num_threads) {
+                                  int num_threads,
+                                  const EffectsMeasure& measure) {
   EffectsPlan plan;
   plan.threshold = threshold;
   plan.reflectance_map = DependsOnNormal(problem, false);
@@ -149,7 +150,9 @@ StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
   options.num_threads = num_threads;
   plan.probe = ProbeScene(scene, points, options);
   if (plan.probe.shadowed_share > 0.0) {
-    plan.worth = Predict(scene, points, known_map, known_brdf, options);
+    plan.worth = measure
+                     ? measure()
+                     : Predict(scene, points, known_map, known_brdf, options);
   }
   switch (effects.mode) {
     case EffectsMode::kAuto:

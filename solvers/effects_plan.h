@@ -1,5 +1,6 @@
 // Which effects a problem is solved or rendered with, and why.
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,12 +36,17 @@ struct EffectsPlan {
   std::string words;  // for the user
 };
 
-// known_map and known_brdf may be null. Fails where the problem lists an effect
-// that its geometry cannot have.
+// Worth of the effects, where they are not to be predicted by patches of the
+// object, as a solve simulates them.
+using EffectsMeasure = std::function<EffectsWorth()>;
+
+// known_map, known_brdf and `measure` may be null. Fails where the problem
+// lists an effect that its geometry cannot have.
 StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
                                   const std::vector<ShadingPoint>& points,
                                   const Image* known_map,
                                   const BrdfGrid* known_brdf, double threshold,
-                                  int num_threads);
+                                  int num_threads,
+                                  const EffectsMeasure& measure = nullptr);
 
 }  // namespace ibrdf

@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <string>
 #include <utility>
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/light/procedural_sky.h"
+#include "ibrdf/render/lobe_bundles.h"
 #include "ibrdf/render/pixel_samples.h"
 #include "ibrdf/render/reflectance_map.h"
 #include "io/image_file.h"
 #include "io/merl.h"
 #include "io/mesh.h"
+#include "solvers/measured_effects.h"
 #include "solvers/scene_radiance.h"
 
 namespace ibrdf {
@@ -97,10 +100,11 @@ class PixelRenderer {
                       problem_.image.height);
   }
 
-  // Renders the pixels anew whose centre does not stand for them.
-  Status Refine(const Scene& scene, const Mask& mask, double begin, double end,
-                Image* image) {
-    const Mask unclear = PixelsToSample(*image, mask, kPreviewPixelError);
+  // Renders the pixels anew whose centre does not stand for them within
+  // log_error.
+  Status Refine(const Scene& scene, const Mask& mask, double log_error,
+                double begin, double end, Image* image) {
+    const Mask unclear = PixelsToSample(*image, mask, log_error);
     if (unclear.empty()) return Status();
     StatusOr<std::vector<ShadingPoint>> points =
         FindShadingPoints(scene, problem_.camera, image->width, image->height,
@@ -248,14 +252,37 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
   BrdfGrid grid;
   if (view->scene.CastsShadows()) grid = brdf.Grid();
   const bool reference = problem.quality == RenderQuality::kReference;
+  // A preview of a mirror-like object looks along the lobe's own rays.
+  const bool narrow_lobe =
+      view->scene.CastsShadows() && LobeHalfWidth(brdf.Lookup()) < kNarrowLobe;
+  std::unique_ptr<SceneRadiance> radiance;
+  EffectsMeasure measure;
+  if (!reference && narrow_lobe) {
+    measure = [&] {
+      EffectsPlan none, all;
+      all.visibility = true;
+      all.bounces = kMostBounces;
+      const SceneRadiance bare(view->scene, points, *map, &brdf, grid, none,
+                               problem.quality, options.num_threads);
+      radiance = std::make_unique<SceneRadiance>(
+          view->scene, points, *map, &brdf, grid, all, problem.quality,
+          options.num_threads);
+      return MeasureEffects(bare, points, radiance.get());
+    };
+  }
   StatusOr<EffectsPlan> effects =
       PlanEffects(problem, view->scene, points, &*map, &grid,
                   reference ? kReferenceLogError : kPreviewLogError,
-                  options.num_threads);
+                  options.num_threads, measure);
   if (!effects.ok()) return effects.status();
-  const SceneRadiance radiance(view->scene, points, *map, &brdf, grid, *effects,
-                               problem.quality, options.num_threads);
-  PixelRenderer pixels(problem, radiance, effects->reflectance_map, options);
+  if (radiance == nullptr || !effects->visibility) {
+    radiance = std::make_unique<SceneRadiance>(view->scene, points, *map, &brdf,
+                                               grid, *effects, problem.quality,
+                                               options.num_threads);
+  } else {
+    radiance->set_bounces(effects->bounces);
+  }
+  PixelRenderer pixels(problem, *radiance, effects->reflectance_map, options);
   // The second pass is of fewer pixels but more points.
   const double first = reference ? 1.0 : 0.5;
   RenderedScene out;
@@ -264,8 +291,12 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
   out.image = *std::move(image);
   out.mask = view->mask;
   if (!reference) {
-    IBRDF_RETURN_IF_ERROR(
-        pixels.Refine(view->scene, out.mask, first, 1.0, &out.image));
+    // What a mirror shows of its own object has detail that the differences
+    // between pixels do not tell of.
+    const double log_error =
+        narrow_lobe && effects->bounces > 0 ? 0.0 : kPreviewPixelError;
+    IBRDF_RETURN_IF_ERROR(pixels.Refine(view->scene, out.mask, log_error, first,
+                                        1.0, &out.image));
   }
   if (options.progress) options.progress(1.0);
   effects->words += pixels.words();

@@ -1,5 +1,7 @@
 #include "solvers/scene_radiance.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 
 #include "ibrdf/render/transport.h"
@@ -25,12 +27,19 @@ BrdfGrid KnownBrdf::Grid() const {
                   : BrdfGrid::FromMerl(table, {});
 }
 
+BrdfFunction KnownBrdf::Lookup() const {
+  if (function) return function;
+  return [this](double theta_h, double theta_d, double phi_d) {
+    return InterpolateMerl(table, theta_h, theta_d, phi_d);
+  };
+}
+
 SceneRadiance::SceneRadiance(const Scene& scene,
                              const std::vector<ShadingPoint>& points,
                              const Image& map, const KnownBrdf* brdf,
                              const BrdfGrid& grid, const EffectsPlan& effects,
                              RenderQuality quality, int num_threads)
-    : brdf_(brdf), num_threads_(num_threads) {
+    : brdf_(brdf), num_threads_(num_threads), bounces_(effects.bounces) {
   const bool reference = quality == RenderQuality::kReference;
   ReferenceOptions options;
   if (!reference) options = Coarser(options);
@@ -78,6 +87,12 @@ void SceneRadiance::LightObject(const Scene& scene,
                  .Emitted(grid, map.rgb.data());
 }
 
+void SceneRadiance::set_bounces(int bounces) {
+  CHECK(bounces == 0 ||
+        (bounces > 0 && bounces < static_cast<int>(emitted_.size())));
+  bounces_ = bounces;
+}
+
 bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
                            const Progress& progress, double* E) const {
   for (size_t begin = 0; begin < points.size(); begin += kPointsPerStep) {
@@ -87,7 +102,8 @@ bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
     const size_t end = std::min(begin + kPointsPerStep, points.size());
     const std::vector<ShadingPoint> some(points.begin() + begin,
                                          points.begin() + end);
-    const double* const emitted = emitted_.empty() ? nullptr : emitted_.data();
+    EmittedLight emitted;
+    if (bounces_ > 0) emitted = {emitted_[bounces_].data(), bounces_};
     if (brdf_->function) {
       renderer_->Render(some, brdf_->function, E + 3 * begin, emitted);
     } else {

@@ -19,6 +19,8 @@ struct KnownBrdf {
   BrdfFunction function;  // empty: the table
   MerlTable table;
   BrdfGrid Grid() const;
+  // Either as a function. It must not outlive this.
+  BrdfFunction Lookup() const;
 };
 
 class SceneRadiance {
@@ -35,6 +37,10 @@ class SceneRadiance {
                 const EffectsPlan& effects, RenderQuality quality,
                 int num_threads);
 
+  // Those that Render simulates: at first all of the plan's.
+  int bounces() const { return bounces_; }
+  void set_bounces(int bounces);
+
   // [points, 3]; false: stopped.
   bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
               double* E) const;
@@ -47,7 +53,8 @@ class SceneRadiance {
 
   const KnownBrdf* brdf_;
   int num_threads_;
-  std::vector<double> emitted_;  // [emitters, 3]
+  int bounces_ = 0;
+  std::vector<std::vector<double>> emitted_;  // [bounces][emitters, 3]
   std::unique_ptr<const ReferenceRenderer> renderer_;
 };
 

@@ -175,14 +175,16 @@ TEST(Interreflection, RaysOfNarrowLobesAgreeWithBruteForce) {
   const TransportOptions options = WithBounces(scene, all, 1);
   const std::vector<double> emitted =
       Transport({}, 32, 64, options)
-          .Emitted(BrdfGrid::FromFunction(brdf, options.grid), map.rgb.data());
+          .Emitted(BrdfGrid::FromFunction(brdf, options.grid), map.rgb.data())
+          .back();
   const auto render = [&](int lobe_rays, const double* light) {
     ReferenceOptions reference;
     reference.shadows = std::make_shared<VisibilityGrid>(scene, 256);
     reference.emitters = options.emitters;
     reference.lobe_rays = lobe_rays;
     std::vector<double> E(3 * points.size());
-    ReferenceRenderer(map, reference).Render(points, brdf, E.data(), light);
+    ReferenceRenderer(map, reference)
+        .Render(points, brdf, E.data(), {light, 1});
     return E;
   };
   const std::vector<double> bare = render(0, nullptr),
@@ -263,7 +265,7 @@ TEST(Interreflection, GlossyObjectsInConstantLightStayDarkerThanIt) {
     brdf.roughness = Eigen::Array3d::Constant(roughness);
     brdf.f0 = 0.3;
     const BrdfGrid grid = BrdfGrid::FromFunction(brdf.Function(), options.grid);
-    for (const double e : transport.Emitted(grid, map.rgb.data())) {
+    for (const double e : transport.Emitted(grid, map.rgb.data()).back()) {
       EXPECT_GT(e, 0.0);
       EXPECT_LT(e, 1.0) << roughness;
     }

@@ -12,6 +12,10 @@ namespace ibrdf {
 // degrees from the half-vector, across their plane; pi/2 where it never does.
 double LobeHalfWidth(const BrdfFunction& brdf);
 
+// A lobe whose LobeHalfWidth is below this shows the object as a mirror does:
+// emitters, which are patches, blur it.
+inline constexpr double kNarrowLobe = 4.0 * 3.14159265358979323846 / 180;
+
 struct LobeBundles {
   std::vector<int> of;  // each direction's, in [0, count)
   // Unit means, by weight, of the directions of each; zero where it has none.

@@ -20,9 +20,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kBrightBlock = 4.0;
 constexpr double kUnevenBlock = 1.5;
 
-// A lobe whose half-vectors fall to half within this angle gets rays of its
-// own, within this many times that angle of the normal.
-constexpr double kNarrowLobe = 4.0 * kPi / 180;
+// A narrow lobe gets rays of its own, whose half-vectors lie within this many
+// times its half width of the normal.
 constexpr double kLobeWidths = 2.5;
 // Fewer from bounce to bounce.
 constexpr int kFewerRays = 4;
@@ -274,7 +273,7 @@ template <typename Lookup>
 std::vector<double> ReferenceRenderer::LightOfLobes(
     int depth, int count, double lobe_width, const ViewGroups& groups,
     const std::vector<ShadingPoint>& points, const Lookup& lookup,
-    const double* emitted) const {
+    const EmittedLight& emitted) const {
   if (points.empty()) return {};
   std::vector<ShadingPoint> met(points.size() * count, points[0]);
   std::vector<char> is_met(met.size(), 0);
@@ -310,9 +309,9 @@ std::vector<double> ReferenceRenderer::LightOfLobes(
   if (!some.empty()) {
     const ReferenceRenderer& next = coarser_ != nullptr ? *coarser_ : *this;
     // The last bounce shows what the map alone lights.
-    next.RenderAt(depth + 1, lobe_width, some, lookup,
-                  depth + 1 < emitters_->bounces() ? emitted : nullptr,
-                  radiance.data());
+    EmittedLight light = emitted;
+    if (depth + 1 >= emitted.bounces) light.radiance = nullptr;
+    next.RenderAt(depth + 1, lobe_width, some, lookup, light, radiance.data());
   }
   std::vector<double> light(3 * met.size(), -1.0);
   for (size_t k = 0, from = 0; k < met.size(); ++k) {
@@ -323,10 +322,11 @@ std::vector<double> ReferenceRenderer::LightOfLobes(
 
 template <typename Lookup>
 void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
-                                   const Lookup& lookup, const double* emitted,
+                                   const Lookup& lookup,
+                                   const EmittedLight& emitted,
                                    double* E) const {
   double lobe_width = 0.0;
-  if (lobe_rays_ > 0 && emitters_ != nullptr && emitted != nullptr) {
+  if (lobe_rays_ > 0 && emitters_ != nullptr && emitted.radiance != nullptr) {
     const double half = LobeHalfWidth(lookup);
     if (half < kNarrowLobe) lobe_width = kLobeWidths * half;
   }
@@ -336,12 +336,12 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
 template <typename Lookup>
 void ReferenceRenderer::RenderAt(int depth, double lobe_width,
                                  const std::vector<ShadingPoint>& points,
-                                 const Lookup& lookup, const double* emitted,
-                                 double* E) const {
+                                 const Lookup& lookup,
+                                 const EmittedLight& emitted, double* E) const {
   const ViewGroups groups(points);
   int lobe_rays = 0;
   std::vector<double> of_lobes;
-  if (lobe_width > 0.0 && depth < emitters_->bounces()) {
+  if (lobe_width > 0.0 && depth < emitted.bounces) {
     lobe_rays = lobe_rays_;
     for (int k = 0; k < depth; ++k) lobe_rays /= kFewerRays;
     lobe_rays = std::max(lobe_rays, 1);
@@ -373,11 +373,11 @@ void ReferenceRenderer::RenderAt(int depth, double lobe_width,
           shadows_->Trace(points[i], &s.trace, &s.bits)) {
         sight.hidden = s.bits.data();
       }
-      if (sight.hidden != nullptr && emitted != nullptr &&
+      if (sight.hidden != nullptr && emitted.radiance != nullptr &&
           emitters_ != nullptr) {
         sight.seen =
             emitters_->Look(points[i], *shadows_, sight.hidden, &s.seen);
-        sight.emitted = emitted;
+        sight.emitted = emitted.radiance;
       }
       if (lobe_rays > 0) sight.lobe = &of_lobes[size_t{3} * lobe_rays * i];
       Eigen::Array3d sum = Gather(s.rays, frame.Axes(), sight);
@@ -395,7 +395,7 @@ void ReferenceRenderer::RenderAt(int depth, double lobe_width,
                               ranges_[far.cell], sight.seen, &s.shares);
           for (const EmitterShare& e : s.shares) {
             light += e.share * solid_angle_[far.cell] *
-                     Eigen::Map<const Eigen::Array3d>(emitted +
+                     Eigen::Map<const Eigen::Array3d>(emitted.radiance +
                                                       size_t{3} * e.emitter);
           }
         }
@@ -408,13 +408,13 @@ void ReferenceRenderer::RenderAt(int depth, double lobe_width,
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
                                const MerlTable& table, double* E,
-                               const double* emitted) const {
+                               const EmittedLight& emitted) const {
   RenderWith(points, MerlSampler(table), emitted, E);
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
                                const BrdfFunction& brdf, double* E,
-                               const double* emitted) const {
+                               const EmittedLight& emitted) const {
   RenderWith(points, brdf, emitted, E);
 }
 

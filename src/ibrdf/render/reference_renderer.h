@@ -18,29 +18,35 @@
 
 namespace ibrdf {
 
+// What the object throws on itself.
+struct EmittedLight {
+  const double* radiance = nullptr;  // [emitters, 3]; null: none
+  // Of light, from it to the point that is rendered.
+  int bounces = 0;
+};
+
 // Immutable; its functions may be called from one thread at a time.
 class ReferenceRenderer {
  public:
   ReferenceRenderer(const Image& map, const ReferenceOptions& options);
 
   // Radiance [points, 3]. Weights and sums are double; BRDF values float.
-  // emitted: radiance [emitters, 3], null: 0.
   void Render(const std::vector<ShadingPoint>& points, const MerlTable& table,
-              double* E, const double* emitted = nullptr) const;
+              double* E, const EmittedLight& emitted = {}) const;
   // `brdf` may be called from several threads at a time.
   void Render(const std::vector<ShadingPoint>& points, const BrdfFunction& brdf,
-              double* E, const double* emitted = nullptr) const;
+              double* E, const EmittedLight& emitted = {}) const;
 
  private:
   template <typename Lookup>
   void RenderWith(const std::vector<ShadingPoint>& points, const Lookup& lookup,
-                  const double* emitted, double* E) const;
+                  const EmittedLight& emitted, double* E) const;
   // After so many bounces along rays of a lobe whose half-vectors lie within
   // lobe_width, radians, of the normal (0: no such rays).
   template <typename Lookup>
   void RenderAt(int depth, double lobe_width,
                 const std::vector<ShadingPoint>& points, const Lookup& lookup,
-                const double* emitted, double* E) const;
+                const EmittedLight& emitted, double* E) const;
 
   // Cells of the far rule, their radiance times solid angle, and, under
   // shadows, their texels in the grid.
@@ -74,7 +80,7 @@ class ReferenceRenderer {
                                    const ViewGroups& groups,
                                    const std::vector<ShadingPoint>& points,
                                    const Lookup& lookup,
-                                   const double* emitted) const;
+                                   const EmittedLight& emitted) const;
   // Near samples of one view angle, in the frame of ViewFrame.
   template <typename Lookup>
   void ShadeNear(const PointFrame& frame, const Lookup& lookup,

@@ -66,6 +66,20 @@ SceneProbe ProbeScene(const Scene& scene,
   return probe;
 }
 
+double MeanAbsLogRatio(const std::vector<double>& a,
+                       const std::vector<double>& b) {
+  CHECK_EQ(a.size(), b.size());
+  const auto count = static_cast<double>(b.size());
+  double mean = 0.0, sum = 0.0;
+  for (const double e : b) mean += e / count;
+  if (!(mean > 0.0)) return 0.0;
+  for (size_t i = 0; i < b.size(); ++i) {
+    sum += std::abs(std::log(std::max(a[i], kDarkest * mean)) -
+                    std::log(std::max(b[i], kDarkest * mean)));
+  }
+  return sum / count;
+}
+
 EffectsWorth PredictEffects(const Scene& scene,
                             const std::vector<ShadingPoint>& points,
                             const std::vector<ProbeLook>& looks,
@@ -106,16 +120,8 @@ EffectsWorth PredictEffects(const Scene& scene,
   for (const ProbeLook& look : looks) {
     CHECK(look.map->height == height && look.map->width == width);
     with.Render(*look.brdf, look.map->rgb.data(), full.data());
-    double mean = 0.0;
-    for (const double e : full) mean += e / static_cast<double>(full.size());
-    if (!(mean > 0.0)) continue;
     const auto keep_larger = [&](double* error) {
-      double sum = 0.0;
-      for (size_t i = 0; i < full.size(); ++i) {
-        sum += std::abs(std::log(std::max(part[i], kDarkest * mean)) -
-                        std::log(std::max(full[i], kDarkest * mean)));
-      }
-      *error = std::max(*error, sum / static_cast<double>(full.size()));
+      *error = std::max(*error, MeanAbsLogRatio(part, full));
     };
     without.Render(*look.brdf, look.map->rgb.data(), part.data());
     keep_larger(&worth.unshadowed);

@@ -58,6 +58,11 @@ struct EffectsWorth {
   double shadow_seconds = 0.0, bounce_seconds = 0.0;
 };
 
+// Mean |log a - log b| of radiance, below 1e-3 of the mean of b counted as
+// that; 0 where b is black. Of one size.
+double MeanAbsLogRatio(const std::vector<double>& a,
+                       const std::vector<double>& b);
+
 // Renders the probed points with and without the effects under each of the
 // looks (at least one; maps of one size, grids of one shape).
 EffectsWorth PredictEffects(const Scene& scene,

@@ -275,9 +275,9 @@ std::vector<std::vector<double>> Transport::Emitted(const std::vector<float>& f,
   return emitted;
 }
 
-std::vector<double> Transport::Emitted(const BrdfGrid& grid,
-                                       const float* map) const {
-  return Emitted(PadGrid(grid), map, bounces()).back();
+std::vector<std::vector<double>> Transport::Emitted(const BrdfGrid& grid,
+                                                    const float* map) const {
+  return Emitted(PadGrid(grid), map, bounces());
 }
 
 void Transport::Render(const BrdfGrid& grid, const float* map,

@@ -71,9 +71,10 @@ class Transport {
   void RenderBounces(const BrdfGrid& grid, const float* map, int bounces,
                      double* E) const;
 
-  // Radiance of the emitters with all bounces but the last, [emitters, 3];
-  // empty without interreflection.
-  std::vector<double> Emitted(const BrdfGrid& grid, const float* map) const;
+  // Radiance of the emitters, [emitters, 3], which lights points after
+  // b = 0 to bounces() bounces: [b], the first one empty.
+  std::vector<std::vector<double>> Emitted(const BrdfGrid& grid,
+                                           const float* map) const;
 
   // The linear map from L to E for a fixed BRDF.
   LightOperator ByLight(const BrdfGrid& grid) const;

@@ -1,0 +1,18 @@
+// What the effects of a known scene are worth, by rendering a few points.
+#pragma once
+#include <vector>
+
+#include "ibrdf/render/scene_probe.h"
+#include "solvers/scene_radiance.h"
+
+namespace ibrdf {
+
+// As PredictEffects, for light and reflectance as they are: `bare` simulates no
+// effect, `all` shadows and kMostBounces. Slower: for lobes so narrow that
+// patches do not tell what they show of the object (kNarrowLobe). Leaves `all`
+// with as many bounces as it had.
+EffectsWorth MeasureEffects(const SceneRadiance& bare,
+                            const std::vector<ShadingPoint>& points,
+                            SceneRadiance* all);
+
+}  // namespace ibrdf
