@@ -72,11 +72,16 @@ json ReflectanceJson(const ReflectanceSpec& reflectance) {
           {"prior_sigma", reflectance.prior_sigma}};
 }
 
-json IlluminationJson(const IlluminationSpec& illumination) {
-  if (!illumination.known_file.empty()) {
+json IlluminationJson(const IlluminationSpec& illumination, bool rendered) {
+  // A render takes the file's map as it is, an estimate resamples it.
+  if (!illumination.known_file.empty() && rendered) {
     return {{"known", illumination.known_file}};
   }
   json out = {{"width", illumination.width}, {"height", illumination.height}};
+  if (!illumination.known_file.empty()) {
+    out["known"] = illumination.known_file;
+    return out;
+  }
   if (illumination.sky.has_value()) {
     const SkyOptions& sky = *illumination.sky;
     out["known"]["sky"] = {{"sun_theta_degrees", sky.sun_theta_degrees},
@@ -121,13 +126,13 @@ json EffectsJson(const EffectsSpec& effects) {
 }
 
 json SolverJson(const SolverSpec& solver) {
-  json out = {{"estimator",
-               solver.estimator == SolverEstimator::kMarginal ? "marginal"
-                                                              : "maximum"},
-              {"method", SolverMethodName(solver.method)},
-              {"seconds", solver.seconds},
-              {"tolerance", solver.tolerance},
-              {"max_iterations", solver.max_iterations}};
+  json out = {
+      {"estimator",
+       solver.estimator == SolverEstimator::kMarginal ? "marginal" : "maximum"},
+      {"method", SolverMethodName(solver.method)},
+      {"seconds", solver.seconds},
+      {"tolerance", solver.tolerance},
+      {"max_iterations", solver.max_iterations}};
   if (solver.seed.has_value()) out["seed"] = *solver.seed;
   return out;
 }
@@ -147,16 +152,21 @@ const char* KindName(ProblemKind kind) {
 }  // namespace
 
 nlohmann::json ProblemToJson(const Problem& problem) {
-  json out = {{"image", ImageJson(problem.image)},
-              {"camera", CameraJson(problem.camera)},
-              {"geometry", GeometryJson(problem.geometry)},
-              {"reflectance", ReflectanceJson(problem.reflectance)},
-              {"illumination", IlluminationJson(problem.illumination)},
-              {"effects", EffectsJson(problem.effects)}};
-  if (problem.image.file.empty()) {
+  const bool rendered = problem.image.file.empty();
+  json out = {
+      {"image", ImageJson(problem.image)},
+      {"camera", CameraJson(problem.camera)},
+      {"geometry", GeometryJson(problem.geometry)},
+      {"reflectance", ReflectanceJson(problem.reflectance)},
+      {"illumination", IlluminationJson(problem.illumination, rendered)},
+      {"effects", EffectsJson(problem.effects)}};
+  if (rendered) {
     out["quality"] =
         problem.quality == RenderQuality::kReference ? "reference" : "preview";
     out["noise"] = problem.noise;
+    if (problem.solver.seed.has_value()) {
+      out["solver"]["seed"] = *problem.solver.seed;  // of the noise
+    }
     return out;
   }
   out["problem"] = KindName(problem.kind);

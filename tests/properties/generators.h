@@ -1,9 +1,14 @@
 // Random inputs of the properties: ordinary and extreme ones.
 #pragma once
+#include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -12,6 +17,25 @@
 #include "tests/support/tiny_model.h"
 
 namespace ibrdf {
+
+// Checks a property whose cases are slow: so many of a hundred that are asked
+// for (RC_PARAMS), and at least four, as sizes spread over the cases.
+template <typename Testable>
+void CheckSome(int percent, const Testable& property) {
+  using namespace rc::detail;  // NOLINT
+  TestParams params = configuration().testParams;
+  params.maxSuccess = std::max(4, params.maxSuccess * percent / 100);
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  TestMetadata metadata;
+  metadata.description = test->name();
+  metadata.id = std::string(test->test_suite_name()) + "/" + test->name();
+  const rc::detail::TestResult result =
+      checkTestable(property, metadata, params);
+  if (result.template is<SuccessResult>()) return;
+  std::ostringstream text;
+  printResultMessage(result, text);
+  FAIL() << text.str();
+}
 
 // In [0, 1], both ends among them.
 inline rc::Gen<double> Unit() {
@@ -27,6 +51,28 @@ inline rc::Gen<double> Between(double low, double high) {
 inline rc::Gen<double> Magnitude(double low, double high) {
   return rc::gen::map(Between(std::log(low), std::log(high)),
                       [](double x) { return std::exp(x); });
+}
+
+// Any bits: negative zero, denormals, infinities, not numbers.
+inline std::vector<float> AnyFloats(size_t count) {
+  const auto bits = *rc::gen::container<std::vector<uint32_t>>(
+      count, rc::gen::arbitrary<uint32_t>());
+  std::vector<float> values(count);
+  if (count > 0) std::memcpy(values.data(), bits.data(), 4 * count);
+  return values;
+}
+
+// Any finite bits.
+inline std::vector<double> AnyFiniteDoubles(size_t count) {
+  std::mt19937_64 rng(*rc::gen::arbitrary<uint64_t>());
+  std::vector<double> values(count);
+  for (double& v : values) {
+    do {
+      const uint64_t bits = rng();
+      std::memcpy(&v, &bits, 8);
+    } while (!std::isfinite(v));
+  }
+  return values;
 }
 
 // Unit vectors with z >= least; a share of them at the limb and the pole.

@@ -1,0 +1,391 @@
+// What a result says of its problem is that problem.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "io/config_tree.h"
+#include "io/problem_file.h"
+#include "io/problem_json.h"
+#include "tests/properties/generators.h"
+
+namespace ibrdf {
+namespace {
+
+// Finite numbers of any bits in an interval, its ends, and round ones.
+double AnyNumber(double low, double high) {
+  std::vector<double> candidates = {low, high, 0.1, 1.0, 5e-324, 1e300};
+  const std::vector<double> any = AnyFiniteDoubles(6);
+  candidates.insert(candidates.end(), any.begin(), any.end());
+  candidates.push_back(low / 2 + *Unit() * (high / 2 - low / 2));
+  std::vector<double> inside;
+  for (const double x : candidates) {
+    if (x >= low && x <= high) inside.push_back(x);
+  }
+  return inside[*rc::gen::inRange(size_t{0}, inside.size())];
+}
+
+constexpr double kMost = std::numeric_limits<double>::max();
+constexpr double kLeast = 5e-324;
+
+template <typename Vector>
+Vector AnyTriple(double low, double high) {
+  return Vector(AnyNumber(low, high), AnyNumber(low, high),
+                AnyNumber(low, high));
+}
+
+// Absolute, of any characters that UTF-8 and a file system allow, for JSON is
+// UTF-8: quotes, colons, line feeds, what looks like a number or a comment.
+std::string AnyPath() {
+  const auto letters = *rc::gen::container<std::vector<std::string>>(
+      rc::gen::oneOf(rc::gen::map(rc::gen::inRange<int>(1, 128),
+                                  [](int c) {
+                                    return std::string(1, static_cast<char>(c));
+                                  }),
+                     rc::gen::element<std::string>(
+                         "\xc3\xa9", "\xe2\x80\xa8", "\xc2\x85",
+                         "\xf0\x9f\x98\x80", "\xef\xbb\xbf", " #", ": ",
+                         "\\u0041", "\r\n", "~", "null", "- ")));
+  std::string path = "/";
+  for (const std::string& letter : letters) path += letter;
+  if (*rc::gen::inRange(0, 20) == 0) path += std::string(3000, 'x');
+  return path;
+}
+
+template <typename Enum>
+Enum AnyOf(int count) {
+  return static_cast<Enum>(*rc::gen::inRange(0, count));
+}
+
+Camera AnyCamera() {
+  Camera camera;
+  if (*rc::gen::arbitrary<bool>()) return camera;
+  Camera view;
+  view.type = CameraType::kPerspective;
+  view.fov_degrees = AnyNumber(kLeast, 179.99);
+  view.from = AnyTriple<Eigen::Vector3d>(-1e9, 1e9);
+  view.to = AnyTriple<Eigen::Vector3d>(-1e9, 1e9);
+  view.up = AnyTriple<Eigen::Vector3d>(-1e9, 1e9);
+  return IsValidCamera(view) ? view : camera;
+}
+
+CookTorrance AnyAnalyticBrdf() {
+  CookTorrance brdf;
+  brdf.diffuse = AnyTriple<Eigen::Array3d>(0.0, 1.0);
+  if (*rc::gen::arbitrary<bool>()) {  // Lambertian, the rest as it is
+    brdf.specular.setZero();
+    return brdf;
+  }
+  brdf.specular = AnyTriple<Eigen::Array3d>(kLeast, kMost);
+  brdf.roughness = AnyTriple<Eigen::Array3d>(1e-3, 10.0);
+  brdf.f0 = AnyTriple<Eigen::Array3d>(0.0, 1.0);
+  return brdf;
+}
+
+SkyOptions AnySky() {
+  SkyOptions sky;
+  sky.sun_theta_degrees = AnyNumber(0.0, 90.0);
+  sky.sun_phi_degrees = AnyNumber(-360.0, 360.0);
+  sky.sun_radius_degrees = AnyNumber(0.1, 30.0);
+  sky.sun_irradiance = AnyNumber(0.0, kMost);
+  sky.zenith_radiance = AnyNumber(kLeast, kMost);
+  sky.haze = AnyNumber(0.0, 1.0);
+  sky.clouds = AnyNumber(0.0, 1.0);
+  sky.skyline = AnyNumber(0.0, 1.0);
+  sky.ground_albedo = AnyNumber(0.0, 1.0);
+  return sky;
+}
+
+// To be solved or, without an image, rendered; what does not apply is as by
+// default.
+Problem AnyProblem() {
+  Problem p;
+  const bool rendered = *rc::gen::inRange(0, 4) == 0;
+  if (rendered) {
+    p.image.width = *rc::gen::inRange(1, 8000);
+    p.image.height = *rc::gen::inRange(1, 8000);
+    p.quality = AnyOf<RenderQuality>(2);
+    p.noise = AnyNumber(0.0, 1.0);
+  } else {
+    p.kind = AnyOf<ProblemKind>(3);
+    p.image.file = AnyPath();
+    if (*rc::gen::arbitrary<bool>()) p.image.mask = AnyPath();
+    if (*rc::gen::arbitrary<bool>()) {
+      p.likelihood.scale = AnyNumber(kLeast, kMost);
+    }
+    if (*rc::gen::arbitrary<bool>()) {
+      p.likelihood.epsilon = AnyNumber(0.0, kMost);
+    }
+    p.solver.estimator = AnyOf<SolverEstimator>(2);
+    p.solver.method = AnyOf<SolverMethod>(kNumSolverMethods);
+    p.solver.seconds = AnyNumber(kLeast, 1e7);
+    p.solver.tolerance = AnyNumber(0.0, 1.0 - 1e-16);
+    p.solver.max_iterations = *rc::gen::inRange(0, 100000001);
+    if (*rc::gen::arbitrary<bool>()) p.truth.brdf = AnyPath();
+    if (*rc::gen::arbitrary<bool>()) p.truth.illumination = AnyPath();
+  }
+  if (*rc::gen::arbitrary<bool>()) {
+    p.solver.seed =
+        *rc::gen::oneOf(rc::gen::inRange<int64_t>(0, 1000),
+                        rc::gen::just(std::numeric_limits<int64_t>::max()));
+  }
+  p.camera = AnyCamera();
+  p.geometry.kind =
+      AnyOf<GeometryKind>(p.camera.type == CameraType::kPerspective ? 2 : 3);
+  if (p.geometry.kind != GeometryKind::kSphere) p.geometry.file = AnyPath();
+  if (p.geometry.kind == GeometryKind::kMesh) {
+    p.geometry.fit = AnyOf<MeshFit>(2);
+  }
+  if (rendered || p.kind == ProblemKind::kIllumination) {
+    if (*rc::gen::arbitrary<bool>()) {
+      p.reflectance.known_file = AnyPath();
+    } else {
+      p.reflectance.analytic = AnyAnalyticBrdf();
+    }
+  } else {
+    if (*rc::gen::arbitrary<bool>()) p.reflectance.model = AnyPath();
+    p.reflectance.lobes = *rc::gen::inRange(1, 9);
+    p.reflectance.prior_sigma = AnyNumber(kLeast, kMost);
+  }
+  const bool map_file = (rendered || p.kind == ProblemKind::kReflectance) &&
+                        *rc::gen::arbitrary<bool>();
+  // A render takes the file's map as it is; else it is resampled.
+  if (!(rendered && map_file)) {
+    p.illumination.width = 2 * *rc::gen::inRange(4, 4097);
+    p.illumination.height = *rc::gen::inRange(4, 8193);
+  }
+  if (map_file) {
+    p.illumination.known_file = AnyPath();
+  } else if (rendered || p.kind == ProblemKind::kReflectance) {
+    p.illumination.sky = AnySky();
+  } else {
+    p.illumination.prior = AnyOf<IlluminationPrior>(3);
+  }
+  p.effects.mode = AnyOf<EffectsMode>(4);
+  if (p.effects.mode == EffectsMode::kList) {
+    for (int e = 0; e < kNumEffects; ++e) {
+      if (*rc::gen::arbitrary<bool>()) {
+        p.effects.list.push_back(static_cast<Effect>(e));
+      }
+    }
+    if (*rc::gen::arbitrary<bool>()) {
+      std::reverse(p.effects.list.begin(), p.effects.list.end());
+    }
+  }
+  return p;
+}
+
+void AssertSame(const Camera& a, const Camera& b) {
+  RC_ASSERT(a.type == b.type && a.fov_degrees == b.fov_degrees);
+  RC_ASSERT(a.from == b.from && a.to == b.to && a.up == b.up);
+}
+
+void AssertSame(const CookTorrance& a, const CookTorrance& b) {
+  RC_ASSERT((a.diffuse == b.diffuse).all());
+  RC_ASSERT((a.specular == b.specular).all());
+  RC_ASSERT((a.roughness == b.roughness).all());
+  RC_ASSERT((a.f0 == b.f0).all());
+}
+
+void AssertSame(const SkyOptions& a, const SkyOptions& b) {
+  RC_ASSERT(a.sun_theta_degrees == b.sun_theta_degrees);
+  RC_ASSERT(a.sun_phi_degrees == b.sun_phi_degrees);
+  RC_ASSERT(a.sun_radius_degrees == b.sun_radius_degrees);
+  RC_ASSERT(a.sun_irradiance == b.sun_irradiance);
+  RC_ASSERT(a.zenith_radiance == b.zenith_radiance);
+  RC_ASSERT(a.haze == b.haze && a.clouds == b.clouds);
+  RC_ASSERT(a.skyline == b.skyline && a.ground_albedo == b.ground_albedo);
+}
+
+RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
+  const Problem p = AnyProblem();
+  // As result.json is written, and more tightly.
+  const int indent = *rc::gen::element(-1, 2);
+  const StatusOr<Problem> read =
+      ParseProblem("/p.yaml", ProblemToJson(p).dump(indent), {});
+  if (!read.ok()) RC_FAIL(read.status().message());
+  const Problem& q = *read;
+  RC_ASSERT(p.kind == q.kind);
+  RC_ASSERT(p.image.file == q.image.file && p.image.mask == q.image.mask);
+  RC_ASSERT(p.image.width == q.image.width);
+  RC_ASSERT(p.image.height == q.image.height);
+  AssertSame(p.camera, q.camera);
+  RC_ASSERT(p.geometry.kind == q.geometry.kind);
+  RC_ASSERT(p.geometry.file == q.geometry.file);
+  RC_ASSERT(p.geometry.fit == q.geometry.fit);
+  RC_ASSERT(p.reflectance.model == q.reflectance.model);
+  RC_ASSERT(p.reflectance.lobes == q.reflectance.lobes);
+  RC_ASSERT(p.reflectance.prior_sigma == q.reflectance.prior_sigma);
+  RC_ASSERT(p.reflectance.known_file == q.reflectance.known_file);
+  RC_ASSERT(p.reflectance.analytic.has_value() ==
+            q.reflectance.analytic.has_value());
+  if (p.reflectance.analytic.has_value()) {
+    AssertSame(*p.reflectance.analytic, *q.reflectance.analytic);
+  }
+  RC_ASSERT(p.illumination.width == q.illumination.width);
+  RC_ASSERT(p.illumination.height == q.illumination.height);
+  RC_ASSERT(p.illumination.prior == q.illumination.prior);
+  RC_ASSERT(p.illumination.known_file == q.illumination.known_file);
+  RC_ASSERT(p.illumination.sky.has_value() == q.illumination.sky.has_value());
+  if (p.illumination.sky.has_value()) {
+    AssertSame(*p.illumination.sky, *q.illumination.sky);
+  }
+  RC_ASSERT(p.likelihood.scale == q.likelihood.scale);
+  RC_ASSERT(p.likelihood.epsilon == q.likelihood.epsilon);
+  RC_ASSERT(p.effects.mode == q.effects.mode);
+  RC_ASSERT(p.effects.list == q.effects.list);
+  RC_ASSERT(p.solver.estimator == q.solver.estimator);
+  RC_ASSERT(p.solver.method == q.solver.method);
+  RC_ASSERT(p.solver.seconds == q.solver.seconds);
+  RC_ASSERT(p.solver.tolerance == q.solver.tolerance);
+  RC_ASSERT(p.solver.max_iterations == q.solver.max_iterations);
+  RC_ASSERT(p.solver.seed == q.solver.seed);
+  RC_ASSERT(p.truth.brdf == q.truth.brdf);
+  RC_ASSERT(p.truth.illumination == q.truth.illumination);
+  RC_ASSERT(p.quality == q.quality && p.noise == q.noise);
+}
+
+using Kind = ConfigNode::Kind;
+
+std::string AnyWord() {
+  static const char kLetters[] = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  std::string word(1, kLetters[*rc::gen::inRange(0, 26)]);
+  const int length = *rc::gen::inRange(0, 8);
+  for (int i = 0; i < length; ++i) word += kLetters[*rc::gen::inRange(0, 37)];
+  // Not a null.
+  return word == "null" ? "none" : word;
+}
+
+ConfigNode AnyTree(int depth) {
+  ConfigNode node;
+  node.kind = depth == 0 ? Kind::kScalar : AnyOf<Kind>(4);
+  const int children = *rc::gen::inRange(0, 4);
+  switch (node.kind) {
+    case Kind::kNull:
+      break;
+    case Kind::kScalar:
+      node.quoted = *rc::gen::arbitrary<bool>();
+      // The rest of what a path may hold, in quotes alone.
+      node.scalar = node.quoted ? AnyPath() : AnyWord();
+      break;
+    case Kind::kList:
+      for (int i = 0; i < children; ++i) {
+        node.items.push_back(AnyTree(depth - 1));
+      }
+      break;
+    case Kind::kMap: {
+      std::set<std::string> keys;
+      for (int i = 0; i < children; ++i) {
+        const std::string key = AnyWord();
+        if (!keys.insert(key).second) continue;
+        node.entries.emplace_back(key, AnyTree(depth - 1));
+      }
+      break;
+    }
+  }
+  return node;
+}
+
+// In YAML's flow style.
+std::string FlowText(const ConfigNode& node) {
+  switch (node.kind) {
+    case Kind::kNull:
+      return "~";
+    case Kind::kScalar:
+      return node.quoted ? nlohmann::json(node.scalar).dump() : node.scalar;
+    case Kind::kList: {
+      std::string text = "[";
+      for (size_t i = 0; i < node.items.size(); ++i) {
+        text += (i > 0 ? ", " : "") + FlowText(node.items[i]);
+      }
+      return text + "]";
+    }
+    case Kind::kMap:
+      break;
+  }
+  std::string text = "{";
+  for (size_t i = 0; i < node.entries.size(); ++i) {
+    text += (i > 0 ? ", " : "") + node.entries[i].first + ": " +
+            FlowText(node.entries[i].second);
+  }
+  return text + "}";
+}
+
+// In block style, an entry a line; children that would be empty stay in flow.
+std::string BlockText(const ConfigNode& node, int indent) {
+  const std::string margin(static_cast<size_t>(indent), ' ');
+  const auto below = [indent](const ConfigNode& child) {
+    return child.items.empty() && child.entries.empty()
+               ? " " + FlowText(child) + "\n"
+               : "\n" + BlockText(child, indent + 2);
+  };
+  std::string text;
+  for (const ConfigNode& item : node.items) text += margin + "-" + below(item);
+  for (const auto& [key, value] : node.entries) {
+    text += margin + key + ":" + below(value);
+  }
+  return text.empty() ? FlowText(node) : text;
+}
+
+void AssertSame(const ConfigNode& a, const ConfigNode& b) {
+  RC_ASSERT(a.kind == b.kind);
+  RC_ASSERT(a.scalar == b.scalar && a.quoted == b.quoted);
+  RC_ASSERT(a.items.size() == b.items.size());
+  RC_ASSERT(a.entries.size() == b.entries.size());
+  for (size_t i = 0; i < a.items.size(); ++i) {
+    AssertSame(a.items[i], b.items[i]);
+  }
+  for (size_t i = 0; i < a.entries.size(); ++i) {
+    RC_ASSERT(a.entries[i].first == b.entries[i].first);
+    AssertSame(a.entries[i].second, b.entries[i].second);
+  }
+}
+
+RC_GTEST_PROP(ConfigTreeProperty, EitherStyleReadsBack, ()) {
+  const ConfigNode tree = AnyTree(3);
+  for (const std::string& text : {FlowText(tree), BlockText(tree, 0)}) {
+    const StatusOr<ConfigNode> back = ParseConfig("c.yaml", text);
+    if (!back.ok()) RC_FAIL(back.status().message());
+    AssertSame(tree, *back);
+  }
+}
+
+// Sets every leaf by its path; a null would remove its key.
+void OverrideLeaves(const ConfigNode& node, const std::string& path,
+                    ConfigNode* root, ConfigNode* expected) {
+  if (node.kind == Kind::kMap && !node.entries.empty()) {
+    for (const auto& [key, value] : node.entries) {
+      if (value.kind == Kind::kNull) continue;
+      ConfigNode child;
+      OverrideLeaves(value, path.empty() ? key : path + "." + key, root,
+                     &child);
+      if (child.kind != Kind::kNull) {
+        expected->kind = Kind::kMap;
+        expected->entries.emplace_back(key, child);
+      }
+    }
+    return;
+  }
+  *expected = node;
+  const Status set = ApplyOverride(path + "=" + FlowText(node), root);
+  if (!set.ok()) RC_FAIL(set.message());
+}
+
+RC_GTEST_PROP(ConfigTreeProperty, OverridesOfEveryLeafMakeTheTree, ()) {
+  ConfigNode tree;
+  tree.kind = Kind::kMap;
+  tree.entries = {{"a", AnyTree(3)}, {"b", AnyTree(3)}};
+  ConfigNode made, expected;
+  made.kind = expected.kind = Kind::kMap;
+  OverrideLeaves(tree, "", &made, &expected);
+  AssertSame(expected, made);
+  // Again: nothing changes.
+  ConfigNode ignored;
+  OverrideLeaves(tree, "", &made, &ignored);
+  AssertSame(expected, made);
+}
+
+}  // namespace
+}  // namespace ibrdf
