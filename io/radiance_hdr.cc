@@ -193,15 +193,16 @@ class ScanlineReader {
   size_t position_;
 };
 
+// Negative values and NaN become 0. Not by fmax, which keeps a signalling NaN.
+float Held(float value) { return value > 0.0f ? value : 0.0f; }
+
 uint8_t Mantissa(float value, double scale) {
-  // fmax maps NaN to 0.
   return static_cast<uint8_t>(
-      std::min(std::floor(std::fmax(value, 0.0f) * scale + 0.5), 255.0));
+      std::min(std::floor(Held(value) * scale + 0.5), 255.0));
 }
 
 Rgbe ToRgbe(const float* rgb) {
-  const float largest =
-      std::fmax(std::fmax(rgb[0], 0.0f), std::fmax(rgb[1], rgb[2]));
+  const float largest = std::max({Held(rgb[0]), Held(rgb[1]), Held(rgb[2])});
   if (largest <= 0.0f) return {0, 0, 0, 0};
   int exponent = 128;
   if (std::isfinite(largest)) {

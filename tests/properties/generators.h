@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <sstream>
 #include <string>
@@ -53,12 +54,32 @@ inline rc::Gen<double> Magnitude(double low, double high) {
                       [](double x) { return std::exp(x); });
 }
 
-// Any bits: negative zero, denormals, infinities, not numbers.
+// Any of [0, count), of small cases too (inRange alone begins at 0).
+inline rc::Gen<int> Choice(int count) {
+  return rc::gen::resize(rc::kNominalSize, rc::gen::inRange(0, count));
+}
+
+// Any bits: negative zero, denormals, infinities, not numbers; the ends of
+// what float and half hold among them.
 inline std::vector<float> AnyFloats(size_t count) {
-  const auto bits = *rc::gen::container<std::vector<uint32_t>>(
-      count, rc::gen::arbitrary<uint32_t>());
+  using Limits = std::numeric_limits<float>;
+  const float ends[] = {0.0f,
+                        -0.0f,
+                        Limits::denorm_min(),
+                        Limits::min(),
+                        Limits::max(),
+                        Limits::infinity(),
+                        Limits::quiet_NaN(),
+                        std::ldexp(1.0f, -25),
+                        65504.0f,
+                        65520.0f};
+  std::mt19937_64 rng(*rc::gen::arbitrary<uint64_t>());
   std::vector<float> values(count);
-  if (count > 0) std::memcpy(values.data(), bits.data(), 4 * count);
+  for (float& v : values) {
+    const auto bits = static_cast<uint32_t>(rng());
+    std::memcpy(&v, &bits, 4);
+    if (rng() % 8 == 0) v = ends[rng() % 10] * (rng() % 2 == 0 ? 1.0f : -1.0f);
+  }
   return values;
 }
 

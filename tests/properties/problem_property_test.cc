@@ -24,7 +24,7 @@ double AnyNumber(double low, double high) {
   for (const double x : candidates) {
     if (x >= low && x <= high) inside.push_back(x);
   }
-  return inside[*rc::gen::inRange(size_t{0}, inside.size())];
+  return inside[*Choice(static_cast<int>(inside.size()))];
 }
 
 constexpr double kMost = std::numeric_limits<double>::max();
@@ -50,13 +50,13 @@ std::string AnyPath() {
                          "\\u0041", "\r\n", "~", "null", "- ")));
   std::string path = "/";
   for (const std::string& letter : letters) path += letter;
-  if (*rc::gen::inRange(0, 20) == 0) path += std::string(3000, 'x');
+  if (*Choice(20) == 0) path += std::string(3000, 'x');
   return path;
 }
 
 template <typename Enum>
 Enum AnyOf(int count) {
-  return static_cast<Enum>(*rc::gen::inRange(0, count));
+  return static_cast<Enum>(*Choice(count));
 }
 
 Camera AnyCamera() {
@@ -102,7 +102,7 @@ SkyOptions AnySky() {
 // default.
 Problem AnyProblem() {
   Problem p;
-  const bool rendered = *rc::gen::inRange(0, 4) == 0;
+  const bool rendered = *Choice(4) == 0;
   if (rendered) {
     p.image.width = *rc::gen::inRange(1, 8000);
     p.image.height = *rc::gen::inRange(1, 8000);
@@ -251,9 +251,9 @@ using Kind = ConfigNode::Kind;
 
 std::string AnyWord() {
   static const char kLetters[] = "abcdefghijklmnopqrstuvwxyz0123456789_";
-  std::string word(1, kLetters[*rc::gen::inRange(0, 26)]);
+  std::string word(1, kLetters[*Choice(26)]);
   const int length = *rc::gen::inRange(0, 8);
-  for (int i = 0; i < length; ++i) word += kLetters[*rc::gen::inRange(0, 37)];
+  for (int i = 0; i < length; ++i) word += kLetters[*Choice(37)];
   // Not a null.
   return word == "null" ? "none" : word;
 }
@@ -261,7 +261,7 @@ std::string AnyWord() {
 ConfigNode AnyTree(int depth) {
   ConfigNode node;
   node.kind = depth == 0 ? Kind::kScalar : AnyOf<Kind>(4);
-  const int children = *rc::gen::inRange(0, 4);
+  const int children = *Choice(4);
   switch (node.kind) {
     case Kind::kNull:
       break;
