@@ -87,13 +87,17 @@ BrdfGridTaps GridTaps(const BrdfGridShape& shape, const Eigen::Vector3d& x) {
 BrdfGrid BrdfGrid::FromFunction(const BrdfFunction& brdf,
                                 const BrdfGridShape& shape) {
   CHECK(shape.h >= 2 && shape.d >= 2 && shape.p >= 1);
+  // A lobe grows as 1 / cos^2(theta_d) and has no value at 90 degrees: there
+  // the last bin centre's stands for it, as in FromMerl.
+  const double last_theta_d = MerlThetaD(kMerlThetaD - 1);
   BrdfGrid grid(shape);
   ParallelFor(shape.h, 0, [&](int64_t ih, int) {
     const int per_h = shape.d * shape.p;
     for (int k = 0; k < per_h; ++k) {
       const int node = static_cast<int>(ih) * per_h + k;
       const Eigen::Vector3d angles = shape.NodeAngles(node);
-      const Eigen::Array3d f = brdf(angles[0], angles[1], angles[2]);
+      const Eigen::Array3d f =
+          brdf(angles[0], std::min(angles[1], last_theta_d), angles[2]);
       for (int c = 0; c < 3; ++c) {
         grid.Channel(c)[node] = static_cast<float>(f[c]);
       }

@@ -64,7 +64,8 @@ struct BrdfGrid {
     return values.data() + static_cast<size_t>(c) * shape.num_nodes();
   }
 
-  // Samples at the nodes.
+  // Samples at the nodes; those at theta_d = 90 degrees at 89.5, as MERL tables
+  // end there.
   static BrdfGrid FromFunction(const BrdfFunction& brdf,
                                const BrdfGridShape& shape);
   // By InterpolateMerl; a node whose bins are all invalid takes the value at
