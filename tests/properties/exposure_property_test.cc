@@ -104,8 +104,8 @@ double LogDifference(const Values& a, const Values& b, double s) {
 
 // A factor that is no power of two rounds the image, 6e-8 a pixel, which
 // decides now and then whether a step is taken or conjugate gradients end:
-// measured 1e-5 as a rule and at most 9e-3, in nats, over 100 problems. A unit
-// that is lost shows as log s, some nats.
+// measured 1e-5 to 4e-4 as a rule and at most 9e-3, in nats, over some hundred
+// solves of like problems. A unit that is lost shows as log s, some nats.
 constexpr double kPassedOn = 0.03;
 
 void AssertScaled(const Estimate& one, const Estimate& scaled, double s) {
