@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxJsonBytes = size_t{1} << 28;
+constexpr int kBadInput = 2;  // exit status
 
 std::string DescribeEnd(const ChildResult& child) {
   if (child.signal != 0) return "signal_" + std::to_string(child.signal);
@@ -28,7 +29,7 @@ std::string DescribeEnd(const ChildResult& child) {
       return "ok";
     case 1:
       return "internal_error";
-    case 2:
+    case kBadInput:
       return "bad_input";
     case 3:
       return "no_improvement";
@@ -63,6 +64,35 @@ bool ReadMetrics(const std::string& path,
   return true;
 }
 
+// The last line of a solver's log without "error: "; empty where it is empty.
+std::string LastWords(const std::string& log) {
+  const StatusOr<std::string> text = ReadFile(log, kMaxJsonBytes);
+  if (!text.ok()) return "";
+  const size_t last = text->find_last_not_of('\n');
+  if (last == std::string::npos) return "";
+  const size_t before = text->rfind('\n', last);
+  const size_t begin = before == std::string::npos ? 0 : before + 1;
+  const std::string line = text->substr(begin, last + 1 - begin);
+  const std::string mark = "error: ";
+  return line.compare(0, mark.size(), mark) == 0 ? line.substr(mark.size())
+                                                 : line;
+}
+
+// Whether "PATH: what" is no property of the case: PATH was there when the
+// sweep began and is gone, or it lies in `folder` and could not be written.
+bool FromOutside(const std::string& message, const fs::path& folder) {
+  const std::string path = message.substr(0, message.find(": "));
+  if (path.empty() || path[0] != '/') return false;
+  std::error_code error;
+  return !fs::exists(path, error) || path.rfind(folder.string() + "/", 0) == 0;
+}
+
+Status WithoutRow(const SolverRun& run, const std::string& message) {
+  return Status(StatusCode::kInvalidInput,
+                message + "; " + run.of.name + " " + run.estimate +
+                    " has no row, the same command goes on there");
+}
+
 Status RunOne(const SolverSweepOptions& options, const SolverSweep& sweep,
               const SolverRun& run, const std::string& results) {
   const fs::path folder = CaseFolder(options, run.of);
@@ -75,14 +105,21 @@ Status RunOne(const SolverSweepOptions& options, const SolverSweep& sweep,
   const std::string problem = (folder / run.problem_name).string();
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(problem, run.problem));
 
+  const std::string log = (estimate / "solver.log").string();
   const StatusOr<ChildResult> child = RunChild(
       {options.solver_program, "--problem", problem, "--out", estimate.string(),
        "--threads", std::to_string(options.num_threads), "--seed",
        std::to_string(options.seed), "--quiet"},
-      (estimate / "solver.log").string(), options.stop);
+      log, options.stop);
   if (!child.ok()) return child.status();
   if (child->exit_code == 130 || options.stopped()) {
     return Status(StatusCode::kInterrupted, run.of.name + ": interrupted");
+  }
+  if (child->signal == 0 && child->exit_code == kBadInput) {
+    // Who refuses says why: an empty log is one that had no room on the disk.
+    const std::string words = LastWords(log);
+    if (words.empty()) return WithoutRow(run, log + ": cannot be written");
+    if (FromOutside(words, estimate)) return WithoutRow(run, words);
   }
   NamedRow row = run.row;
   row.Set("seconds", NumberCell(child->seconds));
@@ -98,8 +135,12 @@ Status RunOne(const SolverSweepOptions& options, const SolverSweep& sweep,
   row.Set("status", status);
   if (sweep.finish) {
     const Status finished = sweep.finish(run, folder.string(), solved, &row);
-    if (!finished.ok())
+    if (!finished.ok()) {
+      if (FromOutside(finished.message(), folder)) {
+        return WithoutRow(run, finished.message());
+      }
       LOG(WARNING) << run.of.name << ": " << finished.message();
+    }
   }
   return AppendResult(results, *sweep.columns, row.cells());
 }

@@ -34,7 +34,8 @@ struct SolverSweep {
   int key_columns = 0;  // the first ones, which name a run
   std::vector<SolverRun> runs;
   // Fills further cells of the row once the solver has ended; `solved`: it left
-  // an estimate. What it fails with is logged. May be empty.
+  // an estimate. What it fails with is logged, unless a file that is gone or
+  // could not be written is the cause. May be empty.
   std::function<Status(const SolverRun& run, const std::string& folder,
                        bool solved, NamedRow* row)>
       finish;
@@ -63,6 +64,8 @@ Status SetConstantMap(const Image& truth, NamedRow* row);
 // peak_mb, status and those metrics of result.json that are columns. Then
 // writes out/results.md. A solver that fails gets a row whose `status` says
 // how; one that was interrupted gets none and ends the sweep (kInterrupted).
+// So does one that misses a file which has gone since the sweep began, or that
+// cannot write its results (kInvalidInput): the next call runs it again.
 Status RunSolverSweep(const SolverSweepOptions& options,
                       const SolverSweep& sweep);
 

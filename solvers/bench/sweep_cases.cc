@@ -77,6 +77,12 @@ StatusOr<std::vector<SweepCase>> ListSweepCases(const SweepOptions& options) {
     if (!all.ok()) return all.status();
     map_names = *std::move(all);
   }
+  if (materials.empty()) {
+    return InvalidInput(options.data, "expected .binary tables, found none");
+  }
+  if (map_names.empty()) {
+    return InvalidInput(options.maps, "expected .hdr or .exr maps, found none");
+  }
   std::vector<SweepCase> cases;
   int index = 0;
   for (const std::string& material : materials) {

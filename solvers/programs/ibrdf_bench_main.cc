@@ -1,4 +1,6 @@
 // The scripted sweeps of experiments/.
+#include <glog/logging.h>
+
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
@@ -31,6 +33,9 @@ Status CheckExperiment(const CLI::App& app) {
 }
 
 int Main(int argc, char** argv) {
+  google::InitGoogleLogging(argv[0]);
+  FLAGS_logtostderr = true;
+  FLAGS_minloglevel = google::GLOG_WARNING;
   CLI::App app("Runs a sweep of cases; see ibrdf_bench EXPERIMENT --help.");
   BenchSession session;
   AddCommonFlags(&app, &session.common);

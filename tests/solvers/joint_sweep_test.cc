@@ -75,6 +75,42 @@ TEST_F(JointSweepTest, FailuresGoToStatusAndInterruptsEndTheSweep) {
   EXPECT_EQ(2u, Rows().size());
 }
 
+// Faults of the machine, not of the case: no row, so that the same command
+// runs it again.
+TEST_F(JointSweepTest, FilesThatGoOrCannotBeWrittenEndTheSweep) {
+  options_.map_names = {"a", "b"};
+  const std::string map = dir_.File("maps/b.exr");
+  const std::string gone = "rm -f '" + map + "'; ";
+  const auto expect_stopped = [&](const std::string& words, size_t rows) {
+    const Status status = Run();
+    EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+    for (const std::string& word : {words, std::string("has no row")}) {
+      EXPECT_NE(std::string::npos, status.message().find(word))
+          << status.message();
+    }
+    EXPECT_EQ(rows, Rows().size());
+  };
+  const std::string kept = ReadBytes(map);
+  // Between the cases: the first one's row stays.
+  WriteSolver("{\"metrics\": {}}", 0,
+              "case $out in *paint_b*) " + gone + "echo 'error: " + map +
+                  ": cannot open'; exit 2;; esac");
+  expect_stopped(map, 1);
+  WriteBytes(map, kept);
+  // After the solve, before the baselines.
+  WriteSolver("{\"metrics\": {}}", 0, gone);
+  expect_stopped(map, 1);
+  WriteBytes(map, kept);
+  WriteSolver("{}", 2, "echo \"error: $out/brdf.binary: cannot write\"");
+  expect_stopped("brdf.binary", 1);
+  WriteSolver("{}", 2, "");  // not even the log
+  expect_stopped("solver.log", 1);
+  WriteSolver("{\"metrics\": {}}", 0);
+  ASSERT_TRUE(Run().ok());
+  ASSERT_EQ(2u, Rows().size());
+  EXPECT_EQ("ok", Cell(Rows()[1], "status"));
+}
+
 TEST_F(JointSweepTest, ListsCases) {
   EXPECT_EQ(3u, JointSweep(options_).value().runs.size());
   options_.only_index = 2;
@@ -94,6 +130,8 @@ TEST_F(JointSweepTest, MalformedFoldersAreNamed) {
   options_.maps = dir_.File("nowhere");
   options_.map_names = {};
   EXPECT_NE(std::string::npos, Run().message().find("nowhere"));
+  options_.maps = dir_.File("data");  // holds none
+  EXPECT_NE(std::string::npos, Run().message().find(options_.maps));
   options_.maps = dir_.File("maps");
   options_.solver_program = dir_.File("none");
   EXPECT_EQ(StatusCode::kInvalidInput, Run().code());

@@ -37,8 +37,10 @@ class SweepTest : public ::testing::Test {
   }
 
   // Counts its calls in DIR/calls, writes result.json and DIR/estimate.exr,
-  // where that is, as illumination.exr, and exits with `exit_code`.
-  void WriteSolver(const std::string& json, int exit_code) {
+  // where that is, as illumination.exr, runs `command`, and exits with
+  // `exit_code`.
+  void WriteSolver(const std::string& json, int exit_code,
+                   const std::string& command = "echo 'error: of the case'") {
     WriteBytes(
         dir_.File("solver"),
         "#!/bin/sh\n"
@@ -52,7 +54,9 @@ class SweepTest : public ::testing::Test {
             "' \"$out/illumination.exr\"\n"
             "echo '" +
             json +
-            "' > \"$out/result.json\"\n"
+            "' > \"$out/result.json\"\n" +
+            command +
+            "\n"
             "exit " +
             std::to_string(exit_code) + "\n");
     std::filesystem::permissions(dir_.File("solver"),
