@@ -194,6 +194,24 @@ const char* StatusName(const Status& status) {
   }
 }
 
+// Removes what an earlier run left in the folder and this one does not write,
+// but no file that the problem names.
+void RemoveEarlier(const Problem& problem, const std::string& folder,
+                   const std::vector<std::string>& names) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  for (const std::string& name : names) {
+    const fs::path path = fs::path(folder) / name;
+    bool named = false;
+    for (const std::string& input :
+         {problem.reflectance.known_file, problem.illumination.known_file,
+          problem.truth.brdf, problem.truth.illumination}) {
+      named = named || (!input.empty() && fs::equivalent(path, input, ignored));
+    }
+    if (!named) fs::remove(path, ignored);
+  }
+}
+
 // log E - log I with the likelihood's epsilon; 0 outside and where the pixel
 // took no part: other programs sum over the file.
 Image Residual(const InverseProblem& inverse, const Estimate& estimate) {
@@ -246,11 +264,16 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
   IBRDF_RETURN_IF_ERROR(AddMetrics(inverse, estimate, truth, &metrics));
 
   const auto path = [&](const char* name) { return folder + "/" + name; };
-  // Of an earlier run, these would speak for what a run that is cut off leaves.
-  for (const char* name : {"result.json", "report.html"}) {
-    std::error_code ignored;
-    std::filesystem::remove(path(name), ignored);
+  // Of an earlier run, these would speak for what a run that is cut off leaves,
+  // and the others be taken for results of this one.
+  std::vector<std::string> earlier = {"result.json", "report.html", "brdf.png"};
+  if (estimate.brdf.raw.empty()) {
+    earlier.insert(earlier.end(), {"brdf.binary", "brdf.json"});
   }
+  if (estimate.map_std.rgb.empty()) {
+    earlier.emplace_back("illumination_log_std.exr");
+  }
+  RemoveEarlier(problem, folder, earlier);
   Json brdf;
   if (!estimate.brdf.raw.empty()) {
     IBRDF_RETURN_IF_ERROR(WriteMerl(estimate.brdf, path("brdf.binary")));

@@ -238,11 +238,24 @@ TEST_F(SolveProblemTest, ResultsOfAKnownReflectanceHoldNoBrdf) {
   const StatusOr<Estimate> e = SolveInverseRendering(inverse, nullptr, nullptr);
   ASSERT_TRUE(e.ok()) << e.status().message();
   const std::string out = dir_.File("out");
+  std::filesystem::create_directories(out);
+  for (const char* name :
+       {"brdf.binary", "brdf.json", "illumination_log_std.exr", "notes.txt"}) {
+    WriteBytes(out + "/" + name, "of an earlier run");
+  }
   ASSERT_TRUE(
       WriteResults(problem_, inverse, TheTruth(), *e, out, nullptr).ok());
   EXPECT_TRUE(std::filesystem::exists(out + "/result.json"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/notes.txt"));
   EXPECT_FALSE(std::filesystem::exists(out + "/brdf.binary"));
   EXPECT_FALSE(std::filesystem::exists(out + "/brdf.json"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/illumination_log_std.exr"));
+  // What the problem names is the user's.
+  WriteBytes(out + "/brdf.binary", "the known table");
+  problem_.reflectance.known_file = out + "/brdf.binary";
+  ASSERT_TRUE(
+      WriteResults(problem_, inverse, TheTruth(), *e, out, nullptr).ok());
+  EXPECT_TRUE(std::filesystem::exists(out + "/brdf.binary"));
 }
 
 // What speaks for a folder is not there before all that it speaks of.
