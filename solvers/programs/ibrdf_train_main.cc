@@ -1,10 +1,13 @@
 // The trainer of the flow and its embedding.
+#include <glog/logging.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <numeric>
 #include <sstream>
 #include <string>
@@ -12,6 +15,7 @@
 
 #include "io/model_file.h"
 #include "solvers/programs/common_flags.h"
+#include "solvers/solve_problem.h"
 #include "solvers/trainer/analytic_materials.h"
 #include "solvers/trainer/flow_trainer.h"
 #include "solvers/trainer/material_lobes.h"
@@ -62,7 +66,13 @@ Status FitLobes(const CommonFlags& common, NeuralBrdfModel* model) {
                 model->num_materials());
     std::fflush(stdout);
   }
-  return FitMaterialLobes(kFitLobes, common.threads, model);
+  return FitMaterialLobes(kFitLobes, common.threads, &stop_requested, model);
+}
+
+// Before hours are spent.
+Status PrepareFolderOf(const std::string& file) {
+  const std::string folder = std::filesystem::path(file).parent_path();
+  return PrepareFolder(folder.empty() ? "." : folder);
 }
 
 Status Refit(const TrainFlags& flags, const CommonFlags& common) {
@@ -71,6 +81,7 @@ Status Refit(const TrainFlags& flags, const CommonFlags& common) {
   if (model->num_materials() == 0) {
     return InvalidInput(flags.refit, "expected the codes of a material");
   }
+  IBRDF_RETURN_IF_ERROR(PrepareFolderOf(flags.out));
   IBRDF_RETURN_IF_ERROR(FitLobes(common, &*model));
   return WriteModel(*model, flags.out);
 }
@@ -92,6 +103,7 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
     return InvalidInput("command line: --points-per-column",
                         "expected a multiple of 4");
   }
+  IBRDF_RETURN_IF_ERROR(PrepareFolderOf(flags.out));
   StatusOr<TrainingData> all = ReadTrainingData(
       flags.data, SplitByComma(flags.leave_out), flags.columns, common.seed);
   if (!all.ok()) return all.status();
@@ -162,6 +174,9 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
 }
 
 int Main(int argc, char** argv) {
+  google::InitGoogleLogging(argv[0]);
+  FLAGS_logtostderr = true;
+  FLAGS_minloglevel = google::GLOG_WARNING;
   CLI::App app(
       "Trains the invertible BRDF and its embedding on a folder of MERL "
       ".binary tables. Stops at SIGINT with a checkpoint beside --out, from "
@@ -239,6 +254,10 @@ int Main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--report-seconds", options.report_seconds,
                  "seconds between progress lines")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--checkpoint-seconds", options.checkpoint_seconds,
+                 "seconds between checkpoints")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   return RunProgram(&app, argc, argv,

@@ -23,7 +23,8 @@ float Peakedness(const BrdfFlow& flow, const double* code, int size) {
 
 }  // namespace
 
-Status FitMaterialLobes(int lobes, int num_threads, NeuralBrdfModel* model) {
+Status FitMaterialLobes(int lobes, int num_threads,
+                        const std::atomic<bool>* stop, NeuralBrdfModel* model) {
   const int size = model->shape.code_size(), lobe_size = size + 3;
   const int materials = model->num_materials();
   const LobeTableFitter fitter(*model);
@@ -37,6 +38,11 @@ Status FitMaterialLobes(int lobes, int num_threads, NeuralBrdfModel* model) {
   std::vector<std::vector<double>> fits(materials);
   std::vector<Status> failures(materials);
   ParallelFor(materials, num_threads, [&](int64_t m, int) {
+    if (stop != nullptr && *stop) {
+      failures[m] = Status(StatusCode::kInterrupted,
+                           "stopped while lobes were fitted to materials");
+      return;
+    }
     const std::vector<double> channels =
         MaterialLobes(*model, 3 * static_cast<int>(m));
     const StatusOr<LobeTableFit> fit =
@@ -60,6 +66,7 @@ Status FitMaterialLobes(int lobes, int num_threads, NeuralBrdfModel* model) {
   });
   for (int m = 0; m < materials; ++m) {
     if (failures[m].ok()) continue;
+    if (failures[m].code() == StatusCode::kInterrupted) return failures[m];
     return InvalidInput(model->names[static_cast<size_t>(3) * m],
                         failures[m].message());
   }
