@@ -53,9 +53,7 @@ class SweepTest : public ::testing::Test {
             dir_.File("estimate.exr") +
             "' \"$out/illumination.exr\"\n"
             "echo '" +
-            json +
-            "' > \"$out/result.json\"\n" +
-            command +
+            json + "' > \"$out/result.json\"\n" + command +
             "\n"
             "exit " +
             std::to_string(exit_code) + "\n");
