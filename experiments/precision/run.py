@@ -18,12 +18,12 @@ import tempfile
 import time
 
 # What two levels of the same problem may differ by (README.md): log-RMSE of the reflectance below 80 degrees and of all
-# its bins; of the map, relative to its range; cost and misfit relative. Nothing is promised of joint solves: which of
-# several almost equal ends wins may hang on a rounding.
+# its bins; of the map, relative to its range; cost and misfit relative. Of joint solves this is of the scene here: elsewhere
+# a rounding may decide which of several almost equal ends wins.
 BOUNDS = {
     "reflectance": {"brdf_below80": 5e-4, "brdf": 5e-4, "cost": 1e-4, "misfit": 1e-4},
-    "illumination": {"map": 5e-3, "cost": 3e-2, "misfit": 2e-2},
-    "joint": {"brdf_below80": None, "brdf": None, "map": None, "cost": None, "misfit": None},
+    "illumination": {"map": 5e-3, "cost": 2e-2, "misfit": 2e-2},
+    "joint": {"brdf_below80": 2e-2, "brdf": 2e-2, "map": 1e-2, "cost": 6e-2, "misfit": 2e-2},
 }
 ROUNDS = 100  # more than any needs: solves end where they converge
 LEVELS = ("double", "portable", "avx2", "avx512")  # the first is what others are compared with
@@ -169,7 +169,7 @@ class Study:
                     self.compare(pair, first[b])
                     for name, bound in BOUNDS[problem].items():
                         found = pair[name + "_relative" if name in ("cost", "misfit") else name]
-                        if bound is not None and not found <= bound:
+                        if not found <= bound:
                             self.fail(f"{problem}: {name} of {a} and {b} differs by {found:.2g}, bound {bound:.2g}")
 
 

@@ -265,7 +265,8 @@ TEST(Interreflection, GlossyObjectsInConstantLightStayDarkerThanIt) {
     brdf.roughness = Eigen::Array3d::Constant(roughness);
     brdf.f0 = 0.3;
     const BrdfGrid grid = BrdfGrid::FromFunction(brdf.Function(), options.grid);
-    for (const double e : transport.Emitted(grid, map.rgb.data()).back()) {
+    const auto emitted = transport.Emitted(grid, map.rgb.data());
+    for (const double e : emitted.back()) {
       EXPECT_GT(e, 0.0);
       EXPECT_LT(e, 1.0) << roughness;
     }
