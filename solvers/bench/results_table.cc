@@ -19,14 +19,15 @@ namespace {
 
 constexpr size_t kMaxBytes = size_t{1} << 28;
 
-std::string Line(const ResultsRow& cells) {
+std::string Joined(const ResultsRow& cells) {
   std::string line;
   for (size_t i = 0; i < cells.size(); ++i) {
     CHECK_EQ(cells[i].find_first_of(",\"\r\n"), std::string::npos) << cells[i];
     line += (i == 0 ? "" : ",") + cells[i];
   }
-  return line + "\n";
+  return line;
 }
+std::string Line(const ResultsRow& cells) { return Joined(cells) + "\n"; }
 
 ResultsRow Cells(const std::string& line) {
   ResultsRow cells(1);
@@ -77,19 +78,17 @@ bool HoldsCase(const std::vector<ResultsRow>& rows, const ResultsRow& key,
   });
 }
 
-StatusOr<std::vector<ResultsRow>> ReadResults(
-    const std::string& path, const std::vector<std::string>& columns) {
+StatusOr<std::vector<ResultsRow>> DecodeResults(
+    const std::string& path, const std::string& text,
+    const std::vector<std::string>& columns) {
   std::vector<ResultsRow> rows;
-  if (!std::filesystem::exists(path)) return rows;
-  const StatusOr<std::string> text = ReadFile(path, kMaxBytes);
-  if (!text.ok()) return text.status();
   size_t begin = 0;
-  for (size_t end; (end = text->find('\n', begin)) != std::string::npos;
+  for (size_t end; (end = text.find('\n', begin)) != std::string::npos;
        begin = end + 1) {
-    rows.push_back(Cells(text->substr(begin, end - begin)));
+    rows.push_back(Cells(text.substr(begin, end - begin)));
     if (rows.size() == 1 && rows[0] != columns) {
       return InvalidInput(path + ": line 1",
-                          "expected the columns " + Line(columns));
+                          "expected the columns " + Joined(columns));
     }
     if (rows.back().size() != columns.size()) {
       return InvalidInput(path + ": line " + std::to_string(rows.size()),
@@ -100,6 +99,14 @@ StatusOr<std::vector<ResultsRow>> ReadResults(
   }
   if (!rows.empty()) rows.erase(rows.begin());
   return rows;
+}
+
+StatusOr<std::vector<ResultsRow>> ReadResults(
+    const std::string& path, const std::vector<std::string>& columns) {
+  if (!std::filesystem::exists(path)) return std::vector<ResultsRow>();
+  const StatusOr<std::string> text = ReadFile(path, kMaxBytes);
+  if (!text.ok()) return text.status();
+  return DecodeResults(path, *text, columns);
 }
 
 Status AppendResult(const std::string& path,

@@ -32,8 +32,13 @@ class NamedRow {
 bool HoldsCase(const std::vector<ResultsRow>& rows, const ResultsRow& key,
                int num_key_columns);
 
-// Rows of a table; none where the file does not exist. A last line without its
-// end, cut by a kill, does not count. Fails on other columns; names the file.
+// Rows of a table, the text of the file `path`. A last line without its end,
+// cut by a kill, does not count. Fails on other columns; names the file.
+StatusOr<std::vector<ResultsRow>> DecodeResults(
+    const std::string& path, const std::string& text,
+    const std::vector<std::string>& columns);
+
+// None where the file does not exist.
 StatusOr<std::vector<ResultsRow>> ReadResults(
     const std::string& path, const std::vector<std::string>& columns);
 

@@ -17,13 +17,12 @@ bool IsNumber(const nlohmann::json& line, const char* key) {
 
 }  // namespace
 
-StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json) {
-  const StatusOr<std::string> text = ReadFile(result_json, kMaxJsonBytes);
-  if (!text.ok()) return text.status();
-  const nlohmann::json json = nlohmann::json::parse(*text, nullptr, false);
+StatusOr<std::vector<TraceLine>> DecodeTrace(const std::string& path,
+                                             const std::string& text) {
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("trace") ||
       !json["trace"].is_array() || json["trace"].empty()) {
-    return InvalidInput(result_json + ": trace", "expected a list of steps");
+    return InvalidInput(path + ": trace", "expected a list of steps");
   }
   std::vector<TraceLine> trace;
   for (const nlohmann::json& line : json["trace"]) {
@@ -31,7 +30,7 @@ StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json) {
         !line["stage"].is_string() || !IsNumber(line, "seconds") ||
         !IsNumber(line, "misfit") || !IsNumber(line, "scale")) {
       return InvalidInput(
-          result_json + ": trace[" + std::to_string(trace.size()) + "]",
+          path + ": trace[" + std::to_string(trace.size()) + "]",
           "expected stage, seconds, scale and misfit");
     }
     // The search for the reflectance knows no scale.
@@ -40,6 +39,12 @@ StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json) {
          line["misfit"].get<double>(), line["scale"].get<double>() > 0.0});
   }
   return trace;
+}
+
+StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json) {
+  const StatusOr<std::string> text = ReadFile(result_json, kMaxJsonBytes);
+  if (!text.ok()) return text.status();
+  return DecodeTrace(result_json, *text);
 }
 
 int CountRounds(const std::vector<TraceLine>& trace) {

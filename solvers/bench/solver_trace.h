@@ -17,7 +17,10 @@ struct TraceLine {
   bool has_map = false;
 };
 
-// Fails, naming the file, on one that holds no whole trace.
+// Of the text of the file `path`. Fails, naming the file, on one that holds no
+// whole trace.
+StatusOr<std::vector<TraceLine>> DecodeTrace(const std::string& path,
+                                             const std::string& text);
 StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json);
 
 // Steps of the optimiser of the map, or of both unknowns, that lowered the

@@ -81,15 +81,10 @@ Status SaveCheckpoint(const std::string& path, const std::string& identity,
   return WriteFileAtomically(path, bytes);
 }
 
-StatusOr<bool> LoadCheckpoint(const std::string& path,
-                              const std::string& identity,
-                              TrainingState* state) {
-  struct stat info = {};
-  if (::stat(path.c_str(), &info) != 0) return false;
-  const StatusOr<std::string> bytes = ReadFile(path, kMaxBytes);
-  if (!bytes.ok()) return bytes.status();
+Status DecodeCheckpoint(const std::string& path, const std::string& bytes,
+                        const std::string& identity, TrainingState* state) {
   const std::string head = kMagic + identity + "\n";
-  if (bytes->compare(0, head.size(), head) != 0) {
+  if (bytes.compare(0, head.size(), head) != 0) {
     return InvalidInput(path,
                         "checkpoint of another training (options or data "
                         "differ); remove it to start afresh");
@@ -100,29 +95,40 @@ StatusOr<bool> LoadCheckpoint(const std::string& path,
                           floats * sizeof(float) +
                           state->code_steps.size() * sizeof(int64_t) +
                           sizeof(uint64_t);
-  if (bytes->size() != expected) {
+  if (bytes.size() != expected) {
     return InvalidInput(path, "truncated checkpoint, expected " +
                                   std::to_string(expected) + " bytes");
   }
   uint64_t checksum = 0;
-  std::memcpy(&checksum, bytes->data() + expected - sizeof(checksum),
+  std::memcpy(&checksum, bytes.data() + expected - sizeof(checksum),
               sizeof(checksum));
-  if (checksum != Fnv1a(bytes->data(), expected - sizeof(checksum))) {
+  if (checksum != Fnv1a(bytes.data(), expected - sizeof(checksum))) {
     return InvalidInput(path + ": checksum",
                         "does not match, the file is damaged; remove it to "
                         "start afresh");
   }
-  std::memcpy(&state->step, bytes->data() + at, sizeof(state->step));
+  std::memcpy(&state->step, bytes.data() + at, sizeof(state->step));
   at += sizeof(state->step);
-  std::memcpy(&state->seconds, bytes->data() + at, sizeof(state->seconds));
+  std::memcpy(&state->seconds, bytes.data() + at, sizeof(state->seconds));
   at += sizeof(state->seconds);
-  Take(*bytes, &at, &state->weights);
-  Take(*bytes, &at, &state->codes);
-  Take(*bytes, &at, &state->weight_adam.mean);
-  Take(*bytes, &at, &state->weight_adam.square);
-  Take(*bytes, &at, &state->code_adam.mean);
-  Take(*bytes, &at, &state->code_adam.square);
-  Take(*bytes, &at, &state->code_steps);
+  Take(bytes, &at, &state->weights);
+  Take(bytes, &at, &state->codes);
+  Take(bytes, &at, &state->weight_adam.mean);
+  Take(bytes, &at, &state->weight_adam.square);
+  Take(bytes, &at, &state->code_adam.mean);
+  Take(bytes, &at, &state->code_adam.square);
+  Take(bytes, &at, &state->code_steps);
+  return OkStatus();
+}
+
+StatusOr<bool> LoadCheckpoint(const std::string& path,
+                              const std::string& identity,
+                              TrainingState* state) {
+  struct stat info = {};
+  if (::stat(path.c_str(), &info) != 0) return false;
+  const StatusOr<std::string> bytes = ReadFile(path, kMaxBytes);
+  if (!bytes.ok()) return bytes.status();
+  IBRDF_RETURN_IF_ERROR(DecodeCheckpoint(path, *bytes, identity, state));
   return true;
 }
 

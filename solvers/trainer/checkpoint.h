@@ -27,8 +27,13 @@ std::string DescribeTraining(const TrainerOptions& options,
 Status SaveCheckpoint(const std::string& path, const std::string& identity,
                       const TrainingState& state);
 
-// False if there is no file. The sizes of `state` say what is expected; a file
-// of another identity, truncated or damaged is refused.
+// Reads the bytes of the file `path`. The sizes of `state` say what is
+// expected; bytes of another identity, truncated or damaged are refused and
+// leave `state` as it was.
+Status DecodeCheckpoint(const std::string& path, const std::string& bytes,
+                        const std::string& identity, TrainingState* state);
+
+// False if there is no file.
 StatusOr<bool> LoadCheckpoint(const std::string& path,
                               const std::string& identity,
                               TrainingState* state);

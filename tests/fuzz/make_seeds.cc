@@ -17,6 +17,7 @@
 #include "io/exr.h"
 #include "io/model_file.h"
 #include "io/radiance_hdr.h"
+#include "solvers/bench/results_table.h"
 #include "tests/fuzz/parsers.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/tiny_model.h"
@@ -131,6 +132,23 @@ void WriteModels(const std::string& folder) {
   }
 }
 
+void WriteOwnFiles(const std::string& checkpoint, const std::string& results,
+                   const std::string& trace) {
+  const TempDir dir;
+  CHECK(SaveCheckpoint(dir.File("a"), kFuzzedTraining, FuzzedTrainingState())
+            .ok());
+  const std::string file = ReadBytes(dir.File("a"));
+  WriteBytes(checkpoint + "/whole", "\2" + file);
+  WriteBytes(checkpoint + "/sum", "\1" + file.substr(0, file.size() - 8));
+  CHECK(AppendResult(results + "/one.csv", FuzzedColumns(), {"a", "1.5", ""})
+            .ok());
+  WriteBytes(
+      trace + "/two.json",
+      "{\"trace\": [{\"stage\": \"rank\", \"seconds\": 0.5, \"scale\": 0, "
+      "\"misfit\": 1e-2}, {\"stage\": \"map round 1\", \"seconds\": 2, "
+      "\"scale\": 0.1, \"misfit\": 0.02}]}");
+}
+
 // All kinds of pixels, flat and interlaced. Errors end libpng's process.
 void WritePngs(const std::string& folder) {
   constexpr struct {
@@ -195,6 +213,7 @@ void WriteSeeds(const std::string& folder) {
     std::filesystem::create_directories(in(parser));
   }
   WriteExrs(in("exr"));
+  WriteOwnFiles(in("checkpoint"), in("results"), in("trace"));
   CHECK(WriteRadianceHdr(Gradient(3, 2), in("hdr") + "/flat.hdr").ok());
   CHECK(WriteRadianceHdr(Gradient(9, 2), in("hdr") + "/runs.hdr").ok());
   WriteBytes(in("hdr") + "/old.hdr",

@@ -15,6 +15,9 @@
 #include "io/png.h"
 #include "io/problem_file.h"
 #include "io/radiance_hdr.h"
+#include "solvers/bench/results_table.h"
+#include "solvers/bench/solver_trace.h"
+#include "solvers/trainer/checkpoint.h"
 #include "tests/support/png_crc.h"
 
 namespace ibrdf {
@@ -129,13 +132,49 @@ void FuzzProblem(const std::string& input) {
   }
 }
 
-void FuzzModel(const std::string& input) {
-  if (input.empty()) return;
+// After the first byte; where that is odd, with the checksum that fits.
+std::string WithChecksum(const std::string& input) {
   std::string bytes = input.substr(1);
   if (input[0] & 1) {
     const uint64_t checksum = Fnv1a(bytes.data(), bytes.size());
     bytes.append(reinterpret_cast<const char*>(&checksum), sizeof(checksum));
   }
+  return bytes;
+}
+
+void FuzzCheckpoint(const std::string& input) {
+  if (input.empty()) return;
+  TrainingState state = FuzzedTrainingState();
+  const Status status = DecodeCheckpoint("a.checkpoint", WithChecksum(input),
+                                         kFuzzedTraining, &state);
+  const TrainingState whole = FuzzedTrainingState();
+  CHECK_EQ(state.weights.size(), whole.weights.size());
+  CHECK_EQ(state.code_steps.size(), whole.code_steps.size());
+  if (status.ok()) return;
+  CheckError(status, "a.checkpoint");
+  CHECK(state.weights == whole.weights && state.step == whole.step);
+}
+
+void FuzzResults(const std::string& text) {
+  const std::vector<std::string>& columns = FuzzedColumns();
+  const auto rows = DecodeResults("a.csv", text, columns);
+  if (!rows.ok()) return CheckError(rows.status(), "a.csv");
+  for (const ResultsRow& row : *rows) CHECK_EQ(row.size(), columns.size());
+}
+
+void FuzzTrace(const std::string& text) {
+  const auto trace = DecodeTrace("result.json", text);
+  if (!trace.ok()) return CheckError(trace.status(), "result.json");
+  CHECK(!trace->empty());
+  for (const TraceLine& line : *trace) {
+    CHECK(std::isfinite(line.seconds) && std::isfinite(line.misfit));
+  }
+  CHECK_LE(CountRounds(*trace), static_cast<int>(trace->size()));
+}
+
+void FuzzModel(const std::string& input) {
+  if (input.empty()) return;
+  const std::string bytes = WithChecksum(input);
   const StatusOr<NeuralBrdfModel> model = DecodeModel("a.ibrdf", bytes);
   if (!model.ok()) return CheckError(model.status(), "a.ibrdf");
   CHECK_EQ(model->shape.Validate(), "");
@@ -158,11 +197,33 @@ const std::vector<Parser>& Parsers() {
       {"obj", [](const std::string& b) { FuzzMesh("a.obj", b); }},
       {"ply", [](const std::string& b) { FuzzMesh("a.ply", b); }},
       {"problem", FuzzProblem},
-      {"model", FuzzModel}};
+      {"model", FuzzModel},
+      {"checkpoint", FuzzCheckpoint},
+      {"results", FuzzResults},
+      {"trace", FuzzTrace}};
   return parsers;
 }
 
 }  // namespace
+
+const std::vector<std::string>& FuzzedColumns() {
+  static const std::vector<std::string> columns = {"case", "seconds", "error"};
+  return columns;
+}
+
+TrainingState FuzzedTrainingState() {
+  TrainingState state;
+  state.step = 7;
+  state.weights = {1.0f, 2.0f, 3.0f};
+  state.codes = {4.0f, 5.0f};
+  for (Adam* adam : {&state.weight_adam, &state.code_adam}) {
+    const size_t size = adam == &state.weight_adam ? 3 : 2;
+    adam->mean.assign(size, 0.5f);
+    adam->square.assign(size, 0.25f);
+  }
+  state.code_steps = {7};
+  return state;
+}
 
 const std::vector<std::string>& FuzzedParsers() {
   static const std::vector<std::string> names = [] {

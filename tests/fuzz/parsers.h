@@ -6,12 +6,23 @@
 #include <string>
 #include <vector>
 
+#include "solvers/trainer/checkpoint.h"
+
 namespace ibrdf {
 
 // Of the tables that the parser of `merl` takes here.
 inline constexpr std::array<int32_t, 3> kFuzzedMerlBins = {3, 2, 4};
 
-// Names of the parsers: exr, hdr, png, merl, obj, ply, problem, model.
+// Of the checkpoint that the parser of `checkpoint` expects.
+inline constexpr char kFuzzedTraining[] = "training";
+// Whole states are of its sizes.
+TrainingState FuzzedTrainingState();
+// The columns that the parser of `results` expects.
+const std::vector<std::string>& FuzzedColumns();
+
+// Names of the parsers: exr, hdr, png, merl, obj, ply, problem, model, and of
+// what programs leave for themselves: checkpoint (a training's), results (a
+// sweep's table), trace (in result.json).
 const std::vector<std::string>& FuzzedParsers();
 
 // Feeds `input` to the parser of that name as a file's bytes; dies (CHECK)
@@ -20,7 +31,8 @@ const std::vector<std::string>& FuzzedParsers();
 // names the file. How an input becomes a file:
 //   png      after the first byte; where that is odd, every chunk gets the
 //            checksum that fits it
-//   model    after the first byte; where that is odd, with the checksum that
+//   model, checkpoint
+//            after the first byte; where that is odd, with the checksum that
 //            fits it at the end
 //   problem  the text up to a byte 0xff, then overrides, split there
 //   others   the bytes as they are

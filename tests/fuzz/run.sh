@@ -15,11 +15,12 @@ amount=${1:?usage: tests/fuzz/run.sh SECONDSs|EXECUTIONS [PARSER...]}
 shift
 parsers=("$@")
 if [ ${#parsers[@]} -eq 0 ]; then
-  parsers=(hdr merl png ply model obj exr problem)
+  parsers=(checkpoint results trace hdr merl png ply model obj exr problem)
 fi
 # What the seeds take and more.
-declare -A max_len=([exr]=4096 [hdr]=1024 [merl]=1200 [model]=4096 [obj]=1024
-                    [ply]=1024 [png]=1024 [problem]=2048)
+declare -A max_len=([checkpoint]=256 [exr]=4096 [hdr]=1024 [merl]=1200 [model]=4096
+                    [obj]=1024 [ply]=1024 [png]=1024 [problem]=2048 [results]=512
+                    [trace]=1024)
 mkdir -p build/fuzz/findings
 [ -f "${table}" ] || echo "parser,executions,seconds,features,findings" > "${table}"
 # What is freed goes to the system soon: small inputs, large tables of libraries.

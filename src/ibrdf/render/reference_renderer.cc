@@ -13,7 +13,6 @@
 
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 // A block with this many times the mean power of a block, and a texel this many
 // times brighter than its mean, is split into texels.
