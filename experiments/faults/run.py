@@ -32,6 +32,11 @@ def words_of(known):
     return parse
 
 
+def table(rows):
+    return "| fault | times | end |\n|---|---|---|\n" + "".join(
+        "| " + " | ".join(str(c) for c in row) + " |\n" for row in rows)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/release/bin"))
@@ -46,22 +51,21 @@ def main():
     parser.add_argument("--only", type=words_of(ALL), default=ALL, help="parts: " + ",".join(ALL))
     args = parser.parse_args()
     args.bin = args.bin.absolute()
-    table, failed = "", False
+    rows, failed = [], False
     for study, parts in PARTS.items():
         chosen = [part for part in parts if part in args.only]
         if not chosen:
             continue
-        faults = study(args)
+        faults = study(args, rows)
         try:
             for part in chosen:
                 getattr(faults, part)()
+                if args.table is not None:
+                    args.table.write_text(table(rows))
         finally:
             faults.close()
-        table += faults.table() if not table else "".join(faults.table().splitlines(keepends=True)[2:])
         failed = failed or bool(faults.failures)
-    print(table)
-    if args.table is not None:
-        args.table.write_text(table)
+    print(table(rows))
     sys.exit(failed)
 
 

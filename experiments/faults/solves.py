@@ -50,8 +50,8 @@ def phase(log):
 
 
 class Solves(Study):
-    def __init__(self, args):
-        super().__init__(args)
+    def __init__(self, args, rows):
+        super().__init__(args, rows)
         self.seconds = {}  # of an undisturbed run
         self.writing = {}  # from its first file to its last
         self.log = self.folder / "progress.txt"

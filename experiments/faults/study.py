@@ -1,4 +1,5 @@
 """What the faults share: a folder, the table's rows, and how a program is run and judged."""
+import atexit
 import collections
 import contextlib
 import pathlib
@@ -14,13 +15,16 @@ PATIENCE = 600
 
 
 class Study:
-    def __init__(self, args):
+    """The rows of its table are added to `rows`."""
+
+    def __init__(self, args, rows):
         self.args = args
         self.random = random.Random(args.seed)
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="ibrdf-faults-"))
+        atexit.register(self.close)  # also where a subclass fails to prepare
         self.failures = []
         self.told = 0  # of them, in rows
-        self.rows = []
+        self.rows = rows
 
     def close(self):
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -35,10 +39,6 @@ class Study:
             self.told = len(self.failures)
         self.rows.append((fault, times, end))
         print(f"{fault}, {times} times: {end}", flush=True)
-
-    def table(self):
-        return "| fault | times | end |\n|---|---|---|\n" + "".join(
-            "| " + " | ".join(str(c) for c in row) + " |\n" for row in self.rows)
 
     def program(self, name):
         return str(self.args.bin / name)

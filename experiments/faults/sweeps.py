@@ -34,8 +34,8 @@ def rows(out):
 
 
 class Sweeps(Study):
-    def __init__(self, args):
-        super().__init__(args)
+    def __init__(self, args, rows):
+        super().__init__(args, rows)
         self.data, self.maps = self.folder / "data", self.folder / "maps"
         self.data.mkdir()
         self.maps.mkdir()

@@ -15,8 +15,8 @@ FOLDERS = ("/proc/ibrdf", "/dev/null/x")
 
 
 class Trainings(Study):
-    def __init__(self, args):
-        super().__init__(args)
+    def __init__(self, args, rows):
+        super().__init__(args, rows)
         self.data = self.folder / "data"
         self.data.mkdir()
         (self.folder / "scene.yaml").write_text(SCENE)
