@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,8 @@ constexpr double kByPoint = 1e-3;    // slopes of the default model's splines
 constexpr double kSums = 5e-6;       // the transport
 constexpr double kDouble = 1e-11;    // formulas in double
 constexpr double kObjective = 1e-4;  // gradients of whole costs
+// Of rows that show what cannot be held: their entries must be finite alone.
+constexpr double kNotHeld = std::numeric_limits<double>::max();
 
 // Every row of the table within `most`, but for rows whose name contains a word
 // of `others`, which have their own bounds.
@@ -69,8 +72,9 @@ TEST(Derivatives, FlowsByCodePointAndWeights) {
   ErrorTable table;
   StudyFlows(opened->model, Few(8), &table);
   // At a knot a derivative has two sides, and which one float takes is open.
-  ExpectWithin(table, kNetwork,
-               {{"by point", kByPoint}, {"steep", 2e-2}, {"right side", 1e6}});
+  ExpectWithin(
+      table, kNetwork,
+      {{"by point", kByPoint}, {"steep", 2e-2}, {"right side", kNotHeld}});
 }
 
 TEST(Derivatives, LobesByCodesAndColours) {
@@ -104,9 +108,9 @@ TEST(Derivatives, LikelihoodAndPriors) {
   // On the unit sphere the wall's row jumps; its gradient does not. What
   // epsilon or the observation hides cancels in a logarithm.
   ExpectWithin(table, kDouble,
-               {{"prior, codes of norm 1", 1.0 + 1e-9},
+               {{"prior, codes of norm 1", kNotHeld},
                 {"prior, gradient, codes of norm 1", kDouble},
-                {"cost by radiance, 1e-30", 1.0 + 1e-9},
+                {"cost by radiance, 1e-30", kNotHeld},
                 {"cost by radiance, E = I", 1e-5},
                 {"process prior", 1e-6}});
 }
