@@ -5,6 +5,8 @@
 
 #include <mutex>
 
+#include "solvers/marginal/blas_kernels.h"
+
 // LAPACK, column-major.
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda,
@@ -15,6 +17,9 @@ void dpotri_(const char* uplo, const int* n, double* a, const int* lda,
 
 namespace ibrdf {
 namespace {
+
+// Before main, where nothing else runs yet; Ceres's products gain as well.
+[[maybe_unused]] const bool blas_core_taken = TakeFittingBlasCore();
 
 void OneThread() {
   static std::once_flag once;
