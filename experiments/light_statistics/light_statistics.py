@@ -5,7 +5,8 @@ usage: light_statistics.py MAPS_DIR [--leave-out A,B,...] [--width 64]
 For every Radiance .hdr map (averaged to WIDTH x WIDTH/2): the mean over texels, weighted by solid angle, of
 |l_i - l_j| / sqrt(angle) for neighbours along a row; the root mean square of the same; the mean log radiance of
 red and blue less that of green; the standard deviation of log radiance. Then the semivariograms of grey log radiance and
-of chroma (half the mean square of differences; chroma per dimension of its plane) over angles, at 32x16. needs numpy
+of chroma (half the mean square of differences; chroma per dimension of its plane) over angles, at 32x16; and, map by
+map, the variance of grey log radiance inside the texels of 32x16: mean, quantiles and medians by elevation. needs numpy
 """
 import argparse
 import pathlib
@@ -73,6 +74,22 @@ def semivariograms(radiance):
     return np.array([[(s * weight)[k].sum() / weight[k].sum() for k in bins] for s in squares])
 
 
+def variances_inside(radiance):
+    """Of grey log radiance inside each texel of 32x16 [16, 32], and the texels' solid angles."""
+    height, width = 16, 32
+    log = np.log(radiance + 1e-6 * radiance.max()).mean(2)
+    factor = radiance.shape[1] // width
+    inside = log.reshape(height, factor, width, factor).var((1, 3))
+    sine = np.sin(np.pi * (np.arange(height) + 0.5) / height)
+    return inside, np.repeat(sine[:, None], width, 1)
+
+
+def quantile(values, weights, share):
+    order = np.argsort(values.ravel())
+    cumulative = np.cumsum(weights.ravel()[order])
+    return values.ravel()[order][np.searchsorted(cumulative, share * cumulative[-1])]
+
+
 def main():
     ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     ap.add_argument("maps", type=pathlib.Path)
@@ -98,6 +115,15 @@ def main():
     print("1.6 (1 - e^(-angle/52))" + "".join(f"{1.6 * (1 - np.exp(-a / 52)):7.2f}" for a in middle))
     print("chroma                 " + "".join(f"{v:7.3f}" for v in mean[1]))
     print("0.12 (the same)        " + "".join(f"{0.12 * (1 - np.exp(-a / 52)):7.3f}" for a in middle))
+    print(f"{'inside texels of 11 degrees':28s} {'mean':>7s} {'10 %':>7s} {'median':>7s} {'90 %':>7s} "
+          f"{'above':>7s} {'horizon':>7s} {'below':>7s}")
+    for path in sorted(args.maps.glob("*.hdr")):
+        if path.stem in left_out:
+            continue
+        v, w = variances_inside(read_rgbe(path))
+        figures = [(v * w).sum() / w.sum()] + [quantile(v, w, share) for share in (0.1, 0.5, 0.9)]
+        figures += [quantile(v[rows], w[rows], 0.5) for rows in (slice(0, 5), slice(6, 10), slice(11, 16))]
+        print(f"{path.stem:28s} " + " ".join(f"{f:7.3f}" for f in figures))
 
 
 if __name__ == "__main__":
