@@ -12,9 +12,6 @@ namespace ibrdf {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-// Of the mean diagonal, added to the normal equations: the constant is almost
-// a sum of the others.
-constexpr double kRidge = 1e-10;
 // A texel belongs to a spot where it is brighter than this times what surrounds
 // the spot.
 constexpr double kAbove = 2.0;
@@ -90,7 +87,7 @@ GaussianLight::GaussianLight(const Image& map,
   by_row_ = Overlaps(HeightEdges(rows_), HeightEdges(height_));
   by_column_ = Overlaps(Edges(columns_, 1.0), Edges(width_, 1.0));
   FindSpots(map, options);
-  PrepareFit();
+  PrepareFit(options.ridge);
 }
 
 std::vector<GaussianLight::Overlap> GaussianLight::Overlaps(
@@ -199,7 +196,7 @@ void GaussianLight::AddSpot(const Image& map,
   spots_.insert(spots_.end(), texels.begin(), texels.end());
 }
 
-void GaussianLight::PrepareFit() {
+void GaussianLight::PrepareFit(double ridge) {
   const int cells = rows_ * columns_;
   solid_angle_.resize(cells);
   basis_.resize(cells, num_spread_);
@@ -224,7 +221,8 @@ void GaussianLight::PrepareFit() {
   }
   Eigen::MatrixXd normal =
       basis_.transpose() * solid_angle_.asDiagonal() * basis_;
-  normal.diagonal().array() += kRidge * normal.trace() / num_spread_;
+  // The constant is free.
+  normal.diagonal().tail(num_spread_ - 1) *= 1.0 + ridge;
   normal_.compute(normal);
   CHECK(normal_.info() == Eigen::Success);
   integrals_.resize(num_spread_);

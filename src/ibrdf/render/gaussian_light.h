@@ -32,6 +32,9 @@ struct GaussianFitOptions {
   // Theirs over their number: neighbours meet at about 0.2. Broader ones, which
   // overlap more, need amplitudes that almost cancel.
   double sharpness_each = 0.25;
+  // Added to the normal equations' diagonal, over it: keeps amplitudes that
+  // almost cancel small, which interpolation between tables would not survive.
+  double ridge = 3e-3;
   // At most so many more at spots brighter than `contrast` times the mean of
   // the map without those found before, within peak_radius of their centre.
   int most_peaks = 16;
@@ -93,7 +96,7 @@ class GaussianLight {
   void FindSpots(const Image& map, const GaussianFitOptions& options);
   // Adds the lobe of texels that take `share` of their radiance.
   void AddSpot(const Image& map, const std::vector<SpotTexel>& texels);
-  void PrepareFit();
+  void PrepareFit(double ridge);
   // Means of the cells without spots, and back.
   Cells Gather(const float* map) const;
   void Scatter(const Cells& adjoint, std::vector<double>* gradient) const;
