@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <string>
 
-#include "ibrdf/render/harmonic_transport.h"
 #include "ibrdf/render/scene_probe.h"
 
 namespace ibrdf {
@@ -26,13 +25,16 @@ constexpr double kWorthChoosing = 0.3;
 constexpr size_t kChecked = 64;
 // Of the probe whose spectra tell what an order leaves out.
 constexpr int kProbeOrder = 16;
+// It does not know what is above its own.
+constexpr int kTrustedOrder = kProbeOrder - 3;
 constexpr int kProbeViews = 12;
 constexpr int kHarmonicViews = 24;
 constexpr int kSpreads[] = {64, 128, 256};
 // By normal: points compared, and nodes over the number of harmonics that the
-// radiance needs.
-constexpr double kMapChecks = 256, kMapNodes = 6;
+// radiance needs, or where those are too many to tell.
+constexpr double kMapChecks = 256, kMapNodes = 6, kRoughMapNodes = 4000;
 constexpr double kDarkest = 1e-3;  // of the mean radiance
+constexpr double kNotPredicted = -1.0;
 
 double Cube(double x) { return x * x * x; }
 
@@ -130,50 +132,33 @@ void TierRadiance::RenderBy(const Candidate& candidate,
   for (size_t k = 0; k < 3 * points.size(); ++k) E[k] = std::max(E[k], 0.0);
 }
 
-std::vector<TierRadiance::Candidate> TierRadiance::Predict(
-    const std::vector<ShadingPoint>& few, const std::vector<double>& truth,
-    size_t num_points, const TierOptions& options) {
-  HarmonicOptions probe_options;
-  probe_options.order = kProbeOrder;
-  probe_options.grid = grid_.shape;
-  probe_options.view_angles = kProbeViews;
-  probe_options.num_threads = num_threads_;
-  const std::vector<double> by_order =
-      HarmonicTransport(few, map_.height, map_.width, probe_options)
-          .PredictLogErrors(grid_, map_.rgb.data());
-  smoothest_ = kProbeOrder;
-  for (int l = kProbeOrder - 1; l >= 0; --l) {
-    if (by_order[l] <= options.log_error) smoothest_ = l;
-  }
-  const auto points = static_cast<double>(num_points);
-  std::vector<Candidate> candidates;
-  if (options.harmonics) {
-    // The probe does not know what is above its own order.
-    for (int l = std::max(smoothest_, 1); l < kProbeOrder - 2; l += 2) {
-      candidates.push_back(
-          {Tier::kHarmonics, l, HarmonicSeconds(l, points), by_order[l]});
-    }
-    if (candidates.empty()) {
-      const int l = kProbeOrder - 3;
-      candidates.push_back(
-          {Tier::kHarmonics, l, HarmonicSeconds(l, points), by_order[l]});
-    }
-  }
-  if (options.gaussians) {
-    for (const int spread : kSpreads) {
-      // What of the map the mixture is not, as the points reflect it.
-      const Image rest = GaussianLight(map_, Gaussians::FitOptions(spread))
-                             .Residual(map_.rgb.data());
-      std::vector<double> E(truth.size());
-      HarmonicTransport(few, rest.height, rest.width, probe_options)
-          .Render(grid_, rest.rgb.data(), E.data());
-      for (size_t k = 0; k < E.size(); ++k) E[k] += truth[k];
-      candidates.push_back({Tier::kGaussians, spread,
-                            GaussianSeconds(spread, points),
-                            MeanAbsLogRatio(E, truth)});
-    }
-  }
-  return candidates;
+std::vector<double> TierRadiance::PredictByOrder(
+    const std::vector<ShadingPoint>& few) const {
+  return HarmonicTransport(few, map_.height, map_.width, ProbeOptions())
+      .PredictLogErrors(grid_, map_.rgb.data());
+}
+
+void TierRadiance::PredictGaussians(const std::vector<ShadingPoint>& few,
+                                    const std::vector<double>& E,
+                                    Candidate* candidate) const {
+  // What of the map the mixture is not, as the points reflect it.
+  const GaussianLight light(map_, Gaussians::FitOptions(candidate->size));
+  const Image rest = light.Residual(map_.rgb.data());
+  std::vector<double> with_rest(E.size());
+  HarmonicTransport(few, rest.height, rest.width, ProbeOptions())
+      .Render(grid_, rest.rgb.data(), with_rest.data());
+  for (size_t k = 0; k < E.size(); ++k) with_rest[k] += E[k];
+  candidate->predicted = MeanAbsLogRatio(with_rest, E);
+  candidate->spots = light.num_peaks();
+}
+
+HarmonicOptions TierRadiance::ProbeOptions() const {
+  HarmonicOptions options;
+  options.order = kProbeOrder;
+  options.grid = grid_.shape;
+  options.view_angles = kProbeViews;
+  options.num_threads = num_threads_;
+  return options;
 }
 
 bool TierRadiance::Choose(const std::vector<ShadingPoint>& points,
@@ -186,53 +171,97 @@ bool TierRadiance::Choose(const std::vector<ShadingPoint>& points,
   plan_.seconds = plan_.quadrature_seconds;
   if (options.reflectance_map) plan_.tier = Tier::kReflectanceMap;
   if (!options.harmonics && !options.gaussians) return true;
-  if (!options.forced && plan_.quadrature_seconds < kWorthChoosing) return true;
+  if (!options.forced && plan_.seconds < kWorthChoosing) return true;
 
+  // What is predicted before anything is rendered.
   const std::vector<ShadingPoint> few = SpreadPoints(points, kChecked);
-  std::vector<double> truth(3 * few.size()), E(truth.size());
-  if (!reference(few, truth.data())) return false;
+  grid_ = brdf_.Grid();
+  const std::vector<double> by_order = PredictByOrder(few);
+  int smooth = kTrustedOrder + 1;
+  for (int l = kTrustedOrder; l >= 0; --l) {
+    if (by_order[l] <= options.log_error) smooth = l;
+  }
+  if (options.reflectance_map) {
+    const double nodes = smooth <= kTrustedOrder
+                             ? kMapChecks + kMapNodes * NumHarmonics(smooth)
+                             : kRoughMapNodes;
+    plan_.seconds = std::min(plan_.seconds, kQuadraturePoint * nodes);
+  }
+  if (!options.forced && plan_.seconds < kWorthChoosing) return true;
+  std::vector<double> truth(3 * few.size()), E(truth.size()),
+      tried(truth.size());
   if (!quadrature(few, E.data())) return false;
+  std::vector<Candidate> candidates;
+  if (options.harmonics) {
+    for (int l = std::clamp(smooth, 1, kTrustedOrder); l <= kTrustedOrder;
+         l += 2) {
+      candidates.push_back(
+          {Tier::kHarmonics, l, HarmonicSeconds(l, count), by_order[l], 0});
+    }
+  }
+  if (options.gaussians) {
+    for (const int spread : kSpreads) {
+      candidates.push_back({Tier::kGaussians, spread,
+                            GaussianSeconds(spread, count), kNotPredicted, 0});
+    }
+  }
+
+  const auto by_seconds = [](const Candidate& a, const Candidate& b) {
+    return a.seconds < b.seconds;
+  };
+  std::stable_sort(candidates.begin(), candidates.end(), by_seconds);
+  const auto predict = [&](Candidate* candidate) {
+    if (candidate->predicted == kNotPredicted) {
+      PredictGaussians(few, E, candidate);
+    }
+  };
+  // Only spots are beyond the quadrature's own error.
+  bool hopeful = options.forced;
+  for (Candidate& candidate : candidates) {
+    if (hopeful) break;
+    predict(&candidate);
+    hopeful = candidate.spots > 0 || candidate.predicted <= options.log_error;
+  }
+  const auto by_predicted = [](const Candidate& a, const Candidate& b) {
+    return a.predicted < b.predicted;
+  };
+  if (!hopeful) {
+    std::stable_sort(candidates.begin(), candidates.end(), by_predicted);
+    plan_.words = Format(
+        "; spherical harmonics and spherical Gaussians are not within %.4f: "
+        "predicted at best %.4f",
+        options.log_error, candidates[0].predicted);
+    return true;
+  }
+
+  if (!reference(few, truth.data())) return false;
   plan_.checked = static_cast<int>(few.size());
   plan_.quadrature_error = ErrorBound(E, truth);
-  grid_ = brdf_.Grid();
-  std::vector<Candidate> candidates =
-      Predict(few, truth, points.size(), options);
-  if (options.reflectance_map) {
-    plan_.seconds = std::min(
-        plan_.seconds,
-        kQuadraturePoint * (kMapChecks + kMapNodes * NumHarmonics(smoothest_)));
-  }
   const auto take_first_within = [&](double allowed) {
-    for (const Candidate& candidate : candidates) {
+    for (Candidate& candidate : candidates) {
+      predict(&candidate);
       if (candidate.predicted > allowed ||
           (!options.forced && candidate.seconds >= plan_.seconds)) {
         continue;
       }
-      RenderBy(candidate, few, E.data());
-      const double found = ErrorBound(E, truth);
+      RenderBy(candidate, few, tried.data());
+      const double found = ErrorBound(tried, truth);
       if (found > allowed) continue;
       Take(candidate, found, options);
       return true;
     }
     return false;
   };
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) {
-                     return a.seconds < b.seconds;
-                   });
   if (take_first_within(options.log_error)) return true;
   // A quadrature that is further off is no reason for more seconds.
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) {
-                     return a.predicted < b.predicted;
-                   });
+  std::stable_sort(candidates.begin(), candidates.end(), by_predicted);
   if (plan_.quadrature_error > options.log_error &&
       take_first_within(plan_.quadrature_error)) {
     return true;
   }
   if (options.forced) {
-    RenderBy(candidates[0], few, E.data());
-    Take(candidates[0], ErrorBound(E, truth), options);
+    RenderBy(candidates[0], few, tried.data());
+    Take(candidates[0], ErrorBound(tried, truth), options);
     return true;
   }
   plan_.words = Format(

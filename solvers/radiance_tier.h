@@ -6,6 +6,7 @@
 
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/render/gaussian_transport.h"
+#include "ibrdf/render/harmonic_transport.h"
 #include "ibrdf/render/reflectance_map.h"
 #include "ibrdf/render/scene.h"
 #include "solvers/effects_plan.h"
@@ -50,15 +51,20 @@ class TierRadiance {
     Tier tier = Tier::kQuadrature;
     int size = 0;  // order of harmonics, spread Gaussians
     double seconds = 0.0, predicted = 0.0;
+    int spots = 0;  // of Gaussians
   };
   struct Gaussians;
 
   void RenderBy(const Candidate& candidate,
                 const std::vector<ShadingPoint>& points, double* E);
-  // With predictions for points whose radiance is `truth`.
-  std::vector<Candidate> Predict(const std::vector<ShadingPoint>& few,
-                                 const std::vector<double>& truth,
-                                 size_t num_points, const TierOptions& options);
+  // At points of the image: mean |log error| of harmonics up to each order;
+  // of Gaussians, where the radiance is E.
+  std::vector<double> PredictByOrder(
+      const std::vector<ShadingPoint>& few) const;
+  void PredictGaussians(const std::vector<ShadingPoint>& few,
+                        const std::vector<double>& E,
+                        Candidate* candidate) const;
+  HarmonicOptions ProbeOptions() const;
   void Take(const Candidate& candidate, double found,
             const TierOptions& options);
 
@@ -68,7 +74,6 @@ class TierRadiance {
   BrdfGrid grid_;                               // for harmonics
   std::unique_ptr<const Gaussians> gaussians_;  // of spread_
   int spread_ = 0;
-  int smoothest_ = 0;  // least order predicted to be within the error
   Candidate taken_;
   TierPlan plan_;
 };
