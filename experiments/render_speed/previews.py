@@ -80,7 +80,7 @@ def main():
     args.out.mkdir(parents=True, exist_ok=True)
     columns = (["camera", "material", "light"] + [f"seconds_{s}" for s in SETTINGS] + [f"error_{s}" for s in SETTINGS] + ["words"])
     with open(args.out / "previews.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, columns)
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         for camera in CAMERAS:
             for light in LIGHTS:
