@@ -68,17 +68,21 @@ enum class Effect {
   kSharpLobes,
   kPerspective,
   kReflectanceMap,
+  kHarmonics,
+  kGaussians,
 };
-inline constexpr int kNumEffects = 5;
+inline constexpr int kNumEffects = 7;
 // Name in problem files, e.g. "sharp_lobes".
 const char* EffectName(Effect effect);
 
-// kAuto: the program decides. kAll: every effect. kList: the
-// listed ones and no other.
+// kAuto: the program decides. kAll: every effect; no approximation of
+// unshadowed light but the reflectance map. kList: the listed ones and no
+// other.
 enum class EffectsMode { kAuto, kAll, kNone, kList };
 struct EffectsSpec {
   EffectsMode mode = EffectsMode::kAuto;
   std::vector<Effect> list;  // each at most once
+  bool Lists(Effect effect) const;
 };
 
 // Of the joint estimate; kAuto: the program decides.

@@ -248,8 +248,7 @@ void ReadEffects(ConfigContext* context, const ConfigNode* node,
       return;
     }
     const auto effect = static_cast<Effect>(name - names.begin());
-    if (std::find(effects->list.begin(), effects->list.end(), effect) !=
-        effects->list.end()) {
+    if (effects->Lists(effect)) {
       context->Fail("effects", *name + " is listed twice");
     } else {
       effects->list.push_back(effect);
@@ -258,6 +257,17 @@ void ReadEffects(ConfigContext* context, const ConfigNode* node,
   if (node->kind == Kind::kList) {
     effects->mode = EffectsMode::kList;
     for (const ConfigNode& item : node->items) add(item);
+    for (const Effect tier : {Effect::kHarmonics, Effect::kGaussians}) {
+      for (const Effect shadow :
+           {Effect::kVisibility, Effect::kInterreflection}) {
+        if (!effects->Lists(tier) || !effects->Lists(shadow)) continue;
+        context->Fail("effects", std::string("expected ") + EffectName(tier) +
+                                     " or " + EffectName(shadow) +
+                                     ", found both: " + EffectName(tier) +
+                                     " knows no shadows");
+        return;
+      }
+    }
     return;
   }
   const Strings modes = {"auto", "all", "none"};
@@ -324,8 +334,16 @@ const char* EffectName(Effect effect) {
       return "perspective";
     case Effect::kReflectanceMap:
       return "reflectance_map";
+    case Effect::kHarmonics:
+      return "harmonics";
+    case Effect::kGaussians:
+      return "gaussians";
   }
   return "";
+}
+
+bool EffectsSpec::Lists(Effect effect) const {
+  return std::find(list.begin(), list.end(), effect) != list.end();
 }
 
 StatusOr<Problem> ReadProblem(const std::string& path,

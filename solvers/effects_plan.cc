@@ -20,11 +20,6 @@ std::string Format(const char* format, double a, double b = 0, double c = 0) {
   return text;
 }
 
-bool Listed(const EffectsSpec& effects, Effect effect) {
-  return std::find(effects.list.begin(), effects.list.end(), effect) !=
-         effects.list.end();
-}
-
 CookTorrance ProbeMaterial(double specular) {
   CookTorrance brdf;
   brdf.diffuse = Eigen::Array3d::Constant(specular > 0.0 ? 0.1 : 0.5);
@@ -106,7 +101,7 @@ bool DependsOnNormal(const Problem& problem, bool visibility) {
   const EffectsSpec& effects = problem.effects;
   const bool allowed = effects.mode == EffectsMode::kAuto ||
                        effects.mode == EffectsMode::kAll ||
-                       Listed(effects, Effect::kReflectanceMap);
+                       effects.Lists(Effect::kReflectanceMap);
   return allowed && !visibility &&
          problem.camera.type == CameraType::kOrthographic;
 }
@@ -123,10 +118,9 @@ StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
   plan.threshold = threshold;
   plan.reflectance_map = DependsOnNormal(problem, false);
   const EffectsSpec& effects = problem.effects;
-  const bool interreflection = Listed(effects, Effect::kInterreflection);
+  const bool interreflection = effects.Lists(Effect::kInterreflection);
   // Where light is bounced it is also blocked.
-  const bool visibility =
-      interreflection || Listed(effects, Effect::kVisibility);
+  const bool visibility = interreflection || effects.Lists(Effect::kVisibility);
   if (problem.geometry.kind == GeometryKind::kNormals) {
     if (visibility) {
       return InvalidInput(

@@ -20,6 +20,30 @@ inline constexpr double kWorthwhileLogError = 0.01;
 inline constexpr double kPreviewLogError = 0.005;
 inline constexpr double kReferenceLogError = 0.001;
 
+// How points are rendered that nothing shadows.
+enum class Tier {
+  kQuadrature,      // each by itself
+  kReflectanceMap,  // as many as it takes, the rest interpolated by normal
+  kHarmonics,       // the map in spherical harmonics
+  kGaussians,       // the map as a mixture of spherical Gaussians
+};
+
+struct TierPlan {
+  Tier tier = Tier::kQuadrature;
+  int order = 0;                 // of the harmonics
+  int gaussians = 0, spots = 0;  // in the mixture; bright spots among them
+  // Of harmonics and Gaussians, mean |log error|: predicted from the light that
+  // is left out, and found, with two standard errors, at `checked` points of
+  // the image that are rendered at reference quality; of the quadrature, found
+  // likewise.
+  double predicted_error = 0.0, found_error = 0.0, quadrature_error = 0.0;
+  int checked = 0;
+  // Predicted from counts, not from a clock: of this tier and of the
+  // quadrature, on one core.
+  double seconds = 0.0, quadrature_seconds = 0.0;
+  std::string words;  // for the user
+};
+
 struct EffectsPlan {
   bool visibility = false;
   int bounces = 0;  // of light from the object to itself; with visibility alone
@@ -34,6 +58,8 @@ struct EffectsPlan {
   // The predicted error of what is simulated.
   double error = 0.0;
   std::string words;  // for the user
+  // Of ibrdf_render, where neither shadows nor bounces are simulated.
+  TierPlan tier;
 };
 
 // Worth of the effects, where they are not to be predicted by patches of the

@@ -16,6 +16,7 @@
 #include "io/merl.h"
 #include "io/mesh.h"
 #include "solvers/measured_effects.h"
+#include "solvers/radiance_tier.h"
 #include "solvers/scene_radiance.h"
 
 namespace ibrdf {
@@ -28,6 +29,15 @@ constexpr int kSamplesPerSide = 2;
 constexpr double kReferenceMapError = 3e-4;
 constexpr double kPreviewMapError = 3e-3;
 constexpr double kPreviewPixelError = 3e-3;
+
+Status Interrupted(const Problem& problem) {
+  return Status(StatusCode::kInterrupted, problem.path + ": interrupted");
+}
+
+double MapError(RenderQuality quality) {
+  return quality == RenderQuality::kReference ? kReferenceMapError
+                                              : kPreviewMapError;
+}
 
 // Box-Muller on bits of the generator, which the standard fixes (unlike
 // std::normal_distribution): the same seed gives the same noise anywhere.
@@ -55,14 +65,33 @@ void SortByAngle(std::vector<ShadingPoint>* points) {
                    });
 }
 
+// How the points of a scene are rendered that nothing shadows. A preview takes
+// what is fast; reference quality only what the user asks for.
+TierOptions MayTake(const Problem& problem, const EffectsPlan& effects) {
+  TierOptions options;
+  options.log_error = MapError(problem.quality);
+  if (effects.visibility) return options;
+  options.reflectance_map = effects.reflectance_map;
+  const EffectsSpec& spec = problem.effects;
+  if (spec.mode == EffectsMode::kAuto) {
+    options.harmonics = options.gaussians =
+        problem.quality == RenderQuality::kPreview;
+  } else if (spec.mode == EffectsMode::kList) {
+    options.harmonics = spec.Lists(Effect::kHarmonics);
+    options.gaussians = spec.Lists(Effect::kGaussians);
+    options.forced = options.harmonics || options.gaussians;
+  }
+  return options;
+}
+
 // Pixels of one scene, in one or two passes.
 class PixelRenderer {
  public:
   PixelRenderer(const Problem& problem, const SceneRadiance& radiance,
-                bool reflectance_map, const RenderSceneOptions& options)
+                TierRadiance* tier, const RenderSceneOptions& options)
       : problem_(problem),
         radiance_(radiance),
-        reflectance_map_(reflectance_map),
+        tier_(tier),
         options_(options) {}
 
   // Calls progress with shares of [begin, end].
@@ -78,13 +107,13 @@ class PixelRenderer {
           out);
     };
     num_points_ += points.size();
-    const Status interrupted(StatusCode::kInterrupted,
-                             problem_.path + ": interrupted");
-    if (reflectance_map_) {
+    const Status interrupted = Interrupted(problem_);
+    if (tier_->renders()) {
+      if (options_.progress && !options_.progress(begin)) return interrupted;
+      tier_->Render(points, E.data());
+    } else if (tier_->plan().tier == Tier::kReflectanceMap) {
       ReflectanceMapOptions by_normal;
-      by_normal.log_error = problem_.quality == RenderQuality::kReference
-                                ? kReferenceMapError
-                                : kPreviewMapError;
+      by_normal.log_error = MapError(problem_.quality);
       const StatusOr<ReflectanceMapReport> report =
           RenderByNormal(points, all, by_normal, E.data());
       if (!report.ok()) {
@@ -130,7 +159,7 @@ class PixelRenderer {
       text += "; " + std::to_string(num_refined_) + " pixels are sampled " +
               std::to_string(kSamplesPerSide * kSamplesPerSide) + " times";
     }
-    if (reflectance_map_) {
+    if (tier_->plan().tier == Tier::kReflectanceMap) {
       text += "; " + std::to_string(num_interpolated_) + " of " +
               std::to_string(num_points_) +
               " points are interpolated by their normal from others";
@@ -141,7 +170,7 @@ class PixelRenderer {
  private:
   const Problem& problem_;
   const SceneRadiance& radiance_;
-  const bool reflectance_map_;
+  TierRadiance* const tier_;
   const RenderSceneOptions& options_;
   size_t num_points_ = 0, num_interpolated_ = 0, num_refined_ = 0;
 };
@@ -282,10 +311,32 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
   } else {
     radiance->set_bounces(effects->bounces);
   }
-  PixelRenderer pixels(problem, *radiance, effects->reflectance_map, options);
+  TierRadiance tier(*map, brdf, options.num_threads);
+  const auto quadrature = [&](const std::vector<ShadingPoint>& some,
+                              double* E) {
+    return radiance->Render(some, nullptr, E);
+  };
+  // At reference quality, as a preview is off by more than what is looked for
+  // under a small sun.
+  const auto converged = [&](const std::vector<ShadingPoint>& some, double* E) {
+    return SceneRadiance(view->scene, some, *map, &brdf, grid, *effects,
+                         RenderQuality::kReference, options.num_threads)
+        .Render(some, nullptr, E);
+  };
+  if (!tier.Choose(points, quadrature, converged, MayTake(problem, *effects))) {
+    return Interrupted(problem);
+  }
+  effects->tier = tier.plan();
+  effects->reflectance_map = tier.plan().tier == Tier::kReflectanceMap;
+  effects->words += tier.plan().words;
+  RenderedScene out;
+  if (options.plan_only) {
+    out.effects = *std::move(effects);
+    return out;
+  }
+  PixelRenderer pixels(problem, *radiance, &tier, options);
   // The second pass is of fewer pixels but more points.
   const double first = reference ? 1.0 : 0.5;
-  RenderedScene out;
   StatusOr<Image> image = pixels.Render(points, 0.0, first);
   if (!image.ok()) return image.status();
   out.image = *std::move(image);

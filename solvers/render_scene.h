@@ -45,6 +45,8 @@ struct RenderSceneOptions {
   // Called with the share done, in [0, 1], from the calling thread; false
   // stops the render. May be empty.
   std::function<bool(double)> progress;
+  // Only `effects` of the result is filled in: what would be simulated.
+  bool plan_only = false;
 };
 
 struct RenderedScene {

@@ -71,7 +71,8 @@ void PairStudy(const std::string& meshes) {
       [&] { transport.Render(grid, map.rgb.data(), E.data()); },
       [&] { transport.RenderLobes(fields, 2, map.rgb.data(), lobes.data()); },
       [&] {
-        transport.GridGradient(map.rgb.data(), adjoint.data(), by_grid.data());
+        transport.GridGradient(grid, map.rgb.data(), adjoint.data(),
+                               by_grid.data());
       },
       [&] { by_light.Apply(map.rgb.data(), E.data()); },
       [&] { by_light.ApplyTranspose(adjoint.data(), by_map.data()); },

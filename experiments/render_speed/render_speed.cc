@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
        {"pairs", ibrdf::PairStudy},
        {"one_percent", ibrdf::OnePercentStudy},
        {"maps", ibrdf::MapStudy},
-       {"harmonics", ibrdf::HarmonicStudy}};
+       {"harmonics", ibrdf::HarmonicStudy},
+       {"gaussians", ibrdf::GaussianStudy}};
   if (argc < 3) {
     std::fprintf(stderr, "usage: render_speed MESHES STUDY...; studies:");
     for (const auto& study : studies) {

@@ -24,4 +24,8 @@ void OnePercentStudy(const std::string& meshes);
 // Errors of HarmonicTransport by order, found and predicted, and its speed.
 void HarmonicStudy(const std::string& meshes);
 
+// Errors and milliseconds of an image by quadrature, by normal, in harmonics
+// and in Gaussians.
+void GaussianStudy(const std::string& meshes);
+
 }  // namespace ibrdf

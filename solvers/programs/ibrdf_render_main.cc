@@ -108,23 +108,31 @@ Status CheckOutputs(const Outputs& out) {
 }
 
 Status Run(const std::string& scene, const std::vector<std::string>& overrides,
-           const Outputs& out, const CommonFlags& flags) {
+           const Outputs& out, bool explain, const CommonFlags& flags) {
   const StatusOr<Problem> problem = ReadProblem(scene, overrides);
   if (!problem.ok()) return problem.status();
   IBRDF_RETURN_IF_ERROR(CheckRenderable(*problem));
-  IBRDF_RETURN_IF_ERROR(CheckOutputs(out));
+  if (!explain) {
+    if (out.image.empty()) {
+      return InvalidInput("command line: --out",
+                          "expected an .exr file, found nothing");
+    }
+    IBRDF_RETURN_IF_ERROR(CheckOutputs(out));
+  }
 
   ProgressLine progress(flags.quiet);
   RenderSceneOptions options;
   options.seed = flags.seed;
   options.num_threads = flags.threads;
   options.progress = [&](double share) { return progress.Show(share); };
+  options.plan_only = explain;
   const StatusOr<RenderedScene> rendered = RenderScene(*problem, options);
   if (!rendered.ok()) return rendered.status();
 
-  if (!flags.quiet) {
+  if (explain || !flags.quiet) {
     std::printf("effects: %s\n", rendered->effects.words.c_str());
   }
+  if (explain) return OkStatus();
   IBRDF_RETURN_IF_ERROR(WriteExr(rendered->image, out.image));
   const std::string preview =
       std::filesystem::path(out.image).replace_extension(".png").string();
@@ -157,7 +165,8 @@ int Main(int argc, char** argv) {
   std::vector<std::string> overrides;
   Outputs out;
   app.add_option("--scene", scene, "scene file (YAML)")->required();
-  app.add_option("--out", out.image, "radiance to write, .exr")->required();
+  app.add_option("--out", out.image,
+                 "radiance to write, .exr; needed without --explain");
   app.add_option("--mask", out.mask,
                  "mask of the object to write, .png; default: none");
   app.add_option("--illumination-out", out.illumination,
@@ -174,10 +183,14 @@ int Main(int argc, char** argv) {
                  "noise) --set image.width=256 (pixels)")
       ->expected(1)
       ->take_all();
+  bool explain = false;
+  app.add_flag("--explain", explain,
+               "print what would be simulated, and how, and why; render "
+               "nothing");
   return RunProgram(&app, argc, argv, [&]() -> Status {
     std::vector<std::string> all = overrides;
     if (!quality.empty()) all.push_back("quality=" + quality);
-    return Run(scene, all, out, flags);
+    return Run(scene, all, out, explain, flags);
   });
 }
 

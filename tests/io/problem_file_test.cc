@@ -148,6 +148,12 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {least + "likelihood: {scale: []}", "expected auto or a number"},
       {least + "effects: [perspectiv]", "the nearest known one is perspective"},
       {least + "effects: [perspective, perspective]", "listed twice"},
+      {least + "effects: [gausians]", "the nearest known one is gaussians"},
+      {least + "effects: harmonic", "the nearest known one is harmonics"},
+      {least + "effects: [harmonics, visibility]",
+       "effects: expected harmonics or visibility, found both"},
+      {least + "effects: [interreflection, gaussians]",
+       "effects: expected gaussians or interreflection, found both"},
       {least + "camera: {fov_degrees: 3}", "camera.fov_degrees: expected"},
       {least + "camera: {type: perspective, fov_degrees: 180}",
        "camera.fov_degrees: expected a number in (0, 180), found '180'"},
@@ -269,13 +275,16 @@ TEST_F(ProblemFile, DamagedTextNeverCrashes) {
 TEST_F(ProblemFile, JsonHasTheKeysOfTheFileAndReadsBack) {
   const StatusOr<Problem> read = Read(
       kLeast, {"camera={type: perspective, fov_degrees: 40}",
-               "effects=[perspective]", "solver.seed=4", "likelihood.scale=0.1",
-               "truth.brdf=b.binary", "geometry={mesh: m.obj, fit: none}"});
+               "effects=[perspective, harmonics, gaussians]", "solver.seed=4",
+               "likelihood.scale=0.1", "truth.brdf=b.binary",
+               "geometry={mesh: m.obj, fit: none}"});
   ASSERT_TRUE(read.ok()) << read.status().message();
   const nlohmann::json json = ProblemToJson(*read);
   EXPECT_EQ("joint", json["problem"]);
   EXPECT_EQ(0.1, json["likelihood"]["scale"]);
   EXPECT_EQ("auto", json["likelihood"]["epsilon"]);
+  EXPECT_EQ(nlohmann::json({"perspective", "harmonics", "gaussians"}),
+            json["effects"]);
   EXPECT_EQ(dir_.File("b.binary"), json["truth"]["brdf"]);
   // JSON is YAML: the resolved problem is a problem file.
   const StatusOr<Problem> again = Read(json.dump(2));

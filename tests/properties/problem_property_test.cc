@@ -165,10 +165,16 @@ Problem AnyProblem() {
   }
   p.effects.mode = AnyOf<EffectsMode>(4);
   if (p.effects.mode == EffectsMode::kList) {
+    bool shadows = false;
     for (int e = 0; e < kNumEffects; ++e) {
-      if (*rc::gen::arbitrary<bool>()) {
-        p.effects.list.push_back(static_cast<Effect>(e));
-      }
+      const auto effect = static_cast<Effect>(e);
+      // These two know none and are not listed with them.
+      const bool tier =
+          effect == Effect::kHarmonics || effect == Effect::kGaussians;
+      if ((tier && shadows) || !*rc::gen::arbitrary<bool>()) continue;
+      shadows = shadows || effect == Effect::kVisibility ||
+                effect == Effect::kInterreflection;
+      p.effects.list.push_back(effect);
     }
     if (*rc::gen::arbitrary<bool>()) {
       std::reverse(p.effects.list.begin(), p.effects.list.end());
