@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "ibrdf/render/transport.h"
+#include "ibrdf/render/scene_probe.h"
 #include "tests/render/render_testing.h"
 
 namespace ibrdf {
@@ -22,16 +22,6 @@ HarmonicOptions Order(int order) {
   return options;
 }
 
-std::vector<double> Direct(const std::vector<ShadingPoint>& points,
-                           const BrdfGrid& grid, const Image& map) {
-  TransportOptions options;
-  options.grid = kGrid;
-  std::vector<double> E(3 * points.size());
-  Transport(points, map.height, map.width, options)
-      .Render(grid, map.rgb.data(), E.data());
-  return E;
-}
-
 std::vector<double> ByHarmonics(const std::vector<ShadingPoint>& points,
                                 const BrdfGrid& grid, const Image& map,
                                 int order) {
@@ -39,17 +29,6 @@ std::vector<double> ByHarmonics(const std::vector<ShadingPoint>& points,
   HarmonicTransport(points, map.height, map.width, Order(order))
       .Render(grid, map.rgb.data(), E.data());
   return E;
-}
-
-double MeanLogError(const std::vector<double>& a,
-                    const std::vector<double>& b) {
-  double mean = 0.0, error = 0.0;
-  for (const double v : b) mean += v / static_cast<double>(b.size());
-  for (size_t k = 0; k < b.size(); ++k) {
-    error += std::abs(std::log(std::max(a[k], 1e-3 * mean)) -
-                      std::log(std::max(b[k], 1e-3 * mean)));
-  }
-  return error / static_cast<double>(b.size());
 }
 
 TEST(HarmonicTransport, WhiteFurnaceIsOneAtEveryOrderAndPoint) {
@@ -119,9 +98,9 @@ TEST(HarmonicTransport, ConvergesToTransport) {
     const BrdfGrid grid = BrdfGrid::FromFunction(test.brdf, kGrid);
     const std::vector<double> direct = Direct(points, grid, test.map);
     const double coarse =
-        MeanLogError(ByHarmonics(points, grid, test.map, 1), direct);
-    const double fine =
-        MeanLogError(ByHarmonics(points, grid, test.map, test.order), direct);
+        MeanAbsLogRatio(ByHarmonics(points, grid, test.map, 1), direct);
+    const double fine = MeanAbsLogRatio(
+        ByHarmonics(points, grid, test.map, test.order), direct);
     EXPECT_LT(fine, test.error);
     EXPECT_LT(fine, 0.3 * coarse);
   }
@@ -191,7 +170,7 @@ TEST(HarmonicTransport, PredictsItsErrorByOrder) {
       EXPECT_EQ(0.0, predicted[20]);
       for (const int order : {1, 2, 4, 6, 8}) {
         const double found =
-            MeanLogError(ByHarmonics(points, grid, map, order), full);
+            MeanAbsLogRatio(ByHarmonics(points, grid, map, order), full);
         // The map is not turned at random and its degrees are few: a factor.
         EXPECT_LT(predicted[order], 3.0 * found + 1e-5) << order;
         EXPECT_GT(predicted[order], found / 3.0 - 1e-5) << order;

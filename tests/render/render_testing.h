@@ -10,6 +10,7 @@
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/scene.h"
+#include "ibrdf/render/transport.h"
 
 namespace ibrdf {
 namespace testing {
@@ -134,6 +135,17 @@ inline Eigen::Array3d BruteForceRadiance(const ShadingPoint& point,
     }
   }
   return sum;
+}
+
+// Radiance [points, 3] by Transport.
+inline std::vector<double> Direct(const std::vector<ShadingPoint>& points,
+                                  const BrdfGrid& grid, const Image& map) {
+  TransportOptions options;
+  options.grid = grid.shape;
+  std::vector<double> E(3 * points.size());
+  Transport(points, map.height, map.width, options)
+      .Render(grid, map.rgb.data(), E.data());
+  return E;
 }
 
 }  // namespace testing

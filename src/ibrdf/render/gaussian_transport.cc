@@ -10,13 +10,13 @@
 #include "ibrdf/base/fast_atan2.h"
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/geometry/half_diff.h"
+#include "ibrdf/render/view_angles.h"
 
 namespace ibrdf {
 namespace {
+using namespace view_angles;  // NOLINT
 
 constexpr double kPi = 3.14159265358979323846;
-// Points are joined in this many sums, whatever the number of threads.
-constexpr int64_t kChunks = 16;
 constexpr int kMostRows = 80;
 // Tables bend as a Gaussian so much sharper does: by the cosine.
 constexpr double kCosineSharpness = 8.0;
@@ -27,21 +27,6 @@ constexpr double kBelowHorizon = 12.0;
 constexpr double kLaguerreNode[] = {0.58578643762690495, 3.4142135623730950};
 constexpr double kLaguerreWeight[] = {0.85355339059327376, 0.14644660940672624};
 constexpr int kSpokes = 5;
-
-double MaxViewAngle() { return std::acos(double{kMinViewCosine}); }
-
-// Lagrange's cubic through x = 0, 1, 2, 3.
-void CubicWeights(double x, float w[4]) {
-  w[0] = static_cast<float>(-(x - 1) * (x - 2) * (x - 3) / 6);
-  w[1] = static_cast<float>(x * (x - 2) * (x - 3) / 2);
-  w[2] = static_cast<float>(-x * (x - 1) * (x - 3) / 2);
-  w[3] = static_cast<float>(x * (x - 1) * (x - 2) / 6);
-}
-
-// The part of a list that chunk k of kChunks takes.
-int64_t ChunkBegin(int64_t k, size_t count) {
-  return k * static_cast<int64_t>(count) / kChunks;
-}
 
 }  // namespace
 

@@ -6,29 +6,14 @@
 #include <cmath>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/render/view_angles.h"
 
 namespace ibrdf {
 namespace {
+using namespace view_angles;  // NOLINT
 
 constexpr double kPi = 3.14159265358979323846;
-// Points are joined in this many sums, whatever the number of threads.
-constexpr int64_t kChunks = 16;
 constexpr double kDarkest = 1e-3;  // of the mean radiance
-
-double MaxViewAngle() { return std::acos(double{kMinViewCosine}); }
-
-// Lagrange's cubic through x = 0, 1, 2, 3.
-void CubicWeights(double x, double w[4]) {
-  w[0] = -(x - 1) * (x - 2) * (x - 3) / 6;
-  w[1] = x * (x - 2) * (x - 3) / 2;
-  w[2] = -x * (x - 1) * (x - 3) / 2;
-  w[3] = x * (x - 1) * (x - 2) / 6;
-}
-
-// The part of a list that chunk k of kChunks takes.
-int64_t ChunkBegin(int64_t k, size_t count) {
-  return k * static_cast<int64_t>(count) / kChunks;
-}
 
 }  // namespace
 
