@@ -12,6 +12,13 @@ namespace {
 // in itself.
 constexpr int kPoints = 384;
 
+std::vector<double> Rendered(const SceneRadiance& radiance,
+                             const std::vector<ShadingPoint>& points) {
+  std::vector<double> E(3 * points.size());
+  radiance.Render(points, nullptr, E.data());
+  return E;
+}
+
 }  // namespace
 
 EffectsWorth MeasureEffects(const SceneRadiance& bare,
@@ -25,8 +32,7 @@ EffectsWorth MeasureEffects(const SceneRadiance& bare,
   const auto render = [&](const SceneRadiance& radiance, double* seconds) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    std::vector<double> E(3 * few.size());
-    radiance.Render(few, nullptr, E.data());
+    std::vector<double> E = Rendered(radiance, few);
     *seconds =
         share * std::chrono::duration<double>(Clock::now() - start).count();
     return E;
@@ -44,6 +50,25 @@ EffectsWorth MeasureEffects(const SceneRadiance& bare,
   worth.shadow_seconds = std::max(shadow_seconds - bare_seconds, 0.0);
   worth.bounce_seconds = std::max(all_seconds - shadow_seconds, 0.0);
   return worth;
+}
+
+double ChooseLobeRays(const std::vector<ShadingPoint>& points, double log_error,
+                      SceneRadiance* all) {
+  const std::vector<ShadingPoint> few = SpreadPoints(points, kPoints);
+  std::vector<double> E = Rendered(*all, few);
+  double change = 0.0;
+  while (all->lobe_rays() < SceneRadiance::kMostLobeRays) {
+    const int rays = all->lobe_rays();
+    all->set_lobe_rays(2 * rays);
+    std::vector<double> finer = Rendered(*all, few);
+    change = MeanAbsLogRatio(E, finer);
+    if (change <= log_error) {
+      all->set_lobe_rays(rays);
+      break;
+    }
+    E = std::move(finer);
+  }
+  return change;
 }
 
 }  // namespace ibrdf

@@ -15,4 +15,10 @@ EffectsWorth MeasureEffects(const SceneRadiance& bare,
                             const std::vector<ShadingPoint>& points,
                             SceneRadiance* all);
 
+// Doubles the rays along which narrow lobes see the object, up to those of
+// reference quality, where that changes the points' log radiance by more than
+// `log_error` in the mean; returns by how much it last did.
+double ChooseLobeRays(const std::vector<ShadingPoint>& points, double log_error,
+                      SceneRadiance* all);
+
 }  // namespace ibrdf

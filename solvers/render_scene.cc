@@ -29,6 +29,8 @@ constexpr int kSamplesPerSide = 2;
 constexpr double kReferenceMapError = 3e-4;
 constexpr double kPreviewMapError = 3e-3;
 constexpr double kPreviewPixelError = 3e-3;
+// Of twice the rays of narrow lobes: about what the image is off by.
+constexpr double kPreviewLobeError = 0.015;
 
 Status Interrupted(const Problem& problem) {
   return Status(StatusCode::kInterrupted, problem.path + ": interrupted");
@@ -296,7 +298,9 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
       radiance = std::make_unique<SceneRadiance>(
           view->scene, points, *map, &brdf, grid, all, problem.quality,
           options.num_threads);
-      return MeasureEffects(bare, points, radiance.get());
+      const EffectsWorth worth = MeasureEffects(bare, points, radiance.get());
+      ChooseLobeRays(points, kPreviewLobeError, radiance.get());
+      return worth;
     };
   }
   StatusOr<EffectsPlan> effects =
@@ -310,6 +314,10 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
                                                options.num_threads);
   } else {
     radiance->set_bounces(effects->bounces);
+  }
+  if (narrow_lobe && effects->bounces > 0) {
+    effects->words += "; " + std::to_string(radiance->lobe_rays()) +
+                      " rays of its own for each narrow lobe";
   }
   TierRadiance tier(*map, brdf, options.num_threads);
   const auto quadrature = [&](const std::vector<ShadingPoint>& some,

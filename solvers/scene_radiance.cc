@@ -16,7 +16,7 @@ constexpr int kPreviewShadowRows = 128;
 // Whose sight decides where emitters are.
 constexpr size_t kEmitterPoints = 2048;
 constexpr size_t kReferenceEmitterPoints = 8192;
-constexpr int kLobeRays = 8, kReferenceLobeRays = 16;
+constexpr int kPreviewLobeRays = 8;
 // A small image of an intricate object shows as much of it as a large one.
 constexpr size_t kLeastEmitters = 2048;
 
@@ -39,19 +39,21 @@ SceneRadiance::SceneRadiance(const Scene& scene,
                              const Image& map, const KnownBrdf* brdf,
                              const BrdfGrid& grid, const EffectsPlan& effects,
                              RenderQuality quality, int num_threads)
-    : brdf_(brdf), num_threads_(num_threads), bounces_(effects.bounces) {
+    : map_(map),
+      brdf_(brdf),
+      num_threads_(num_threads),
+      bounces_(effects.bounces) {
   const bool reference = quality == RenderQuality::kReference;
-  ReferenceOptions options;
-  if (!reference) options = Coarser(options);
-  options.num_threads = num_threads;
+  if (!reference) options_ = Coarser(options_);
+  options_.num_threads = num_threads;
   if (effects.visibility) {
-    options.shadows = std::make_shared<VisibilityGrid>(
+    options_.shadows = std::make_shared<VisibilityGrid>(
         scene, reference ? kReferenceShadowRows : kPreviewShadowRows);
   }
   if (effects.bounces > 0) {
-    LightObject(scene, points, map, grid, effects.bounces, reference, &options);
+    LightObject(scene, points, map, grid, effects.bounces, reference);
   }
-  renderer_ = std::make_unique<ReferenceRenderer>(map, options);
+  renderer_ = std::make_unique<ReferenceRenderer>(map, options_);
 }
 
 // They are placed and lit as in a solve, at reference quality with more of
@@ -59,8 +61,7 @@ SceneRadiance::SceneRadiance(const Scene& scene,
 void SceneRadiance::LightObject(const Scene& scene,
                                 const std::vector<ShadingPoint>& points,
                                 const Image& map, const BrdfGrid& grid,
-                                int bounces, bool reference,
-                                ReferenceOptions* options) {
+                                int bounces, bool reference) {
   const size_t most = reference ? kReferenceEmitterPoints : kEmitterPoints;
   const std::vector<ShadingPoint> few = SpreadPoints(points, most);
   VisibilityOptions rays;
@@ -81,8 +82,8 @@ void SceneRadiance::LightObject(const Scene& scene,
   transport.visibility = std::make_shared<Visibility>(scene, few, rays);
   transport.emitters = std::make_shared<SurfaceEmitters>(
       scene, few, transport.visibility, emitters);
-  options->emitters = transport.emitters;
-  options->lobe_rays = reference ? kReferenceLobeRays : kLobeRays;
+  options_.emitters = transport.emitters;
+  options_.lobe_rays = reference ? kMostLobeRays : kPreviewLobeRays;
   emitted_ = Transport({}, map.height, map.width, transport)
                  .Emitted(grid, map.rgb.data());
 }
@@ -91,6 +92,12 @@ void SceneRadiance::set_bounces(int bounces) {
   CHECK(bounces == 0 ||
         (bounces > 0 && bounces < static_cast<int>(emitted_.size())));
   bounces_ = bounces;
+}
+
+void SceneRadiance::set_lobe_rays(int rays) {
+  CHECK(emitted_.size() > 0 && rays > 0);
+  options_.lobe_rays = rays;
+  renderer_ = std::make_unique<ReferenceRenderer>(map_, options_);
 }
 
 bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,

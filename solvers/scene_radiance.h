@@ -30,8 +30,9 @@ class SceneRadiance {
   using Progress = std::function<bool(double)>;
 
   // `points`: of the image; where the object lights itself, what they see of it
-  // decides where emitters are. `brdf`, which must live as long as this, `map`:
-  // as in the problem; `grid`: the BRDF's, empty where nothing casts shadows.
+  // decides where emitters are. `map` and `brdf`, which must live as long as
+  // this: as in the problem; `grid`: the BRDF's, empty where nothing casts
+  // shadows.
   SceneRadiance(const Scene& scene, const std::vector<ShadingPoint>& points,
                 const Image& map, const KnownBrdf* brdf, const BrdfGrid& grid,
                 const EffectsPlan& effects, RenderQuality quality,
@@ -41,6 +42,12 @@ class SceneRadiance {
   int bounces() const { return bounces_; }
   void set_bounces(int bounces);
 
+  // Along which narrow lobes see the object (ReferenceOptions::lobe_rays); 0
+  // without bounces.
+  static constexpr int kMostLobeRays = 16;  // those of reference quality
+  int lobe_rays() const { return options_.lobe_rays; }
+  void set_lobe_rays(int rays);
+
   // [points, 3]; false: stopped.
   bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
               double* E) const;
@@ -49,12 +56,14 @@ class SceneRadiance {
   // Places and lights emitters.
   void LightObject(const Scene& scene, const std::vector<ShadingPoint>& points,
                    const Image& map, const BrdfGrid& grid, int bounces,
-                   bool reference, ReferenceOptions* options);
+                   bool reference);
 
+  const Image& map_;
   const KnownBrdf* brdf_;
   int num_threads_;
   int bounces_ = 0;
   std::vector<std::vector<double>> emitted_;  // [bounces][emitters, 3]
+  ReferenceOptions options_;
   std::unique_ptr<const ReferenceRenderer> renderer_;
 };
 

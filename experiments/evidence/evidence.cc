@@ -34,7 +34,8 @@ constexpr std::array<double, 6> kTexelNoise = {2.0, 1.0, 0.5, 0.25, 0.1, 0.0};
 class EvidenceStudy {
  public:
   EvidenceStudy(std::string name, const InverseProblem& problem,
-                const Truth& truth, int cells_across, bool texel_noise)
+                const Truth& truth, int cells_across, bool texel_noise,
+                bool found_alone)
       : name_(std::move(name)),
         problem_(problem),
         truth_(truth),
@@ -44,6 +45,7 @@ class EvidenceStudy {
                problem.num_threads),
         gauge_(problem.model, prior_, problem.num_threads),
         texel_noise_(texel_noise),
+        found_alone_(found_alone),
         radiance_(RadianceOf(problem.image, problem.points)) {
     options_.num_threads = problem.num_threads;
     options_.covariance = false;
@@ -57,12 +59,6 @@ class EvidenceStudy {
   }
 
   Status Run() const {
-    LobeTableFitOptions fit_options;
-    fit_options.lobes = problem_.lobes;
-    fit_options.num_threads = problem_.num_threads;
-    const StatusOr<LobeTableFit> fit =
-        LobeTableFitter(problem_.model).Fit(truth_.brdf, fit_options);
-    if (!fit.ok()) return fit.status();
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
@@ -81,6 +77,13 @@ class EvidenceStudy {
                 found->start.c_str());
     Show(fine, "found",
          {vector(found->parameters), std::log(found->amplitude)});
+    if (found_alone_) return OkStatus();
+    LobeTableFitOptions fit_options;
+    fit_options.lobes = problem_.lobes;
+    fit_options.num_threads = problem_.num_threads;
+    const StatusOr<LobeTableFit> fit =
+        LobeTableFitter(problem_.model).Fit(truth_.brdf, fit_options);
+    if (!fit.ok()) return fit.status();
     // The prior tells lobes apart: the order that it prefers.
     std::vector<double> nearest = fit->parameters;
     gauge_.Fix(nearest.data());
@@ -174,13 +177,13 @@ class EvidenceStudy {
   const MaterialPrior prior_;
   const LobeModel lobes_;
   const LevelGauge gauge_;
-  const bool texel_noise_;
+  const bool texel_noise_, found_alone_;
   const std::vector<double> radiance_;
   ReflectanceSearchOptions options_;
 };
 
 Status Study(const std::string& path, int cells_across, bool texel_noise,
-             int num_threads) {
+             bool found_alone, int num_threads) {
   const StatusOr<Problem> problem = ReadProblem(path, {});
   if (!problem.ok()) return problem.status();
   const StatusOr<InverseProblem> inverse =
@@ -192,7 +195,9 @@ Status Study(const std::string& path, int cells_across, bool texel_noise,
   if (truth->brdf.raw.empty()) {
     return InvalidInput(path, "truth.brdf is needed here");
   }
-  return EvidenceStudy(path, *inverse, *truth, cells_across, texel_noise).Run();
+  return EvidenceStudy(path, *inverse, *truth, cells_across, texel_noise,
+                       found_alone)
+      .Run();
 }
 
 }  // namespace
@@ -204,18 +209,20 @@ int main(int argc, char** argv) {
   CLI::App app("Costs of the truth and of what a search finds");
   std::vector<std::string> problems;
   int cells = 0, threads = 0;
-  bool texel_noise = false;
+  bool texel_noise = false, found_alone = false;
   app.add_option("problems", problems, "joint problems with truth.brdf")
       ->required();
   app.add_option("--cells", cells,
                  "cells across and rows of the map, finest resolution");
   app.add_flag("--texel-noise", texel_noise,
                "the likelihood at several strengths of light inside texels");
+  app.add_flag("--found", found_alone,
+               "the search alone, without the lobes nearest to the truth");
   app.add_option("--threads", threads, "0: all");
   CLI11_PARSE(app, argc, argv);
   for (const std::string& path : problems) {
     const ibrdf::Status status =
-        ibrdf::Study(path, cells, texel_noise, threads);
+        ibrdf::Study(path, cells, texel_noise, found_alone, threads);
     if (status.ok()) continue;
     std::fprintf(stderr, "%s\n", status.message().c_str());
     return status.ExitCode();

@@ -11,15 +11,16 @@ from pathlib import Path
 
 # The columns that name a case, where a sweep has them: they come first and
 # give the order of the rows.
-KEY_COLUMNS = ("material", "map", "geometry", "lobes", "method")
+KEY_COLUMNS = ("material", "map", "setting", "prior", "geometry", "lobes",
+               "method")
 
 
 def gather_rows(row_files, results):
-    """Writes the rows of `row_files` (one each) to the table `results`.
+    """Writes the rows of `row_files` (one or more each) to table `results`.
 
     Columns are joined by name, absent cells are empty, rows are sorted by the
     columns that name a case. The table is whole or absent. Raises ValueError,
-    naming the file, unless each holds one row and no case comes twice.
+    naming the file, unless each holds whole rows and no case comes twice.
     """
     rows = {}
     columns = []
@@ -27,13 +28,15 @@ def gather_rows(row_files, results):
         with open(path, newline="") as file:
             reader = csv.DictReader(file, strict=True)
             found = list(reader)
-        if len(found) != 1 or None in found[0] or None in found[0].values():
-            raise ValueError(f"{path}: expected a header and one whole row")
+        if not found or any(None in row or None in row.values()
+                            for row in found):
+            raise ValueError(f"{path}: expected a header and whole rows")
         columns += [name for name in reader.fieldnames if name not in columns]
-        key = tuple(found[0].get(name, "") for name in KEY_COLUMNS)
-        if key in rows:
-            raise ValueError(f"{path}: a second row of {'_'.join(key)}")
-        rows[key] = found[0]
+        for row in found:
+            key = tuple(row.get(name, "") for name in KEY_COLUMNS)
+            if key in rows:
+                raise ValueError(f"{path}: a second row of {'_'.join(key)}")
+            rows[key] = row
     first = [name for name in KEY_COLUMNS if name in columns]
     columns = first + [name for name in columns if name not in first]
 

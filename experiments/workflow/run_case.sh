@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# One case of a sweep, from its start to its row:
-#   run_case.sh ROW PART SETTINGS TABLE MAP COMMAND...
-# COMMAND is ibrdf_bench without --out, which becomes PART. ROW, the table of
-# this case alone, appears at once and whole. PART keeps the row as well: when
-# the workflow lost track of a case that finished, it is taken from there,
-# unless SETTINGS changed or TABLE or MAP are newer.
+# One case of a sweep, from its start to its rows:
+#   run_case.sh ROWS COUNT PART SETTINGS TABLE MAP COMMAND...
+# COMMAND is ibrdf_bench without --out, which becomes PART. ROWS, the table of
+# this case alone, COUNT rows, appears at once and whole. PART keeps the rows as
+# well: what the workflow lost track of, or what was finished when the case was
+# killed, is taken from there, unless SETTINGS changed or TABLE or MAP are newer.
 # PART/attempts.log says when each attempt began, where, and how it ended.
 set -euo pipefail
 
-if [ "$#" -lt 6 ]; then
-  echo "usage: $0 ROW PART SETTINGS TABLE MAP COMMAND..." >&2
+if [ "$#" -lt 7 ]; then
+  echo "usage: $0 ROWS COUNT PART SETTINGS TABLE MAP COMMAND..." >&2
   exit 2
 fi
-row="$1" part="$2" settings="$3" table="$4" map="$5"
-shift 5
-mkdir -p "${part}" "$(dirname "${row}")"
+rows="$1" count="$2" part="$3" settings="$4" table="$5" map="$6"
+shift 6
+mkdir -p "${part}" "$(dirname "${rows}")"
 
 # A job that a dead workflow left behind may still compute this case: wait for
 # it. The lock passes on to the programs below and is free when all have ended.
@@ -31,18 +31,24 @@ if [ "$(cat "${part}/settings" 2>/dev/null)" != "${settings}" ] ||
    [ "${table}" -nt "${results}" ] || [ "${map}" -nt "${results}" ]; then
   rm -f "${results}"
 fi
-# Not before the old row is gone, lest it pass for one of these settings.
+# Not before old rows are gone, lest they pass for some of these settings.
 printf '%s\n' "${settings}" >"${part}/settings"
 
-# The cell of a table's only row, by name of its column.
-cell() {
-  awk -F, -v name="$1" '
-    NR == 1 { for (i = 1; i <= NF; ++i) if ($i == name) column = i }
-    NR == 2 { value = $column }
-    END { if (NR != 2 || !column) exit 1; print value }' "${results}"
+# The table, or with `status` that column alone, without rows that are no
+# result: the solver was killed from outside (also for its memory) or never
+# started. Any other failure of the solver is one, and its row says so. Fails
+# where there is no such column.
+finished() {
+  awk -F, -v what="$1" '
+    NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "status") column = i
+              if (!column) exit 1 }
+    NR > 1 && $column ~ /^(signal_.*|not_executable)$/ { next }
+    what == "status" { if (NR > 1) print $column; next }
+    { print }' "${results}"
 }
+rows_finished() { finished status | grep -c . || true; }
 
-if [ -f "${results}" ]; then
+if [ -f "${results}" ] && [ "$(rows_finished)" -eq "${count}" ]; then
   note kept
 else
   note begin
@@ -53,23 +59,26 @@ else
     exit "${code}"
   fi
 fi
-if ! status="$(cell status)"; then
-  rm -f "${results}"
-  note "failed: expected one row with a status"
-  echo "${results}: expected one row with a status" >&2
+if ! finished table >"${results}.part"; then
+  rm -f "${results}" "${results}.part"
+  note "failed: expected a table with a status"
+  echo "${results}: expected a table with a status" >&2
   exit 1
 fi
-case "${status}" in
-  # Killed from outside (also for its memory) or never started: no result.
-  # Any other failure of the solver is one, and its row says so.
-  signal_* | not_executable)
-    rm -f "${results}"
-    note "lost: ${status}"
-    echo "the solver ended by ${status}: no result" >&2
-    exit 1 ;;
-esac
-if ! cmp -s "${results}" "${row}"; then
-  cp "${results}" "${row}.part"
-  mv -f "${row}.part" "${row}"
+if ! cmp -s "${results}" "${results}.part"; then
+  note "lost: the solver was ended from outside"
+  echo "the solver was ended from outside: no result" >&2
 fi
-note "done ${status}"
+mv -f "${results}.part" "${results}"
+if [ "$(rows_finished)" -ne "${count}" ]; then
+  note "failed: $(rows_finished) rows of ${count}"
+  echo "${results}: $(rows_finished) rows of ${count}" >&2
+  # A table without a row would pass for a finished one to the sweep.
+  [ "$(rows_finished)" -gt 0 ] || rm -f "${results}"
+  exit 1
+fi
+if ! cmp -s "${results}" "${rows}"; then
+  cp "${results}" "${rows}.part"
+  mv -f "${rows}.part" "${rows}"
+fi
+note "done $(finished status | sort | uniq -c | xargs)"

@@ -26,7 +26,7 @@ cat >bin/ibrdf_bench <<'BENCH'
 #!/usr/bin/env bash
 set -euo pipefail
 shift
-dry=0 materials=plain,killed maps=dusk,night_2k seed=1
+dry=0 materials=plain,killed maps=dusk,night_2k seed=1 priors=
 while [ "$#" -gt 0 ]; do
   case "$1" in
     --dry-run) dry=1; shift; continue ;;
@@ -36,16 +36,34 @@ while [ "$#" -gt 0 ]; do
     --map-names) maps="$2" ;;
     --maps) folder="$2" ;;
     --seed) seed="$2" ;;
+    --priors) priors="$2" ;;
   esac
   shift 2
 done
 for m in ${materials//,/ }; do
   for k in ${maps//,/ }; do
     if [ "${dry}" -eq 1 ]; then
-      printf '%s\t%s\t%s\testimate\n' "${m}_${k}" "${data}/${m}.binary" \
-        "${folder}/${k}.hdr"
+      runs="${priors:-estimate}"
+      for p in ${runs//,/ }; do
+        printf '%s\t%s\t%s\t%s\n' "${m}_${k}" "${data}/${m}.binary" \
+          "${folder}/${k}.hdr" "${p}"
+      done
       continue
     fi
+    # One row a prior; the material `killed` loses the last one's once.
+    for p in ${priors//,/ }; do
+      table="${out}/results.csv"
+      [ -f "${table}" ] || echo 'material,map,prior,status' >"${table}"
+      ! grep -q "^${m},${k},${p}," "${table}" || continue
+      echo "${m} ${k} ${p}" >>"${CALLS}"
+      status=ok
+      if [ "${m},${p}" = killed,none ] && [ ! -f "${out}/was_killed" ]; then
+        status=signal_9
+        touch "${out}/was_killed"
+      fi
+      echo "${m},${k},${p},${status}" >>"${table}"
+    done
+    [ -z "${priors}" ] || continue
     [ ! -f "${out}/results.csv" ] || continue
     echo "${m} ${k} ${seed}" >>"${CALLS}"
     status=ok
@@ -66,7 +84,7 @@ calls() { grep -c . "${CALLS}" || true; }
 run_case() {  # run_case MATERIAL SEED
   local settings="joint --materials $1 --map-names dusk --seed $2" words
   read -ra words <<<"${settings}"
-  "${here}/run_case.sh" "one/$1.csv" "one/parts/$1" "${settings}" \
+  "${here}/run_case.sh" "one/$1.csv" 1 "one/parts/$1" "${settings}" \
     "data/$1.binary" maps/dusk.hdr bin/ibrdf_bench "${words[@]}" \
     --data data --maps maps --threads 1
 }
@@ -87,9 +105,38 @@ run_case killed 1 2>/dev/null && fail "a killed solver passed for a result"
 run_case killed 1
 grep -qx 'killed,dusk,ok,1' one/killed.csv || fail "no row after a second try"
 
+# Two runs a case: the one that was finished is not computed again.
+run_both() {  # run_both MATERIAL
+  local settings="joint --materials $1 --map-names dusk --priors unet,none"
+  local words
+  read -ra words <<<"${settings}"
+  "${here}/run_case.sh" "one/$1.both.csv" 2 "one/both/$1" "${settings}" \
+    "data/$1.binary" maps/dusk.hdr bin/ibrdf_bench "${words[@]}" \
+    --data data --maps maps --threads 1
+}
+: >"${CALLS}"
+run_both killed 2>/dev/null && fail "half a case passed for a result"
+[ ! -e one/killed.both.csv ] || fail "half a case left rows"
+run_both killed
+diff one/killed.both.csv - <<'TABLE' || fail "the rows of both runs"
+material,map,prior,status
+killed,dusk,unet,ok
+killed,dusk,none,ok
+TABLE
+[ "$(calls)" -eq 3 ] || fail "$(calls) runs of 2, one of them killed"
+
 gather="${here}/gather_rows.py"
 mkdir rows
 printf 'status,map,material,extra\nok,b,y,7\n' >rows/1.csv
+printf 'material,map,prior,status\nx,c,none,ok\nx,c,unet,ok\n' >rows/4.csv
+"${gather}" rows joined.csv
+diff joined.csv - <<'TABLE' || fail "a file of two rows is joined wrongly"
+material,map,prior,status,extra
+x,c,none,ok,
+x,c,unet,ok,
+y,b,,ok,7
+TABLE
+rm rows/4.csv
 printf 'material,map,status\nx,c,ok\n' >rows/2.csv
 "${gather}" rows joined.csv
 diff joined.csv - <<'TABLE' || fail "columns or rows are joined wrongly"
@@ -137,4 +184,13 @@ config 2 >config.yaml
 sweep || fail "another seed: $(tail -n 20 log)"
 [ "$(calls)" -eq 10 ] || fail "another seed did not compute every case"
 grep -qx 'plain,dusk,ok,2' all/tiny/results.csv || fail "rows of the old seed"
+cat >config.yaml <<'CONFIG'
+{bin: bin, data: data, maps: maps, out: all,
+ resources: {threads: 1, mem_mb: 10, runtime: 1},
+ sweeps: {both: {experiment: known-brdf, flags: {priors: "unet,none"}}}}
+CONFIG
+: >"${CALLS}"
+sweep || fail "the sweep of two runs a case: $(tail -n 20 log)"
+[ "$(calls)" -eq 10 ] || fail "$(calls) runs of 8, 2 of them killed"
+[ "$(grep -c ,ok all/both/results.csv)" -eq 8 ] || fail "rows of both runs"
 echo "passed"

@@ -62,9 +62,11 @@ std::vector<double> Batch(const MerlTableStack& tables,
   return E;
 }
 
+// With bright texels as the batch has them.
 std::vector<double> Single(const MerlTable& table, const Image& map,
                            const std::vector<ShadingPoint>& points,
-                           const ReferenceOptions& options) {
+                           ReferenceOptions options) {
+  options.split_bright = false;
   std::vector<double> E(3 * points.size());
   ReferenceRenderer(map, options).Render(points, table, E.data());
   return E;

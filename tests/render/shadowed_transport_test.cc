@@ -330,6 +330,7 @@ TEST(ShadowedReference, BatchIsTheSingleRenderer) {
   ReferenceOptions options;
   options.near_rings = 24;
   options.near_ring_samples = 64;
+  options.split_bright = false;
   for (const int far_width : {64, 32}) {
     options.far_width = far_width;
     options.shadows = std::make_shared<VisibilityGrid>(Torus(), 128);

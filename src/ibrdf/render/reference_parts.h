@@ -29,6 +29,10 @@ struct ReferenceOptions {
   // every texel and twice the rings: mean |log ratio| below 0.001 from matte
   // to mirror, a hard key light included.
   int far_width = 128;
+  // Few texels much brighter than the rest are rendered by directions of their
+  // own (bright_texels.h), not by rings that may miss them. ReferenceBatch
+  // never does that.
+  bool split_bright = true;
   int num_threads = 0;  // <= 0: all
   // What hides light from the points; null: nothing. Traced afresh for every
   // point rendered.
@@ -40,8 +44,7 @@ struct ReferenceOptions {
   // these meet does along a quarter as many, at a coarser quadrature. 0: never.
   int lobe_rays = 0;
 };
-// A quarter of the rings: within 1 % but for mirrors and, on all else, small
-// suns (0.6 to 3.4 %, experiments/render_speed).
+// A quarter of the rings: within 1 % but for mirrors (experiments/render_speed).
 inline ReferenceOptions Coarser(ReferenceOptions options) {
   options.near_rings /= 4;
   options.near_ring_samples /= 4;

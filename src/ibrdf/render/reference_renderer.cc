@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <utility>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/lobe_bundles.h"
 
@@ -24,6 +26,13 @@ constexpr double kUnevenBlock = 1.5;
 constexpr double kLobeWidths = 2.5;
 // Fewer from bounce to bounce.
 constexpr int kFewerRays = 4;
+
+// Between samples of a bright texel, in half widths of the lobe; at most so
+// many along a side.
+constexpr double kBrightStep = 0.25;
+constexpr int kMostBrightSamples = 16;
+
+constexpr double kPi = 3.14159265358979323846;
 
 using Float4 [[gnu::vector_size(16)]] = float;
 
@@ -130,25 +139,72 @@ ReferenceRenderer::Light ReferenceRenderer::GatherLight(
 
 ReferenceRenderer::ReferenceRenderer(const Image& map,
                                      const ReferenceOptions& options)
-    : ReferenceRenderer(map, GatherLight(map, options), options) {
+    : ReferenceRenderer(
+          options.split_bright ? SplitBrightTexels(map) : BrightTexels{{}, map},
+          options) {
   const ReferenceOptions defaults;
   if (lobe_rays_ == 0 || options.near_rings < defaults.near_rings) return;
   coarser_ = std::make_unique<ReferenceRenderer>(map, Coarser(options));
 }
 
-ReferenceRenderer::ReferenceRenderer(const Image& map, Light light,
+ReferenceRenderer::ReferenceRenderer(const BrightTexels& map,
+                                     const ReferenceOptions& options)
+    : ReferenceRenderer(map, GatherLight(map.rest, options), options) {}
+
+ReferenceRenderer::ReferenceRenderer(const BrightTexels& map, Light light,
                                      const ReferenceOptions& options)
     : num_threads_(options.num_threads),
       lobe_rays_(options.lobe_rays),
-      map_({&map}, 4),
+      bright_(map.texels),
+      map_({&map.rest}, 4),
       power_(std::move(light.power)),
       solid_angle_(std::move(light.solid_angle)),
       shadows_(options.shadows),
       emitters_(options.emitters),
       ranges_(std::move(light.ranges)),
-      quadrature_(std::move(light.cells), NearOptions(map.width, options)) {
+      quadrature_(std::move(light.cells),
+                  NearOptions(map.rest.width, options)) {
   CHECK(emitters_ == nullptr || shadows_ != nullptr);
   CHECK(lobe_rays_ >= 0 && (lobe_rays_ & (lobe_rays_ - 1)) == 0);
+}
+
+struct ReferenceRenderer::Common {
+  // Radians, 0: lobes have no rays of their own. These have half-vectors within
+  // it of the normal.
+  double lobe_width = 0.0;
+  std::vector<BrightSample> bright;
+};
+
+int ReferenceRenderer::BrightSamplesPerSide(double lobe_half_width) const {
+  // A texel's light spreads over two; the lobe turns twice as far as
+  // half-vectors do.
+  const double width = 2.0 * kPi / map_.height;
+  const double step = kBrightStep * 2.0 * lobe_half_width;
+  return 2 * std::clamp(static_cast<int>(std::ceil(0.5 * width / step)), 1,
+                        kMostBrightSamples / 2);
+}
+
+template <typename Lookup>
+Eigen::Array3d ReferenceRenderer::GatherBright(
+    const PointFrame& frame, const std::vector<BrightSample>& bright,
+    const Lookup& lookup, const uint64_t* hidden) const {
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  if (bright.empty()) return sum;
+  const Eigen::Matrix3d axes = frame.Axes().cast<double>();
+  const Eigen::Vector3d wo = axes.transpose() * frame.wo;
+  for (const BrightSample& sample : bright) {
+    const double cosine = frame.n.dot(sample.direction);
+    if (cosine <= 0.0) continue;
+    const double visible =
+        hidden == nullptr
+            ? 1.0
+            : shadows_->VisibleAlong(hidden, frame.n, sample.direction);
+    if (visible == 0.0) continue;
+    const HalfDiff angles = ToHalfDiff(axes.transpose() * sample.direction, wo);
+    sum += visible * cosine *
+           lookup(angles.theta_h, angles.theta_d, angles.phi_d) * sample.power;
+  }
+  return sum;
 }
 
 struct ReferenceRenderer::Rays {
@@ -270,7 +326,7 @@ std::vector<Eigen::Vector3f> ReferenceRenderer::Bundle(
 
 template <typename Lookup>
 std::vector<double> ReferenceRenderer::LightOfLobes(
-    int depth, int count, double lobe_width, const ViewGroups& groups,
+    int depth, int count, const Common& common, const ViewGroups& groups,
     const std::vector<ShadingPoint>& points, const Lookup& lookup,
     const EmittedLight& emitted) const {
   if (points.empty()) return {};
@@ -288,7 +344,7 @@ std::vector<double> ReferenceRenderer::LightOfLobes(
     ShadeNear(PointFrame(points[groups.order[begin]]), lookup, &s.near,
               &s.rays);
     const std::vector<Eigen::Vector3f> lobe =
-        Bundle(s.near, lobe_width, count, &s.rays);
+        Bundle(s.near, common.lobe_width, count, &s.rays);
     for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
       const int i = groups.order[k];
       const Eigen::Matrix3d axes = PointFrame(points[i]).Axes().cast<double>();
@@ -310,7 +366,7 @@ std::vector<double> ReferenceRenderer::LightOfLobes(
     // The last bounce shows what the map alone lights.
     EmittedLight light = emitted;
     if (depth + 1 >= emitted.bounces) light.radiance = nullptr;
-    next.RenderAt(depth + 1, lobe_width, some, lookup, light, radiance.data());
+    next.RenderAt(depth + 1, common, some, lookup, light, radiance.data());
   }
   std::vector<double> light(3 * met.size(), -1.0);
   for (size_t k = 0, from = 0; k < met.size(); ++k) {
@@ -324,28 +380,32 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
                                    const Lookup& lookup,
                                    const EmittedLight& emitted,
                                    double* E) const {
-  double lobe_width = 0.0;
-  if (lobe_rays_ > 0 && emitters_ != nullptr && emitted.radiance != nullptr) {
-    const double half = LobeHalfWidth(lookup);
-    if (half < kNarrowLobe) lobe_width = kLobeWidths * half;
+  Common common;
+  const bool follow =
+      lobe_rays_ > 0 && emitters_ != nullptr && emitted.radiance != nullptr;
+  if (follow || !bright_.empty()) {
+    const double half = LobeHalfWidth(std::cref(lookup));
+    if (follow && half < kNarrowLobe) common.lobe_width = kLobeWidths * half;
+    common.bright = SampleBrightTexels(bright_, map_.height, map_.width,
+                                       BrightSamplesPerSide(half));
   }
-  RenderAt(0, lobe_width, points, lookup, emitted, E);
+  RenderAt(0, common, points, lookup, emitted, E);
 }
 
 template <typename Lookup>
-void ReferenceRenderer::RenderAt(int depth, double lobe_width,
+void ReferenceRenderer::RenderAt(int depth, const Common& common,
                                  const std::vector<ShadingPoint>& points,
                                  const Lookup& lookup,
                                  const EmittedLight& emitted, double* E) const {
   const ViewGroups groups(points);
   int lobe_rays = 0;
   std::vector<double> of_lobes;
-  if (lobe_width > 0.0 && depth < emitted.bounces) {
+  if (common.lobe_width > 0.0 && depth < emitted.bounces) {
     lobe_rays = lobe_rays_;
     for (int k = 0; k < depth; ++k) lobe_rays /= kFewerRays;
     lobe_rays = std::max(lobe_rays, 1);
-    of_lobes = LightOfLobes(depth, lobe_rays, lobe_width, groups, points,
-                            lookup, emitted);
+    of_lobes =
+        LightOfLobes(depth, lobe_rays, common, groups, points, lookup, emitted);
   }
   struct Scratch {
     std::vector<NearSample> near;
@@ -363,7 +423,7 @@ void ReferenceRenderer::RenderAt(int depth, double lobe_width,
     const size_t begin = groups.begins[group];
     ShadeNear(PointFrame(points[groups.order[begin]]), lookup, &s.near,
               &s.rays);
-    if (lobe_rays > 0) Bundle(s.near, lobe_width, lobe_rays, &s.rays);
+    if (lobe_rays > 0) Bundle(s.near, common.lobe_width, lobe_rays, &s.rays);
     for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
       const int i = groups.order[k];
       const PointFrame frame(points[i]);
@@ -380,6 +440,7 @@ void ReferenceRenderer::RenderAt(int depth, double lobe_width,
       }
       if (lobe_rays > 0) sight.lobe = &of_lobes[size_t{3} * lobe_rays * i];
       Eigen::Array3d sum = Gather(s.rays, frame.Axes(), sight);
+      sum += GatherBright(frame, common.bright, lookup, sight.hidden);
       quadrature_.SampleFar(frame.n, frame.wo, &s.far);
       for (const FarSample& far : s.far) {
         const double visible =

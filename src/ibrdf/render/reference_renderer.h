@@ -12,6 +12,7 @@
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
+#include "ibrdf/render/bright_texels.h"
 #include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/reference_parts.h"
 #include "ibrdf/render/scene.h"
@@ -41,10 +42,11 @@ class ReferenceRenderer {
   template <typename Lookup>
   void RenderWith(const std::vector<ShadingPoint>& points, const Lookup& lookup,
                   const EmittedLight& emitted, double* E) const;
-  // After so many bounces along rays of a lobe whose half-vectors lie within
-  // lobe_width, radians, of the normal (0: no such rays).
+  // What is the same for all points of a call.
+  struct Common;
+  // After so many bounces along rays of the lobe.
   template <typename Lookup>
-  void RenderAt(int depth, double lobe_width,
+  void RenderAt(int depth, const Common& common,
                 const std::vector<ShadingPoint>& points, const Lookup& lookup,
                 const EmittedLight& emitted, double* E) const;
 
@@ -76,7 +78,7 @@ class ReferenceRenderer {
   // Radiance along `count` rays of the lobe of each point [points, count, 3],
   // negative where they meet nothing.
   template <typename Lookup>
-  std::vector<double> LightOfLobes(int depth, int count, double lobe_width,
+  std::vector<double> LightOfLobes(int depth, int count, const Common& common,
                                    const ViewGroups& groups,
                                    const std::vector<ShadingPoint>& points,
                                    const Lookup& lookup,
@@ -91,13 +93,25 @@ class ReferenceRenderer {
       const std::vector<NearSample>& samples, double lobe_width, int count,
       Rays* rays);
 
-  ReferenceRenderer(const Image& map, Light light,
+  // Enough for a lobe of that half width of half-vectors.
+  int BrightSamplesPerSide(double lobe_half_width) const;
+  // Light of bright texels at a point; what is hidden is left out.
+  template <typename Lookup>
+  Eigen::Array3d GatherBright(const PointFrame& frame,
+                              const std::vector<BrightSample>& bright,
+                              const Lookup& lookup,
+                              const uint64_t* hidden) const;
+
+  ReferenceRenderer(const BrightTexels& map, const ReferenceOptions& options);
+  ReferenceRenderer(const BrightTexels& map, Light light,
                     const ReferenceOptions& options);
 
   int num_threads_, lobe_rays_;
   // Renders what lobes' rays meet.
   std::unique_ptr<const ReferenceRenderer> coarser_;
   const ReferenceKernels& kernels_ = ActiveReferenceKernels();
+  std::vector<BrightTexel> bright_;
+  // Without those; so are the far rule's.
   PaddedMaps map_;
   std::vector<Eigen::Array3d> power_;
   std::vector<double> solid_angle_;
