@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "ibrdf/render/lobe_bundles.h"
 #include "ibrdf/render/scene_probe.h"
 
 namespace ibrdf {
@@ -172,6 +173,15 @@ bool TierRadiance::Choose(const std::vector<ShadingPoint>& points,
   if (options.reflectance_map) plan_.tier = Tier::kReflectanceMap;
   if (!options.harmonics && !options.gaussians) return true;
   if (!options.forced && plan_.seconds < kWorthChoosing) return true;
+
+  if (const double lobe = LobeHalfWidth(brdf_.Lookup());
+      !options.forced && lobe < kNarrowLobe) {
+    plan_.words = Format(
+        "; spherical harmonics and spherical Gaussians are not within %.4f for "
+        "a lobe of %.1f degrees",
+        options.log_error, lobe * 180.0 / 3.14159265358979323846);
+    return true;
+  }
 
   // What is predicted before anything is rendered.
   const std::vector<ShadingPoint> few = SpreadPoints(points, kChecked);

@@ -21,6 +21,9 @@ constexpr char kHard[] =
     "0.5}}, width: 128, height: 64}";
 constexpr char kMirror[] =
     "reflectance.known={cook_torrance: {diffuse: 0, roughness: 0.03, f0: 0.9}}";
+constexpr char kGlossy[] =
+    "reflectance.known={cook_torrance: {diffuse: 0.2, roughness: 0.12, f0: "
+    "0.04}}";
 constexpr char kPerspective[] =
     "camera={type: perspective, fov_degrees: 30, from: [0, 0, 4]}";
 
@@ -110,8 +113,8 @@ TEST_F(RadianceTier, MirrorsAreLeftToTheQuadratureAndItSaysWhy) {
   EXPECT_EQ(0, soft.checked);
   EXPECT_NE(std::string::npos, soft.words.find("are not within 0.0030"))
       << soft.words;
-  // Where the sun may be beyond the quadrature, which is found to be good.
-  const TierPlan hard = Plan({kMirror, kHard});
+  // A glossy surface under a sun is looked at and found to need too many.
+  const TierPlan hard = Plan({kGlossy, kHard});
   EXPECT_EQ(Tier::kReflectanceMap, hard.tier);
   EXPECT_EQ(64, hard.checked);
   EXPECT_NE(std::string::npos, hard.words.find("slower or not within"))
