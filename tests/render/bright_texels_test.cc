@@ -39,15 +39,22 @@ TEST(BrightTexels, RestAndExcessAreTheMap) {
 }
 
 TEST(BrightTexels, EvenLightHasNone) {
-  EXPECT_TRUE(SplitBrightTexels(ConstantMap(32, 64, 2.0f)).texels.empty());
-  EXPECT_TRUE(SplitBrightTexels(SmoothMap(32, 64)).texels.empty());
-  const BrightTexels black = SplitBrightTexels(ConstantMap(32, 64, 0.0f));
+  EXPECT_TRUE(SplitBrightTexels(ConstantMap(64, 128, 2.0f)).texels.empty());
+  EXPECT_TRUE(SplitBrightTexels(SmoothMap(64, 128)).texels.empty());
+  const BrightTexels black = SplitBrightTexels(ConstantMap(64, 128, 0.0f));
   EXPECT_TRUE(black.texels.empty());
-  EXPECT_EQ(ConstantMap(32, 64, 0.0f).rgb, black.rest.rgb);
+  EXPECT_EQ(ConstantMap(64, 128, 0.0f).rgb, black.rest.rgb);
+}
+
+TEST(BrightTexels, RingsDoNotMissCoarseTexels) {
+  const Image map = SunnyMap(44, 88);
+  const BrightTexels split = SplitBrightTexels(map);
+  EXPECT_TRUE(split.texels.empty());
+  EXPECT_EQ(map.rgb, split.rest.rgb);
 }
 
 TEST(BrightTexels, AWideLampIsLeftToTheRings) {
-  Image map = ConstantMap(32, 64, 0.01f);
+  Image map = ConstantMap(64, 128, 0.01f);
   for (int r = 8; r < 16; ++r) {
     for (int c = 8; c < 16; ++c) {
       for (int k = 0; k < 3; ++k) map.At(c, r)[k] = 100.0f;

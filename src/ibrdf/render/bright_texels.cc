@@ -14,10 +14,12 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr size_t kMostTexels = 32;
 constexpr double kContrast = 30.0;  // to the map's mean
 constexpr double kLeastShare = 0.002;
+constexpr int kLeastRows = 45;
 
 }  // namespace
 
 BrightTexels SplitBrightTexels(const Image& map) {
+  if (map.height < kLeastRows) return {{}, map};
   const size_t count = map.num_pixels();
   std::vector<float> strength(count);  // of the strongest channel
   double power = 0.0;
