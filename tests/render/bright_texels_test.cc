@@ -127,7 +127,7 @@ TEST(BrightTexels, CoarseRingsShowASunToo) {
     ReferenceRenderer(map, Coarser({})).Render(points, brdf, E.data());
     for (size_t i = 0; i < points.size(); ++i) {
       const Eigen::Array3d slow =
-          BruteForceRadiance(points[i], brdf, map, 1200, 2400);
+          BruteForceRadiance(points[i], brdf, map, 800, 1600);
       for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(1.0, E[3 * i + c] / slow[c], 0.01) << i << " " << c;
       }
