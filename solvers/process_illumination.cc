@@ -16,12 +16,12 @@ constexpr double kJitter = 1e-10;
 class ProcessIllumination final : public IlluminationModel {
  public:
   ProcessIllumination(int width, int height, const LightProcess& process,
-                      double amplitude)
+                      const LightScales& scales)
       : IlluminationModel(width, height),
-        spectrum_(height, width, process.correlation_degrees),
+        spectrum_(ProcessSpectrum(height, width, process).At(scales)),
         axes_(ColourAxes()) {
-    CHECK_GT(amplitude, 0.0);
-    const Eigen::Matrix3d local = amplitude * process.Local();
+    const Eigen::Matrix3d local =
+        std::exp(scales.log_amplitude) * process.Local();
     const Eigen::Matrix3d level = width * process.Level();
     for (int kind = 0; kind < 2; ++kind) {
       const Eigen::Vector3d axis = axes_.row(kind);
@@ -128,9 +128,9 @@ class ProcessIllumination final : public IlluminationModel {
 }  // namespace
 
 std::unique_ptr<IlluminationModel> MakeProcessIllumination(
-    int width, int height, const LightProcess& process, double amplitude) {
-  return std::make_unique<ProcessIllumination>(width, height, process,
-                                               amplitude);
+    int width, int height, const LightProcess& process,
+    const LightScales& scales) {
+  return std::make_unique<ProcessIllumination>(width, height, process, scales);
 }
 
 }  // namespace ibrdf

@@ -15,8 +15,9 @@ namespace ibrdf {
 // The covariance is the same at every longitude, so that a Fourier transform
 // along the rows leaves a Cholesky factor [H][H] for each frequency. Costs
 // O(W H (W + H)) a product and O(W H^3) to build: maps of up to 256x128.
-// width even; amplitude > 0 as in LightProcess.
+// width even.
 std::unique_ptr<IlluminationModel> MakeProcessIllumination(
-    int width, int height, const LightProcess& process, double amplitude);
+    int width, int height, const LightProcess& process,
+    const LightScales& scales);
 
 }  // namespace ibrdf

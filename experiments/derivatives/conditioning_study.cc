@@ -20,7 +20,6 @@ namespace derivatives {
 namespace {
 
 constexpr double kCodeSigma = 0.5;
-constexpr double kLogAmplitudeStd = 0.7;
 // Of the light's mode, nats: what is left of it enters differences of gradients
 // by its root.
 constexpr double kModeTolerance = 1e-9;
@@ -62,10 +61,10 @@ void StudyMarginalHessian(const NeuralBrdfModel& model,
   const Eigen::VectorXd noise =
       Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
   LightMode mode;
-  reflectance.Evaluate(x.data(), noise, 0.0, 1e-9, &mode, nullptr);
-  const MarginalObjective whitened(&reflectance, &prior, kLogAmplitudeStd,
-                                   noise, &mode, kModeTolerance);
-  std::vector<double> y = whitened.Whitened(x, 0.0);
+  reflectance.Evaluate(x.data(), noise, {}, 1e-9, &mode, nullptr);
+  const MarginalObjective whitened(&reflectance, &prior, noise, &mode,
+                                   kModeTolerance);
+  std::vector<double> y = whitened.Whitened(x, {});
   MarginalDescentOptions o;
   o.max_iterations = 200;
   o.least_gain = 1e-6;
@@ -79,8 +78,8 @@ void StudyMarginalHessian(const NeuralBrdfModel& model,
       std::vector<double> at = y;
       at[i] += s == 0 ? kStep : -kStep;
       LightMode start = mode;
-      const MarginalObjective objective(&reflectance, &prior, kLogAmplitudeStd,
-                                        noise, &start, kModeTolerance);
+      const MarginalObjective objective(&reflectance, &prior, noise, &start,
+                                        kModeTolerance);
       double cost = 0.0;
       side[s].resize(n);
       CHECK(objective.Evaluate(at.data(), &cost, side[s].data()));

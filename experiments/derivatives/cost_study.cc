@@ -209,7 +209,7 @@ void StudyPriors(int count, std::mt19937_64* rng, ErrorTable* table) {
 void StudyProcessPrior(std::mt19937_64* rng, ErrorTable* table) {
   constexpr int kHeight = 8, kWidth = 16;
   constexpr float kStep = 0.5f;
-  ProcessPrior prior(kHeight, kWidth, LightProcess(), 1.3, 0.4);
+  ProcessPrior prior(kHeight, kWidth, LightProcess(), {0.25}, 0.4);
   std::normal_distribution<float> normal;
   for (const float scale : {1.0f, 1e-3f, 60.0f}) {
     std::vector<float> map(3 * kHeight * kWidth), gradient(map.size(), 0.0f);

@@ -1,4 +1,5 @@
-// The posterior with the light integrated out, by lobes and log amplitude.
+// The posterior with the light integrated out, by lobes and scales of the
+// light.
 #include <glog/logging.h>
 
 #include <Eigen/Dense>
@@ -37,19 +38,22 @@ class ExactMarginal {
         level_(start.level),
         local_(process.Local().cast<Real>()),
         flat_(process.Level().cast<Real>()),
-        correlation_(
-            LightCorrelation(height, width, process.correlation_degrees)
-                .cast<Real>()),
+        process_(process),
+        height_(height),
+        width_(width),
         mode_(start.l.cast<Real>()) {}
 
-  // At exp(log_amplitude); Newton's method from the last mode.
-  Real Cost(const Matrices& T, Real log_amplitude) {
-    const Eigen::Index t = correlation_.rows(), n = 3 * t, P = T[0].rows();
+  // Newton's method from the last mode.
+  Real Cost(const Matrices& T, const LightScales& scales) {
+    const Matrix correlation =
+        LightCorrelation(height_, width_, process_, scales).cast<Real>();
+    const Eigen::Index t = correlation.rows(), n = 3 * t, P = T[0].rows();
     Matrix K(n, n);
     for (int c = 0; c < 3; ++c) {
       for (int d = 0; d < 3; ++d) {
         K.block(c * t, d * t, t, t) =
-            (std::exp(log_amplitude) * local_(c, d) * correlation_).array() +
+            (std::exp(Real(scales.log_amplitude)) * local_(c, d) * correlation)
+                .array() +
             flat_(c, d);
       }
     }
@@ -106,7 +110,8 @@ class ExactMarginal {
   const Vector y_, noise_;
   const Real level_;
   const Eigen::Matrix<Real, 3, 3> local_, flat_;
-  const Matrix correlation_;
+  const LightProcess process_;
+  const int height_, width_;
   Vector mode_;
 };
 
@@ -130,7 +135,7 @@ class MarginalStudy {
   // An image of other lobes than those at which derivatives are taken.
   void Add(const std::string& kind, const std::string& where,
            const std::vector<double>& truth, const std::vector<double>& at,
-           double log_amplitude) {
+           const LightScales& scales) {
     TransportOptions options;
     options.grid = resolution_.grid;
     const Transport transport(points_, 8, 16, options);
@@ -145,23 +150,20 @@ class MarginalStudy {
 
     LightMode mode;
     std::vector<double> by_lobes;
-    const MarginalValue value = reflectance.Evaluate(
-        at.data(), noise, log_amplitude, 1e-12, &mode, &by_lobes);
+    const MarginalValue value =
+        reflectance.Evaluate(at.data(), noise, scales, 1e-12, &mode, &by_lobes);
     CHECK(value.ok) << kind;
-    const std::vector<Real> exact =
-        Exact(reflectance, at, noise, log_amplitude, mode);
+    const std::vector<Real> exact = Exact(reflectance, at, noise, scales, mode);
     table_->Add(name_ + ": likelihood by lobes", kind, where, by_lobes, exact);
 
     // The whole objective, whose mode is found to kModeTolerance only.
     LightMode start;
     start.level = mode.level;
     start.l = start.dual = Eigen::VectorXd::Zero(mode.l.size());
-    const double std = 0.7;
-    const MarginalObjective objective(&reflectance, &prior_, std, noise,
-                                      &start);
+    const MarginalObjective objective(&reflectance, &prior_, noise, &start);
     const Eigen::Map<const Eigen::VectorXd> p(
         at.data(), static_cast<Eigen::Index>(at.size()));
-    const std::vector<double> y = objective.Whitened(p, log_amplitude);
+    const std::vector<double> y = objective.Whitened(p, scales);
     std::vector<double> gradient(y.size());
     double cost = 0.0;
     CHECK(objective.Evaluate(y.data(), &cost, gradient.data())) << kind;
@@ -176,15 +178,19 @@ class MarginalStudy {
     const Vector inner = factor.transpose() * (outer + wall.cast<Real>());
     std::vector<Real> right;
     for (Eigen::Index i = 0; i < n; ++i) right.push_back(y[i] + inner[i]);
-    right.push_back(y[n] + std * exact[n]);
+    const auto stds = LightScales::Stds();
+    for (int k = 0; k < LightScales::kCount; ++k) {
+      right.push_back(y[n + k] + stds[k] * exact[n + k]);
+    }
     table_->Add(name_ + ": objective, whitened", kind, where, gradient, right);
   }
 
  private:
-  // [lobe parameters, log amplitude].
+  // [lobe parameters, scales].
   std::vector<Real> Exact(const MarginalReflectance& reflectance,
                           const std::vector<double>& at,
-                          const Eigen::VectorXd& noise, double log_amplitude,
+                          const Eigen::VectorXd& noise,
+                          const LightScales& scales,
                           const LightMode& mode) const {
     const ImageCells& cells = reflectance.cells();
     TransportOptions options;
@@ -228,7 +234,7 @@ class MarginalStudy {
     for (int i = 0; i < 3 * P; ++i) y[i] = cells.log_radiance[i];
     ExactMarginal marginal(y, LightProcess(), resolution_.map_height,
                            resolution_.map_width, noise, mode);
-    marginal.Cost(T, log_amplitude);
+    marginal.Cost(T, scales);
     // Central differences: truncation of some 1e-10.
     const auto differentiate = [](const auto& cost) {
       constexpr Real kStep = 1e-5L;
@@ -247,11 +253,17 @@ class MarginalStudy {
             moved[c] += h * colour(k, c) * shape[k * (1 + codes)];
           }
         }
-        return marginal.Cost(moved, log_amplitude);
+        return marginal.Cost(moved, scales);
       }));
     }
-    out.push_back(differentiate(
-        [&](Real h) { return marginal.Cost(T, log_amplitude + h); }));
+    for (int k = 0; k < LightScales::kCount; ++k) {
+      out.push_back(differentiate([&](Real h) {
+        LightScales moved = scales;
+        (k == 0 ? moved.log_amplitude : moved.log_roughness[k - 1]) +=
+            static_cast<double>(h);
+        return marginal.Cost(T, moved);
+      }));
+    }
     return out;
   }
 
@@ -285,25 +297,28 @@ void AddStates(const std::string& name, const NeuralBrdfModel& model, int count,
   std::vector<double> p = truth;
   // Beyond the clamp of colours.
   for (int c = 0; c < 3; ++c) p[2 * lobe_size - 3 + c] = 41.0;
-  study.Add("a log colour of 41", "", truth, p, 0.0);
+  study.Add("a log colour of 41", "", truth, p, {});
   for (int i = 0; i < count; ++i) {
+    LightScales scales;
+    scales.log_amplitude = 0.3 * normal(*rng);
+    for (double& s : scales.log_roughness) s = 0.6 * normal(*rng);
     study.Add("random", "state " + std::to_string(i), lobes(0.1), lobes(0.1),
-              0.3 * normal(*rng));
+              scales);
   }
   if (count == 0) return;
-  study.Add("at the truth", "", truth, truth, 0.0);
+  study.Add("at the truth", "", truth, truth, {});
   p = lobes(0.0);
   for (int i = 0; i < 2 * lobe_size; ++i) {
     if (i % lobe_size < size) p[i] = 0.0;
   }
-  study.Add("codes 0", "", truth, p, 0.0);
+  study.Add("codes 0", "", truth, p, {});
   p = truth;
   std::copy_n(p.begin(), lobe_size, p.begin() + lobe_size);
-  study.Add("lobes that coincide", "", truth, p, 0.0);
+  study.Add("lobes that coincide", "", truth, p, {});
   // One lobe vanishes.
   p = truth;
   for (int c = 0; c < 3; ++c) p[2 * lobe_size - 3 + c] = -60.0;
-  study.Add("a log colour of -60", "", truth, p, 0.0);
+  study.Add("a log colour of -60", "", truth, p, {});
 }
 
 }  // namespace

@@ -75,8 +75,7 @@ class EvidenceStudy {
     };
     std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
                 found->start.c_str());
-    Show(fine, "found",
-         {vector(found->parameters), std::log(found->amplitude)});
+    Show(fine, "found", {vector(found->parameters), found->scales});
     if (found_alone_) return OkStatus();
     LobeTableFitOptions fit_options;
     fit_options.lobes = problem_.lobes;
@@ -94,7 +93,7 @@ class EvidenceStudy {
         prior_.Cost(vector(nearest), nullptr)) {
       nearest = turned;
     }
-    const Point truth = {vector(nearest), 0.0};
+    const Point truth = {vector(nearest), {}};
     Show(fine, "truth", truth);
     Show(fine, "from truth", DescendFrom(fine, truth, kDescentIterations).end);
     return OkStatus();
@@ -103,7 +102,7 @@ class EvidenceStudy {
  private:
   struct Point {
     Eigen::VectorXd lobes;
-    double log_amplitude = 0.0;
+    LightScales scales;
   };
   struct Descent {
     MarginalDescent summary;
@@ -116,18 +115,15 @@ class EvidenceStudy {
     Descent descent;
     LightMode mode;
     descent.noise = fine.likelihood().FindNoise(
-        fine.Matrices(start.lobes.data()), options_.sigma, start.log_amplitude,
+        fine.Matrices(start.lobes.data()), options_.sigma, start.scales,
         MarginalObjective::kModeTolerance, &mode);
-    const MarginalObjective objective(
-        &fine, &prior_, options_.log_amplitude_std, descent.noise, &mode);
-    std::vector<double> y =
-        objective.Whitened(start.lobes, start.log_amplitude);
+    const MarginalObjective objective(&fine, &prior_, descent.noise, &mode);
+    std::vector<double> y = objective.Whitened(start.lobes, start.scales);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
     descent.summary = Descend(objective, o, &y);
     descent.value = objective.last_value();
-    descent.end = {objective.LobesOf(y.data()),
-                   objective.LogAmplitudeOf(y.data())};
+    descent.end = {objective.LobesOf(y.data()), objective.ScalesOf(y.data())};
     return descent;
   }
 
@@ -164,8 +160,7 @@ class EvidenceStudy {
       LightMode mode;
       const MarginalValue value = fine.likelihood().Evaluate(
           matrices, (own + factor * (noise.array() - own)).matrix(),
-          point.log_amplitude, MarginalObjective::kModeTolerance, &mode,
-          nullptr);
+          point.scales, MarginalObjective::kModeTolerance, &mode, nullptr);
       std::printf("  %.2f %.1f", factor, value.cost);
     }
     std::printf("\n");

@@ -79,7 +79,7 @@ Estimator::LightPriors Estimator::PriorsAt(const Eigen::Array3d& level) const {
   priors.mean = light_->ConstantMap(level.data());
   if (has_process_prior_) {
     priors.on_map.push_back(std::make_unique<ProcessPrior>(
-        light_->height(), light_->width(), LightProcess(), light_amplitude_,
+        light_->height(), light_->width(), LightProcess(), light_scales_,
         level.mean()));
   }
   return priors;
@@ -140,7 +140,7 @@ Status Estimator::EstimateLight(JointState* state) {
 Status Estimator::EstimateDraw(int width, int height, JointMethod method,
                                double share, JointState* state) {
   SetLight(
-      MakeProcessIllumination(width, height, LightProcess(), light_amplitude_),
+      MakeProcessIllumination(width, height, LightProcess(), light_scales_),
       false);
   MatchLight(state);
   StartFirstLight();

@@ -96,7 +96,7 @@ Status Estimator::SearchMarginal(JointState* state) {
   const LevelGauge gauge(problem_.model, materials_, problem_.num_threads);
   const double level = gauge.Fix(state->lobes.data());
   start_name_ = found->start;
-  light_amplitude_ = found->amplitude;
+  light_scales_ = found->scales;
   const auto& materials = materials_.materials;
   const auto start =
       std::find_if(materials.begin(), materials.end(),

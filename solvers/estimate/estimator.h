@@ -14,6 +14,7 @@
 #include "solvers/inverse_rendering.h"
 #include "solvers/joint/joint_method.h"
 #include "solvers/joint/joint_objective.h"
+#include "solvers/marginal/light_process.h"
 #include "solvers/marginal/reflectance_search.h"
 #include "solvers/material_prior.h"
 
@@ -160,7 +161,7 @@ class Estimator {
   Eigen::Array3d level_ = Eigen::Array3d::Zero();  // of MatchLight
   // Centred at the image's level, whatever its unit; those of first_.
   LightPriors light_priors_, first_priors_;
-  double light_amplitude_ = 1.0;
+  LightScales light_scales_ = LightScales::Average();
   JointState first_;
   double finish_seconds_ = 0.0;  // predicted
   std::string start_name_;

@@ -30,7 +30,7 @@ RowMatrix Precision(const RowMatrix& correlation, double local, double level) {
 }  // namespace
 
 ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
-                           double amplitude, double level)
+                           const LightScales& scales, double level)
     : height_(height),
       width_(width),
       block_(BlockSide(height, width)),
@@ -42,8 +42,9 @@ ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
     }
     row_weight_.push_back(TexelSolidAngle(r, height, width) / (sum * block_));
   }
-  const RowMatrix correlation = LightCorrelation(
-      height / block_, width / block_, process.correlation_degrees);
+  const RowMatrix correlation =
+      LightCorrelation(height / block_, width / block_, process, scales);
+  const double amplitude = std::exp(scales.log_amplitude);
   // Along grey the channels add up.
   grey_ = Precision(correlation, 3 * amplitude * process.luminance_variance,
                     3 * process.level_variance);

@@ -14,7 +14,7 @@ namespace ibrdf {
 class ProcessPrior final : public LightPrior {
  public:
   ProcessPrior(int height, int width, const LightProcess& process,
-               double amplitude, double level);
+               const LightScales& scales, double level);
 
   double Evaluate(const float* log_map, float* gradient) override;
   void AddProduct(const float* v, float* out) const override;

@@ -3,8 +3,10 @@
 #include <cblas.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <mutex>
 
+#include "ibrdf/base/parallel_for.h"
 #include "solvers/marginal/blas_kernels.h"
 
 // LAPACK, column-major.
@@ -17,6 +19,9 @@ void dpotri_(const char* uplo, const int* n, double* a, const int* lda,
 
 namespace ibrdf {
 namespace {
+
+// Rows of one task of a product.
+constexpr Eigen::Index kTileRows = 48;
 
 // Before main, where nothing else runs yet; Ceres's products gain as well.
 [[maybe_unused]] const bool blas_core_taken = TakeFittingBlasCore();
@@ -63,6 +68,19 @@ void MultiplyTransposed(const Eigen::Ref<const RowMatrix>& A,
                         const Eigen::Ref<const RowMatrix>& B, RowMatrix* C) {
   CHECK_EQ(A.cols(), B.cols());
   Gemm(A, B, CblasTrans, B.rows(), C);
+}
+
+void MultiplyInTiles(const Eigen::Ref<const RowMatrix>& A, const RowMatrix& B,
+                     int num_threads, RowMatrix* C) {
+  C->resize(A.rows(), B.cols());
+  const Eigen::Index tiles = (A.rows() + kTileRows - 1) / kTileRows;
+  ParallelFor(tiles, num_threads, [&](int64_t tile, int) {
+    const Eigen::Index begin = tile * kTileRows;
+    const Eigen::Index rows = std::min(kTileRows, A.rows() - begin);
+    RowMatrix out;
+    Multiply(A.middleRows(begin, rows), B, &out);
+    C->middleRows(begin, rows) = out;
+  });
 }
 
 Eigen::VectorXd MultiplyVector(const RowMatrix& A,

@@ -13,6 +13,9 @@ void Multiply(const Eigen::Ref<const RowMatrix>& A,
               const Eigen::Ref<const RowMatrix>& B, RowMatrix* C);
 void MultiplyTransposed(const Eigen::Ref<const RowMatrix>& A,
                         const Eigen::Ref<const RowMatrix>& B, RowMatrix* C);
+// The first by tiles of rows in threads; the same bits for any number of them.
+void MultiplyInTiles(const Eigen::Ref<const RowMatrix>& A, const RowMatrix& B,
+                     int num_threads, RowMatrix* C);
 
 // A x and A^T x.
 Eigen::VectorXd MultiplyVector(const RowMatrix& A,

@@ -27,30 +27,7 @@ constexpr double kNewtonTolerance = 1e-3;
 constexpr double kMotionTolerance = 1e-10;
 // Of FindNoise, log radiance.
 constexpr double kFirstSigma = 0.15;
-// Rows of one task of a product.
-constexpr Eigen::Index kTileRows = 48;
-
-// C = A B over tiles of rows.
-void MultiplyInTiles(const Eigen::Ref<const RowMatrix>& A, const RowMatrix& B,
-                     int num_threads, RowMatrix* C) {
-  C->resize(A.rows(), B.cols());
-  const Eigen::Index tiles = (A.rows() + kTileRows - 1) / kTileRows;
-  ParallelFor(tiles, num_threads, [&](int64_t tile, int) {
-    const Eigen::Index begin = tile * kTileRows;
-    const Eigen::Index rows = std::min(kTileRows, A.rows() - begin);
-    RowMatrix out;
-    Multiply(A.middleRows(begin, rows), B, &out);
-    C->middleRows(begin, rows) = out;
-  });
-}
-
 }  // namespace
-
-struct MarginalLikelihood::Point {
-  Eigen::VectorXd L;         // radiance [3 * texels]
-  Eigen::VectorXd E;         // [3 * points]
-  Eigen::VectorXd residual;  // y - log E
-};
 
 MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
                                        const LightProcess& process,
@@ -61,13 +38,29 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
           log_radiance.data(), static_cast<Eigen::Index>(log_radiance.size()))),
       local_(process.Local()),
       level_(process.Level()),
-      spectrum_(map_height, map_width, process.correlation_degrees),
+      spectrum_(map_height, map_width, process),
+      roughness_weights_(RoughnessWeights(map_height)),
       map_height_(map_height),
       map_width_(map_width),
+      smooth_share_(process.smooth_share),
+      rough_share_(process.rough_share),
       texel_variance_(process.VarianceWithin(180.0 / map_height)),
       num_threads_(num_threads) {
   CHECK_GT(num_points_, 0);
   CHECK_EQ(log_radiance.size() % 3, 0u);
+}
+
+MarginalLikelihood::Light MarginalLikelihood::LightAt(
+    const LightScales& scales) const {
+  const double amplitude = std::exp(scales.log_amplitude);
+  const Eigen::ArrayXd by_row = Roughness(map_height_, scales).array();
+  Eigen::VectorXd variance(num_texels());
+  for (int r = 0; r < map_height_; ++r) {
+    variance.segment(r * map_width_, map_width_)
+        .setConstant(amplitude * texel_variance_ * by_row[r] * by_row[r]);
+  }
+  return {amplitude, spectrum_.At(scales), spectrum_.RoughAt(scales),
+          std::move(variance)};
 }
 
 double MarginalLikelihood::LevelFor(
@@ -83,12 +76,14 @@ double MarginalLikelihood::LevelFor(
 
 Eigen::VectorXd MarginalLikelihood::NoiseVariance(
     const std::array<RowMatrix, 3>& matrices, double sigma,
-    const LightMode& mode) const {
+    const LightScales& scales, const LightMode& mode) const {
   const Eigen::Index t = num_texels(), P = num_points_;
   const Point point = At(matrices, mode.level, mode.l);
+  const Eigen::VectorXd variance = LightAt(scales).texel_variance;
   Eigen::VectorXd noise(3 * P);
   for (int c = 0; c < 3; ++c) {
-    const Eigen::VectorXd power = point.L.segment(c * t, t).cwiseAbs2();
+    const Eigen::VectorXd power =
+        variance.cwiseProduct(point.L.segment(c * t, t).cwiseAbs2());
     for (Eigen::Index p = 0; p < P; ++p) {
       const double* T = matrices[c].row(p).data();
       double sum = 0.0;
@@ -104,8 +99,7 @@ Eigen::VectorXd MarginalLikelihood::NoiseVariance(
         }
       }
       const double E = point.E[c * P + p];
-      noise[c * P + p] =
-          sigma * sigma + texel_variance_ * 0.125 * sum / (E * E);
+      noise[c * P + p] = sigma * sigma + 0.125 * sum / (E * E);
     }
   }
   return noise;
@@ -113,27 +107,28 @@ Eigen::VectorXd MarginalLikelihood::NoiseVariance(
 
 Eigen::VectorXd MarginalLikelihood::FindNoise(
     const std::array<RowMatrix, 3>& matrices, double sigma,
-    double log_amplitude, double tolerance, LightMode* mode) const {
+    const LightScales& scales, double tolerance, LightMode* mode) const {
   const Eigen::VectorXd first =
       Eigen::VectorXd::Constant(y_.size(), kFirstSigma * kFirstSigma);
-  Evaluate(matrices, first, log_amplitude, tolerance, mode, nullptr);
-  return NoiseVariance(matrices, sigma, *mode);
+  Evaluate(matrices, first, scales, tolerance, mode, nullptr);
+  return NoiseVariance(matrices, sigma, scales, *mode);
 }
 
-Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Eigen::VectorXd& g) const {
+Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Light& light,
+                                               const Eigen::VectorXd& g) const {
   const Eigen::Index t = num_texels();
   const Eigen::Map<const RowMatrix> by_channel(g.data(), 3, t);
   RowMatrix correlated;
-  spectrum_.Multiply(by_channel, &correlated);
+  light.correlation.Multiply(by_channel, &correlated);
   Eigen::VectorXd out(g.size());
   Eigen::Map<RowMatrix>(out.data(), 3, t).noalias() = local_ * correlated;
   return out;
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyCovariance(
-    double amplitude, const Eigen::VectorXd& g) const {
+    const Light& light, const Eigen::VectorXd& g) const {
   const Eigen::Index t = num_texels();
-  Eigen::VectorXd out = amplitude * ApplyLocal(g);
+  Eigen::VectorXd out = light.amplitude * ApplyLocal(light, g);
   Eigen::Vector3d sums;
   for (int c = 0; c < 3; ++c) sums[c] = g.segment(c * t, t).sum();
   const Eigen::Vector3d level = level_ * sums;
@@ -159,7 +154,7 @@ MarginalLikelihood::Point MarginalLikelihood::At(
 
 std::unique_ptr<const MarginalLikelihood::Linearisation>
 MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
-                              const Eigen::VectorXd& noise, double amplitude,
+                              const Eigen::VectorXd& noise, const Light& light,
                               const Point& point) const {
   const Eigen::Index t = num_texels(), P = num_points_;
   auto linear = std::make_unique<Linearisation>();
@@ -167,7 +162,7 @@ MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
     linear->jacobian[c] =
         point.E.segment(c * P, P).cwiseInverse().asDiagonal() * matrices[c] *
         point.L.segment(c * t, t).asDiagonal();
-    spectrum_.Multiply(linear->jacobian[c], &linear->JC[c]);
+    light.correlation.Multiply(linear->jacobian[c], &linear->JC[c]);
   });
   RowMatrix& A = linear->factor;
   A.setZero(3 * P, 3 * P);
@@ -178,7 +173,7 @@ MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
     MultiplyTransposed(linear->JC[c], linear->jacobian[d], &block);
     // The rows of a Jacobian sum to 1: a level moves log radiance as it is.
     A.block(c * P, d * P, P, P) =
-        (amplitude * local_(c, d) * block).array() + level_(c, d);
+        (light.amplitude * local_(c, d) * block).array() + level_(c, d);
   });
   A.diagonal() += noise;
   if (!A.allFinite() || !Factorise(&A)) return nullptr;
@@ -208,9 +203,9 @@ Eigen::VectorXd MarginalLikelihood::ApplyJacobianTransposed(
 }
 
 Eigen::VectorXd MarginalLikelihood::SolveDual(const Linearisation& linear,
-                                              double amplitude,
+                                              const Light& light,
                                               const Eigen::VectorXd& x) const {
-  Eigen::VectorXd a = ApplyJacobian(linear, ApplyCovariance(amplitude, x));
+  Eigen::VectorXd a = ApplyJacobian(linear, ApplyCovariance(light, x));
   SolveFactored(linear.factor, a.data());
   return x - ApplyJacobianTransposed(linear, a);
 }
@@ -245,15 +240,15 @@ Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
 Eigen::VectorXd MarginalLikelihood::SolveHessian(
     const std::array<RowMatrix, 3>& matrices, const Point& point,
     const Linearisation& linear, const Eigen::VectorXd& weight,
-    double amplitude, double tolerance, const Eigen::VectorXd& x) const {
+    const Light& light, double tolerance, const Eigen::VectorXd& x) const {
   const Eigen::VectorXd weighted = weight.cwiseProduct(point.residual);
   const Eigen::VectorXd curvature =
       JacobianTransposedTimes(matrices, point, weighted);
   Eigen::VectorXd w = Eigen::VectorXd::Zero(x.size()), rest = x, p_dual, p;
   double rho = 0.0, first_rho = 0.0;
   for (int k = 0; k < kMaxHessianSteps; ++k) {
-    const Eigen::VectorXd z_dual = SolveDual(linear, amplitude, rest);
-    const Eigen::VectorXd z = ApplyCovariance(amplitude, z_dual);
+    const Eigen::VectorXd z_dual = SolveDual(linear, light, rest);
+    const Eigen::VectorXd z = ApplyCovariance(light, z_dual);
     const double next_rho = rest.dot(z);
     if (k == 0) first_rho = next_rho;
     if (!(next_rho > tolerance * first_rho)) break;
@@ -280,21 +275,24 @@ Eigen::VectorXd MarginalLikelihood::SolveHessian(
 
 MarginalValue MarginalLikelihood::Evaluate(
     const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
-    double log_amplitude, double tolerance, LightMode* mode,
+    const LightScales& scales, double tolerance, LightMode* mode,
     MarginalGradient* gradient) const {
   const Eigen::Index t = num_texels();
-  const double amplitude = std::exp(log_amplitude);
   const Eigen::VectorXd weight = noise.cwiseInverse();
   const auto likelihood_of = [&](const Point& at) {
     return 0.5 * at.residual.cwiseAbs2().dot(weight);
   };
   MarginalValue value;
-  if (!weight.allFinite() || !std::isfinite(amplitude)) return value;
+  if (!weight.allFinite()) return value;
+  const Light light = LightAt(scales);
+  if (!std::isfinite(light.amplitude) || !light.texel_variance.allFinite()) {
+    return value;
+  }
   if (mode->l.size() == 0) {
     mode->level = LevelFor(matrices);
     mode->l = mode->dual = Eigen::VectorXd::Zero(3 * t);
   } else {
-    mode->l = ApplyCovariance(amplitude, mode->dual);
+    mode->l = ApplyCovariance(light, mode->dual);
   }
   Point point = At(matrices, mode->level, mode->l);
   // Nothing but black: no light explains an image of it.
@@ -306,15 +304,15 @@ MarginalValue MarginalLikelihood::Evaluate(
   std::unique_ptr<const Linearisation> linear;
   for (int k = 0; k < kMaxIterations; ++k) {
     if (linear == nullptr) {
-      linear = Linearise(matrices, noise, amplitude, point);
+      linear = Linearise(matrices, noise, light, point);
       if (linear == nullptr) return value;
     }
     const Eigen::VectorXd slope =
         mode->dual - JacobianTransposedTimes(
                          matrices, point, weight.cwiseProduct(point.residual));
     const Eigen::VectorXd d_dual = -SolveHessian(
-        matrices, point, *linear, weight, amplitude, kNewtonTolerance, slope);
-    const Eigen::VectorXd dl = ApplyCovariance(amplitude, d_dual);
+        matrices, point, *linear, weight, light, kNewtonTolerance, slope);
+    const Eigen::VectorXd dl = ApplyCovariance(light, d_dual);
     if (!dl.allFinite()) return value;
     const double promise = -slope.dot(dl);  // twice the model's gain
     const double cross = mode->dual.dot(dl), square = d_dual.dot(dl);
@@ -348,7 +346,7 @@ MarginalValue MarginalLikelihood::Evaluate(
       linear = nullptr;
     }
   }
-  linear = Linearise(matrices, noise, amplitude, point);
+  linear = Linearise(matrices, noise, light, point);
   if (linear == nullptr) return value;
   const double log_determinant =
       2.0 * linear->factor.diagonal().array().log().sum();
@@ -357,9 +355,18 @@ MarginalValue MarginalLikelihood::Evaluate(
   value.misfit = point.residual.cwiseAbs().mean();
   value.ok = std::isfinite(value.cost);
   if (gradient != nullptr && value.ok) {
-    AddGradient(matrices, weight, amplitude, *mode, point, *linear, gradient);
+    AddGradient(matrices, weight, light, *mode, point, *linear, gradient);
   }
   return value;
+}
+
+Eigen::VectorXd MarginalLikelihood::BandWeights(int band) const {
+  Eigen::VectorXd h(num_texels());
+  for (int r = 0; r < map_height_; ++r) {
+    h.segment(r * map_width_, map_width_)
+        .setConstant(roughness_weights_(band, r));
+  }
+  return h;
 }
 
 // With F the cost, Phi its first two terms, l* the mode: dF = (partial of F at
@@ -367,7 +374,7 @@ MarginalValue MarginalLikelihood::Evaluate(
 // gradient of the log determinant in l.
 void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
                                      const Eigen::VectorXd& weight,
-                                     double amplitude, const LightMode& mode,
+                                     const Light& light, const LightMode& mode,
                                      const Point& point,
                                      const Linearisation& linear,
                                      MarginalGradient* gradient) const {
@@ -380,14 +387,19 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
   // meets differences of a Jacobian's rows. Then centred: G - sum_t G J.
   std::array<RowMatrix, 3> G;
   Eigen::VectorXd q(3 * t);
+  // By texel, diag(J^T A^-1 J K_rough) / 2.
+  Eigen::VectorXd rough_share = Eigen::VectorXd::Zero(t);
   for (int c = 0; c < 3; ++c) {
-    G[c].setZero(P, t);
+    RowMatrix sum = RowMatrix::Zero(P, t), product;
     for (int d = 0; d < 3; ++d) {
-      RowMatrix product;
-      MultiplyInTiles(inverse.block(c * P, d * P, P, P), linear.JC[d],
+      MultiplyInTiles(inverse.block(c * P, d * P, P, P), linear.jacobian[d],
                       num_threads_, &product);
-      G[c] += amplitude * local_(c, d) * product;
+      sum += light.amplitude * local_(c, d) * product;
     }
+    light.rough.Multiply(sum, &product);
+    rough_share +=
+        product.cwiseProduct(linear.jacobian[c]).colwise().sum().transpose();
+    light.correlation.Multiply(sum, &G[c]);
     const Eigen::VectorXd means =
         G[c].cwiseProduct(linear.jacobian[c]).rowwise().sum();
     G[c].colwise() -= means;
@@ -396,9 +408,9 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
   }
 
   const Eigen::VectorXd weighted = weight.cwiseProduct(r);
-  const Eigen::VectorXd w = SolveHessian(matrices, point, linear, weight,
-                                         amplitude, kMotionTolerance, q);
-  const Eigen::VectorXd v = ApplyCovariance(amplitude, w);
+  const Eigen::VectorXd w =
+      SolveHessian(matrices, point, linear, weight, light, kMotionTolerance, q);
+  const Eigen::VectorXd v = ApplyCovariance(light, w);
   const Eigen::VectorXd Jv = ApplyJacobian(linear, v);
 
   for (int c = 0; c < 3; ++c) {
@@ -417,7 +429,7 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
     out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
   }
 
-  const Eigen::VectorXd local = ApplyLocal(mode.dual);
+  const Eigen::VectorXd local = ApplyLocal(light, mode.dual);
   // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the level.
   double trace = 3.0 * static_cast<double>(P) -
                  inverse.diagonal().dot(weight.cwiseInverse());
@@ -426,64 +438,25 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
       trace -= level_(c, d) * inverse.block(c * P, d * P, P, P).sum();
     }
   }
-  gradient->log_amplitude =
-      amplitude * (-0.5 * mode.dual.dot(local) + w.dot(local)) + 0.5 * trace;
-}
-
-Eigen::MatrixXd MarginalLikelihood::Information(
-    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
-    double log_amplitude, const LightMode& mode, const RowMatrix& G) const {
-  const Eigen::Index P = num_points_, n = G.cols();
-  CHECK_EQ(G.rows(), 3 * P);
-  const auto linear = Linearise(matrices, noise, std::exp(log_amplitude),
-                                At(matrices, mode.level, mode.l));
-  if (linear == nullptr) return {};
-  const RowMatrix whitened =
-      linear->factor.triangularView<Eigen::Lower>().solve(G);
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n + 1, n + 1);
-  information.topLeftCorner(n, n).noalias() = whitened.transpose() * whitened;
-  RowMatrix inverse = linear->factor;
-  InvertFactored(&inverse);
-  // A^-1 J K1 J^T = I - A^-1 (D + the level's part).
-  RowMatrix by_amplitude = -inverse * noise.asDiagonal();
-  for (int c = 0; c < 3; ++c) {
-    Eigen::VectorXd level = Eigen::VectorXd::Zero(3 * P);
-    for (int d = 0; d < 3; ++d) {
-      level += level_(d, c) * inverse.middleCols(d * P, P).rowwise().sum();
-    }
-    by_amplitude.middleCols(c * P, P).colwise() -= level;
+  const auto by_scale = [&](const Eigen::VectorXd& K_dual, double its_trace) {
+    return -0.5 * mode.dual.dot(K_dual) + w.dot(K_dual) + 0.5 * its_trace;
+  };
+  gradient->scales[0] = by_scale(light.amplitude * local, trace);
+  // Of C, by the log roughness of a band with weights h along the texels:
+  // diag(h) R + R diag(h), R the rough part.
+  const Eigen::Map<const RowMatrix> dual(mode.dual.data(), 3, t);
+  RowMatrix rough_dual;
+  light.rough.Multiply(dual, &rough_dual);
+  for (int b = 0; b < LightScales::kBands; ++b) {
+    const Eigen::VectorXd h = BandWeights(b);
+    RowMatrix other;
+    light.rough.Multiply(dual * h.asDiagonal(), &other);
+    const RowMatrix moved =
+        light.amplitude * local_ * (rough_dual * h.asDiagonal() + other);
+    gradient->scales[1 + b] =
+        by_scale(Eigen::Map<const Eigen::VectorXd>(moved.data(), 3 * t),
+                 2.0 * h.dot(rough_share));
   }
-  by_amplitude.diagonal().array() += 1.0;
-  information(n, n) =
-      0.5 * by_amplitude.cwiseProduct(by_amplitude.transpose()).sum();
-  return information;
-}
-
-Eigen::VectorXd MarginalLikelihood::LightVariance(
-    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
-    double log_amplitude, const LightMode& mode) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
-  const double amplitude = std::exp(log_amplitude);
-  const auto linear =
-      Linearise(matrices, noise, amplitude, At(matrices, mode.level, mode.l));
-  CHECK(linear != nullptr);
-  RowMatrix inverse = linear->factor;
-  InvertFactored(&inverse);
-  // diag(K - K J^T A^-1 J K), row by row of J K.
-  Eigen::VectorXd variance(3 * t);
-  for (int c = 0; c < 3; ++c) {
-    RowMatrix JK(3 * P, t);  // cov(data, l_c)
-    for (int d = 0; d < 3; ++d) {
-      JK.middleRows(d * P, P) =
-          (amplitude * local_(d, c) * linear->JC[d]).array() + level_(d, c);
-    }
-    RowMatrix product;
-    MultiplyInTiles(inverse, JK, num_threads_, &product);
-    variance.segment(c * t, t) =
-        (amplitude * local_(c, c) + level_(c, c)) -
-        product.cwiseProduct(JK).colwise().sum().transpose().array();
-  }
-  return variance.cwiseMax(0.0);
 }
 
 }  // namespace ibrdf

@@ -28,7 +28,8 @@ struct LightMode {
 
 struct MarginalGradient {
   std::array<RowMatrix, 3> matrices;  // [points][texels] each
-  double log_amplitude = 0.0;
+  // By log amplitude and log roughness.
+  std::array<double, LightScales::kCount> scales = {};
 };
 
 struct MarginalValue {
@@ -56,42 +57,42 @@ class MarginalLikelihood {
   int num_texels() const { return map_height_ * map_width_; }
 
   // matrices: T_c [points][texels], >= 0, of the reflectance in channel c;
-  // noise: the diagonal of D [3 * points], > 0; the process' variances are
-  // multiplied by exp(log_amplitude).
+  // noise: the diagonal of D [3 * points], > 0; scales: of the process.
   // `mode` is where the search starts, if it holds one, and receives the mode,
   // found where another step would gain less than `tolerance` nats; gradient
   // may be null. The gradient is of the whole cost, the mode's own
   // motion included.
   MarginalValue Evaluate(const std::array<RowMatrix, 3>& matrices,
-                         const Eigen::VectorXd& noise, double log_amplitude,
-                         double tolerance, LightMode* mode,
-                         MarginalGradient* gradient) const;
+                         const Eigen::VectorXd& noise,
+                         const LightScales& scales, double tolerance,
+                         LightMode* mode, MarginalGradient* gradient) const;
 
-  // Gauss-Newton Hessian [n + 1][n + 1] of the cost by n parameters and, last,
-  // by log amplitude, the light profiled out:
+  // Gauss-Newton Hessian [n + scales]^2 of the cost by n parameters and, last,
+  // by the scales, the light profiled out:
   //   G^T A^-1 G,  A = D + J K J^T,  G = d log E / d parameters [3 * points][n]
-  // with the light held at its mode. Of the log determinant the amplitude alone
-  // has its part in it, the Fisher information tr((A^-1 J K1 J^T)^2) / 2, K1
-  // what the amplitude scales. Positive semidefinite. Empty where A is not
-  // positive definite.
+  // with the light held at its mode. Of the log determinant the scales alone
+  // have their part in it, the Fisher information
+  // tr(A^-1 J K_a J^T A^-1 J K_b J^T) / 2, K_a the derivative of K by scale a.
+  // Positive semidefinite. Empty where A is not positive definite.
   Eigen::MatrixXd Information(const std::array<RowMatrix, 3>& matrices,
                               const Eigen::VectorXd& noise,
-                              double log_amplitude, const LightMode& mode,
+                              const LightScales& scales, const LightMode& mode,
                               const RowMatrix& G) const;
 
   // sigma^2 and what the map's coarse texels cannot hold: light inside a texel
   // shows where a lobe changes within it,
-  //   sigma^2 + v / E_p^2 sum_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,
-  // n the four neighbours of t, v the process' variance inside a texel, L and E
+  //   sigma^2 + 1 / E_p^2 sum_t v_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,
+  // n the four neighbours of t, v the process' variance inside texel t, L and E
   // those of `mode`. Small for a matte surface under soft light, v for a ray.
   // A mirror is then not blamed for what the map lacks, nor preferred for it.
   Eigen::VectorXd NoiseVariance(const std::array<RowMatrix, 3>& matrices,
-                                double sigma, const LightMode& mode) const;
+                                double sigma, const LightScales& scales,
+                                const LightMode& mode) const;
 
   // NoiseVariance where no mode is known yet: at the one found, to `tolerance`
   // nats, with independent deviations of 0.15. `mode` as in Evaluate.
   Eigen::VectorXd FindNoise(const std::array<RowMatrix, 3>& matrices,
-                            double sigma, double log_amplitude,
+                            double sigma, const LightScales& scales,
                             double tolerance, LightMode* mode) const;
 
   // The level at which constant light gives the image's mean log radiance.
@@ -100,11 +101,25 @@ class MarginalLikelihood {
   // Diagonal of the posterior covariance of l [3 * texels] at the mode.
   Eigen::VectorXd LightVariance(const std::array<RowMatrix, 3>& matrices,
                                 const Eigen::VectorXd& noise,
-                                double log_amplitude,
+                                const LightScales& scales,
                                 const LightMode& mode) const;
 
  private:
-  struct Point;
+  struct Point {
+    Eigen::VectorXd L;         // radiance [3 * texels]
+    Eigen::VectorXd E;         // [3 * points]
+    Eigen::VectorXd residual;  // y - log E
+  };
+  // The process at some scales.
+  struct Light {
+    double amplitude;
+    LightSpectrum correlation;       // C
+    LightSpectrum rough;             // its rough part
+    Eigen::VectorXd texel_variance;  // v [texels]
+  };
+  Light LightAt(const LightScales& scales) const;
+  // Of the log roughness of a band [texels].
+  Eigen::VectorXd BandWeights(int band) const;
   // Of log E in l, d log E = J dl, with what its normal equations need.
   struct Linearisation {
     std::array<RowMatrix, 3> jacobian;  // [points][texels] of a channel
@@ -117,12 +132,13 @@ class MarginalLikelihood {
   // Null where the normal equations are not positive definite.
   std::unique_ptr<const Linearisation> Linearise(
       const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
-      double amplitude, const Point& point) const;
+      const Light& light, const Point& point) const;
   // K g.
-  Eigen::VectorXd ApplyCovariance(double amplitude,
+  Eigen::VectorXd ApplyCovariance(const Light& light,
                                   const Eigen::VectorXd& g) const;
   // K1 g, the part that the amplitude scales, at amplitude 1.
-  Eigen::VectorXd ApplyLocal(const Eigen::VectorXd& g) const;
+  Eigen::VectorXd ApplyLocal(const Light& light,
+                             const Eigen::VectorXd& g) const;
   Eigen::VectorXd ApplyJacobian(const Linearisation& linear,
                                 const Eigen::VectorXd& l) const;
   Eigen::VectorXd ApplyJacobianTransposed(const Linearisation& linear,
@@ -138,14 +154,14 @@ class MarginalLikelihood {
   // conjugate gradients preconditioned with a linearisation near it.
   Eigen::VectorXd SolveHessian(const std::array<RowMatrix, 3>& matrices,
                                const Point& point, const Linearisation& linear,
-                               const Eigen::VectorXd& weight, double amplitude,
-                               double tolerance,
+                               const Eigen::VectorXd& weight,
+                               const Light& light, double tolerance,
                                const Eigen::VectorXd& x) const;
   // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T D^-1 J)^-1 x.
-  Eigen::VectorXd SolveDual(const Linearisation& linear, double amplitude,
+  Eigen::VectorXd SolveDual(const Linearisation& linear, const Light& light,
                             const Eigen::VectorXd& x) const;
   void AddGradient(const std::array<RowMatrix, 3>& matrices,
-                   const Eigen::VectorXd& weight, double amplitude,
+                   const Eigen::VectorXd& weight, const Light& light,
                    const LightMode& mode, const Point& point,
                    const Linearisation& linear,
                    MarginalGradient* gradient) const;
@@ -153,9 +169,11 @@ class MarginalLikelihood {
   int num_points_;
   Eigen::VectorXd y_;  // [3 * points]
   Eigen::Matrix3d local_, level_;
-  LightSpectrum spectrum_;
+  ProcessSpectrum spectrum_;
+  RowMatrix roughness_weights_;  // [bands][rows]
   int map_height_, map_width_;
-  double texel_variance_;  // v_texel
+  double smooth_share_, rough_share_;
+  double texel_variance_;  // at amplitude and roughness 1
   int num_threads_;
 };
 

@@ -11,8 +11,8 @@
 namespace ibrdf {
 
 // -log posterior of a reflectance, in coordinates in which the prior is
-// N(0, I): y [num_parameters + 1], lobes = mean + factor y, then
-// log amplitude / log_amplitude_std. The light's mode of the last point with a
+// N(0, I): y [num_parameters + scales], lobes = mean + factor y, then
+// LightScales::Whitened. The light's mode of the last point with a
 // gradient is kept as the next one's start, and that of the last point without
 // one for a gradient there.
 class MarginalObjective final : public ceres::FirstOrderFunction {
@@ -23,9 +23,8 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
 
   // All must outlive *this.
   MarginalObjective(const MarginalReflectance* reflectance,
-                    const MaterialPrior* prior, double log_amplitude_std,
-                    Eigen::VectorXd noise, LightMode* mode,
-                    double mode_tolerance = kModeTolerance);
+                    const MaterialPrior* prior, Eigen::VectorXd noise,
+                    LightMode* mode, double mode_tolerance = kModeTolerance);
 
   int NumParameters() const override;
   bool Evaluate(const double* y, double* cost, double* gradient) const override;
@@ -36,16 +35,15 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   Eigen::MatrixXd Information(const double* y) const;
 
   Eigen::VectorXd LobesOf(const double* y) const;
-  double LogAmplitudeOf(const double* y) const;
+  LightScales ScalesOf(const double* y) const;
   std::vector<double> Whitened(const Eigen::VectorXd& lobes,
-                               double log_amplitude) const;
+                               const LightScales& scales) const;
   // Of the last evaluation that succeeded.
   const MarginalValue& last_value() const { return last_value_; }
 
  private:
   const MarginalReflectance* reflectance_;
   const MaterialPrior* prior_;
-  const double log_amplitude_std_;
   const Eigen::VectorXd noise_;
   LightMode* mode_;
   const double mode_tolerance_;

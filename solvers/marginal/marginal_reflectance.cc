@@ -110,7 +110,7 @@ std::array<RowMatrix, 3> MarginalReflectance::Matrices(
 
 MarginalValue MarginalReflectance::Evaluate(
     const double* parameters, const Eigen::VectorXd& noise,
-    double log_amplitude, double tolerance, LightMode* mode,
+    const LightScales& scales, double tolerance, LightMode* mode,
     std::vector<double>* gradient) const {
   const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
   const int stride = gradient != nullptr ? 1 + size : 1;
@@ -120,10 +120,10 @@ MarginalValue MarginalReflectance::Evaluate(
   const std::vector<FloatMatrix> shapes = ShapeMatrices(fields, stride);
   MarginalGradient by_matrix;
   const MarginalValue value = likelihood_->Evaluate(
-      Coloured(parameters, shapes), noise, log_amplitude, tolerance, mode,
+      Coloured(parameters, shapes), noise, scales, tolerance, mode,
       gradient != nullptr ? &by_matrix : nullptr);
   if (gradient == nullptr || !value.ok) return value;
-  gradient->assign(lobes_->num_parameters() + 1, 0.0);
+  gradient->assign(lobes_->num_parameters() + LightScales::kCount, 0.0);
   std::vector<float> by_node(nodes);
   for (int k = 0; k < num_lobes; ++k) {
     const double* lobe = parameters + k * lobes_->lobe_size();
@@ -147,7 +147,8 @@ MarginalValue MarginalReflectance::Evaluate(
       out[d] = sum;
     }
   }
-  (*gradient)[lobes_->num_parameters()] = by_matrix.log_amplitude;
+  std::copy(by_matrix.scales.begin(), by_matrix.scales.end(),
+            gradient->end() - LightScales::kCount);
   return value;
 }
 
@@ -198,7 +199,7 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
 
 Eigen::MatrixXd MarginalReflectance::Information(const double* parameters,
                                                  const Eigen::VectorXd& noise,
-                                                 double log_amplitude,
+                                                 const LightScales& scales,
                                                  const LightMode& mode) const {
   std::vector<float> fields;
   lobes_->Tabulate(parameters, true, &fields);
@@ -206,7 +207,7 @@ Eigen::MatrixXd MarginalReflectance::Information(const double* parameters,
   if (!G.allFinite()) return {};
   return likelihood_->Information(
       Coloured(parameters, ShapeMatrices(fields, 1 + lobes_->code_size())),
-      noise, log_amplitude, mode, G);
+      noise, scales, mode, G);
 }
 
 }  // namespace ibrdf

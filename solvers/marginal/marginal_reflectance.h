@@ -43,13 +43,13 @@ class MarginalReflectance {
   // As MarginalLikelihood::Evaluate. With gradient != nullptr it receives
   // [num_parameters + 1]: by the lobes' parameters and log amplitude.
   MarginalValue Evaluate(const double* parameters, const Eigen::VectorXd& noise,
-                         double log_amplitude, double tolerance,
+                         const LightScales& scales, double tolerance,
                          LightMode* mode, std::vector<double>* gradient) const;
 
   // As MarginalLikelihood::Information at the mode of these parameters.
   Eigen::MatrixXd Information(const double* parameters,
                               const Eigen::VectorXd& noise,
-                              double log_amplitude,
+                              const LightScales& scales,
                               const LightMode& mode) const;
 
   // The matrices T_c of a reflectance.

@@ -36,20 +36,19 @@ class Level {
 
   MarginalObjective Objective(const Eigen::VectorXd& noise,
                               LightMode* mode) const {
-    return MarginalObjective(&reflectance_, &prior_, options_.log_amplitude_std,
-                             noise, mode);
+    return MarginalObjective(&reflectance_, &prior_, noise, mode);
   }
 
-  // -log posterior at amplitude 1; infinite where it has none.
+  // -log posterior at the mean scales of light; infinite where it has none.
   double Rank(const Eigen::VectorXd& lobes, double* misfit) const {
     LightMode mode;
     const std::array<RowMatrix, 3> matrices =
         reflectance_.Matrices(lobes.data());
     const MarginalLikelihood& likelihood = reflectance_.likelihood();
     const Eigen::VectorXd noise = likelihood.FindNoise(
-        matrices, options_.sigma, 0.0, kRankingTolerance, &mode);
+        matrices, options_.sigma, {}, kRankingTolerance, &mode);
     const MarginalValue value = likelihood.Evaluate(
-        matrices, noise, 0.0, kRankingTolerance, &mode, nullptr);
+        matrices, noise, {}, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
     *misfit = value.misfit;
     return value.cost + prior_.Cost(lobes, nullptr);
@@ -63,14 +62,14 @@ class Level {
     LightMode mode;
     Eigen::VectorXd noise;
   };
-  End Refine(const Eigen::VectorXd& lobes, double log_amplitude,
+  End Refine(const Eigen::VectorXd& lobes, const LightScales& scales,
              int iterations) const {
     End end;
     end.noise = reflectance_.likelihood().FindNoise(
-        reflectance_.Matrices(lobes.data()), options_.sigma, log_amplitude,
+        reflectance_.Matrices(lobes.data()), options_.sigma, scales,
         MarginalObjective::kModeTolerance, &end.mode);
     const MarginalObjective objective = Objective(end.noise, &end.mode);
-    end.y = objective.Whitened(lobes, log_amplitude);
+    end.y = objective.Whitened(lobes, scales);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
     o.should_stop = options_.should_stop;
@@ -93,7 +92,8 @@ class Level {
     const Eigen::MatrixXd inverse =
         information.llt().solve(Eigen::MatrixXd::Identity(n, n));
     const Eigen::MatrixXd factor = prior_.factor.triangularView<Eigen::Lower>();
-    return factor * inverse.topLeftCorner(n - 1, n - 1) * factor.transpose();
+    return factor * inverse.topLeftCorner(factor.rows(), factor.rows()) *
+           factor.transpose();
   }
 
  private:
@@ -145,7 +145,7 @@ class Search {
            tried_.front().first_cost, tried_.front().first_misfit);
     for (int k = 0; k < std::min<int64_t>(options_.starts, kept); ++k) {
       if (std::isfinite(tried_[k].first_cost)) {
-        from_.push_back({k, ToEigen(tried_[k].parameters), 0.0, 0.0});
+        from_.push_back({k, ToEigen(tried_[k].parameters), {}, 0.0});
       }
     }
     return Refine("refine ", *coarse_, options_.coarse_iterations);
@@ -191,7 +191,7 @@ class Search {
     result.start = tried_[best_candidate_.tried].name;
     result.cost = best_.cost;
     result.misfit = best_.value.misfit;
-    result.amplitude = std::exp(best_candidate_.log_amplitude);
+    result.scales = best_candidate_.scales;
     if (options_.covariance) {
       result.covariance = best_level_->Covariance(&best_);
     }
@@ -199,12 +199,11 @@ class Search {
     result.map_width = reflectance.resolution().map_width;
     result.map_height = reflectance.resolution().map_height;
     result.log_radiance = LogRadiance();
-    result.log_radiance_std =
-        ToVector(reflectance.likelihood()
-                     .LightVariance(
-                         reflectance.Matrices(result.parameters.data()),
-                         best_.noise, best_candidate_.log_amplitude, best_.mode)
-                     .cwiseSqrt());
+    result.log_radiance_std = ToVector(
+        reflectance.likelihood()
+            .LightVariance(reflectance.Matrices(result.parameters.data()),
+                           best_.noise, best_candidate_.scales, best_.mode)
+            .cwiseSqrt());
     std::stable_sort(tried_.begin(), tried_.end(),
                      [](const TriedMaterial& a, const TriedMaterial& b) {
                        return a.cost < b.cost;
@@ -220,7 +219,7 @@ class Search {
   struct Candidate {
     int tried = 0;
     Eigen::VectorXd lobes;
-    double log_amplitude = 0.0;
+    LightScales scales;
     double cost = 0.0;
   };
 
@@ -256,8 +255,8 @@ class Search {
     ParallelFor(static_cast<int64_t>(from_.size()), options_.num_threads,
                 [&](int64_t k, int) {
                   if (k > 0 && Stopped()) return;
-                  ends[k] = level.Refine(from_[k].lobes, from_[k].log_amplitude,
-                                         iterations);
+                  ends[k] =
+                      level.Refine(from_[k].lobes, from_[k].scales, iterations);
                 });
     std::vector<Candidate> reached;
     for (size_t k = 0; k < ends.size(); ++k) {
@@ -270,7 +269,7 @@ class Search {
       TriedMaterial& tried = tried_[from_[k].tried];
       const MarginalObjective objective = level.Objective(end.noise, &end.mode);
       reached.push_back({from_[k].tried, objective.LobesOf(end.y.data()),
-                         objective.LogAmplitudeOf(end.y.data()), end.cost});
+                         objective.ScalesOf(end.y.data()), end.cost});
       tried.cost = end.cost;
       tried.parameters = ToVector(reached.back().lobes);
       if (!what.empty()) Report(what + tried.name, end.cost, end.value.misfit);

@@ -35,7 +35,6 @@ struct ReflectanceSearchOptions {
   // model can render: were it free to fall to the noise, light and reflectance
   // would bend to every error of the model.
   double sigma = 0.03;
-  double log_amplitude_std = 0.7;  // of the light process
   bool covariance = true;
   int num_threads = 0;
   // Light that the object throws on itself, of which the search knows nothing:
@@ -72,7 +71,7 @@ struct ReflectanceSearchResult {
   std::string start;               // the material that it began from
   double cost = 0.0;               // -log posterior, nats, up to a constant
   double misfit = 0.0;             // mean |log E - log I| over cells
-  double amplitude = 0.0;  // of the light's process, times its variances
+  LightScales scales;              // of the light's process
   // By cost: the refined ones, then the others by their first cost.
   std::vector<TriedMaterial> tried;
   // Of the parameters (Laplace, by the Gauss-Newton Hessian); empty where it

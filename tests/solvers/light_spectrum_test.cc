@@ -18,17 +18,24 @@ constexpr double kOpposite = 3e-8;
 // Of sums of up to 32 products of numbers below 1.
 constexpr double kRounding = 1e-14;
 
-// height, width, correlation in degrees
+// height, width, degrees of both parts
 class LightSpectrumTest
     : public ::testing::TestWithParam<std::tuple<int, int, double>> {
  protected:
   const int height_ = std::get<0>(GetParam()), width_ = std::get<1>(GetParam());
   const double degrees_ = std::get<2>(GetParam());
-  const LightSpectrum spectrum_{height_, width_, degrees_};
+  LightProcess Process() const {
+    LightProcess process;
+    process.smooth_degrees = process.rough_degrees = degrees_;
+    return process;
+  }
+  const LightScales scales_{0.7, {-1.0, 0.5, 0.2, -2.0}};
+  const ProcessSpectrum process_{height_, width_, Process()};
+  const LightSpectrum spectrum_ = process_.At(scales_);
 };
 
 TEST_P(LightSpectrumTest, ProductIsThatOfTheDenseCorrelation) {
-  const RowMatrix dense = LightCorrelation(height_, width_, degrees_);
+  const RowMatrix dense = LightCorrelation(height_, width_, Process(), scales_);
   RowMatrix product;
   spectrum_.Multiply(RowMatrix::Identity(dense.rows(), dense.rows()), &product);
   ASSERT_EQ(dense.rows(), product.rows());
@@ -44,6 +51,16 @@ TEST_P(LightSpectrumTest, ProductIsThatOfTheDenseCorrelation) {
     EXPECT_LT((product - X * dense).cwiseAbs().maxCoeff(),
               kOpposite * X.cwiseAbs().maxCoeff());
   }
+}
+
+TEST_P(LightSpectrumTest, RoughPartIsWhatIsLeftWithoutTheSmoothOne) {
+  LightProcess process = Process();
+  process.smooth_share = 0.0;
+  const RowMatrix dense = LightCorrelation(height_, width_, process, scales_);
+  RowMatrix product;
+  process_.RoughAt(scales_).Multiply(
+      RowMatrix::Identity(dense.rows(), dense.rows()), &product);
+  EXPECT_LT((product - dense).cwiseAbs().maxCoeff(), kOpposite);
 }
 
 TEST_P(LightSpectrumTest, BasisIsOrthonormalAndOrderedByFrequency) {

@@ -15,7 +15,7 @@ namespace {
 using namespace testing;  // NOLINT
 
 constexpr int kHeight = 8, kWidth = 16, kTexels = kHeight * kWidth;
-constexpr double kAmplitude = 1.0;
+const LightScales kScales = {0.0, {-0.5, 0.5, 0.2, 0.3}};
 
 std::vector<float> SmoothLogMap() {
   const Image map = SmoothMap(kHeight, kWidth);
@@ -65,9 +65,9 @@ double RmsError(const std::vector<float>& target, const std::vector<float>& p,
 class LogMapFitTest : public ::testing::TestWithParam<bool> {
  protected:
   const std::unique_ptr<IlluminationModel> model_ =
-      GetParam() ? MakeUnetIllumination(TinyUnetOptions())
-                 : MakeProcessIllumination(kWidth, kHeight, LightProcess(),
-                                           kAmplitude);
+      GetParam()
+          ? MakeUnetIllumination(TinyUnetOptions())
+          : MakeProcessIllumination(kWidth, kHeight, LightProcess(), kScales);
   std::vector<float> Start() const {
     const double level[3] = {0.2, 0.1, -0.5};
     return model_->ConstantMap(level);
@@ -138,20 +138,20 @@ INSTANTIATE_TEST_SUITE_P(Models, LogMapFitTest, ::testing::Bool(),
 // 1/2 r^T (K + D)^-1 r, r = target - map at the start, D = 1 / weights.
 TEST(LogMapFitOfTheProcess, ReachesTheMinimumInClosedForm) {
   const std::unique_ptr<IlluminationModel> model =
-      MakeProcessIllumination(kWidth, kHeight, LightProcess(), kAmplitude);
+      MakeProcessIllumination(kWidth, kHeight, LightProcess(), kScales);
   const std::vector<float> target = SmoothLogMap();
   const double level[3] = {0.2, 0.1, -0.5};
   const std::vector<float> start = model->ConstantMap(level);
   const LightProcess process;
   const RowMatrix correlation =
-      LightCorrelation(kHeight, kWidth, process.correlation_degrees);
+      LightCorrelation(kHeight, kWidth, process, kScales);
   for (const double sigma : {0.05, 0.2}) {
     Eigen::MatrixXd covariance(3 * kTexels, 3 * kTexels);
     Eigen::VectorXd r(3 * kTexels);
     for (int c = 0; c < 3; ++c) {
       for (int d = 0; d < 3; ++d) {
         covariance.block(c * kTexels, d * kTexels, kTexels, kTexels) =
-            (kAmplitude * process.Local()(c, d) * correlation).array() +
+            (process.Local()(c, d) * correlation).array() +
             process.Level()(c, d);
       }
     }
@@ -177,7 +177,7 @@ TEST(LogMapFitOfTheProcess, ReachesTheMinimumInClosedForm) {
 // root of a smooth map's prior cost, some 0.1 of sigma when that is small.
 TEST(LogMapFitOfTheProcess, FitsASmoothMapFarBelowSigma) {
   const std::unique_ptr<IlluminationModel> model =
-      MakeProcessIllumination(kWidth, kHeight, LightProcess(), kAmplitude);
+      MakeProcessIllumination(kWidth, kHeight, LightProcess(), kScales);
   const std::vector<float> target = SmoothLogMap();
   const double level[3] = {0.2, 0.1, -0.5};
   double before = 1.0;

@@ -37,8 +37,7 @@ std::array<RowMatrix, 3> Lobes(double width, int points = kPoints) {
 
 Eigen::VectorXd DrawLight(const LightProcess& process, double amplitude,
                           uint64_t seed) {
-  const RowMatrix C =
-      LightCorrelation(kHeight, kWidth, process.correlation_degrees);
+  const RowMatrix C = LightCorrelation(kHeight, kWidth, process, LightScales());
   Eigen::MatrixXd K(3 * kTexels, 3 * kTexels);
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
@@ -76,13 +75,22 @@ LightProcess Proper() {
   return process;
 }
 
+// Of no band like another.
+LightScales Rough() { return {0.3, {-1.5, 0.4, -0.3, 0.8}}; }
+
+// Scale `k` moved, the amplitude first.
+LightScales Moved(LightScales scales, int k, double step) {
+  (k == 0 ? scales.log_amplitude : scales.log_roughness[k - 1]) += step;
+  return scales;
+}
+
 MarginalLikelihood Likelihood(std::vector<double> y,
                               const LightProcess& process) {
   return MarginalLikelihood(std::move(y), process, kHeight, kWidth, 1);
 }
 
-// Nats, of the mode: its last steps shrink slowly, and the log determinant feels
-// what is left to first order.
+// Nats, of the mode: its last steps shrink slowly, and the log determinant
+// feels what is left to first order.
 constexpr double kTight = 1e-18;
 
 TEST(MarginalLikelihood, GradientMatchesDifferences) {
@@ -93,20 +101,27 @@ TEST(MarginalLikelihood, GradientMatchesDifferences) {
     for (size_t i = 0; i < y.size(); ++i) y[i] += 0.2 * std::sin(5.0 * i);
     const MarginalLikelihood likelihood = Likelihood(y, Proper());
     const auto cost = [&](const std::array<RowMatrix, 3>& matrices,
-                          double log_amplitude, MarginalGradient* gradient) {
+                          const LightScales& scales,
+                          MarginalGradient* gradient) {
       LightMode mode;
       mode.l = mode.dual = Eigen::VectorXd::Zero(3 * kTexels);
       const MarginalValue value = likelihood.Evaluate(
-          matrices, Noise(0.1), log_amplitude, kTight, &mode, gradient);
+          matrices, Noise(0.1), scales, kTight, &mode, gradient);
       EXPECT_TRUE(value.ok);
       return value.cost;
     };
     MarginalGradient gradient;
-    cost(T, 0.3, &gradient);
+    const LightScales scales = Rough();
+    cost(T, scales, &gradient);
     const double h = 1e-3;
-    EXPECT_NEAR(
-        (cost(T, 0.3 + h, nullptr) - cost(T, 0.3 - h, nullptr)) / (2 * h),
-        gradient.log_amplitude, 1e-3 * std::abs(gradient.log_amplitude) + 1e-3);
+    for (int k = 0; k < LightScales::kCount; ++k) {
+      const double numeric = (cost(T, Moved(scales, k, h), nullptr) -
+                              cost(T, Moved(scales, k, -h), nullptr)) /
+                             (2 * h);
+      EXPECT_NEAR(numeric, gradient.scales[k],
+                  1e-3 * std::abs(gradient.scales[k]) + 1e-3)
+          << k;
+    }
     std::mt19937_64 rng(1);
     std::normal_distribution<double> g;
     for (int trial = 0; trial < 4; ++trial) {
@@ -119,8 +134,9 @@ TEST(MarginalLikelihood, GradientMatchesDifferences) {
         down[c] -= h * direction;
         expected += gradient.matrices[c].cwiseProduct(direction).sum();
       }
-      EXPECT_NEAR((cost(up, 0.3, nullptr) - cost(down, 0.3, nullptr)) / (2 * h),
-                  expected, 2e-3 * std::abs(expected) + 2e-3)
+      EXPECT_NEAR(
+          (cost(up, scales, nullptr) - cost(down, scales, nullptr)) / (2 * h),
+          expected, 2e-3 * std::abs(expected) + 2e-3)
           << width;
     }
   }
@@ -132,7 +148,7 @@ TEST(MarginalLikelihood, ModeIsWhereThePosteriorIsFlat) {
       Likelihood(LogRadiance(T, DrawLight(Proper(), 1.0, 3)), Proper());
   LightMode mode;
   ASSERT_TRUE(
-      likelihood.Evaluate(T, Noise(0.05), 0.0, kTight, &mode, nullptr).ok);
+      likelihood.Evaluate(T, Noise(0.05), {}, kTight, &mode, nullptr).ok);
   // g = J^T D^-1 (y - log E), at the point itself.
   const std::vector<double> at =
       LogRadiance(T, (mode.l.array() + mode.level).matrix());
@@ -164,8 +180,8 @@ TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
     LightMode mode;
     mode.l = mode.dual = Eigen::VectorXd::Zero(3 * kTexels);
     return -likelihood
-                .Evaluate(T, Noise(sigma, points), log_amplitude, kTight, &mode,
-                          nullptr)
+                .Evaluate(T, Noise(sigma, points), {log_amplitude}, kTight,
+                          &mode, nullptr)
                 .cost;
   };
   const auto draws = [&](const std::vector<double>& y) {
@@ -206,8 +222,8 @@ TEST(MarginalLikelihood, TellsMatteFromMirror) {
       const MarginalLikelihood likelihood(LogRadiance(truth, light),
                                           LightProcess(), kHeight, kWidth, 1);
       LightMode mode;
-      const MarginalValue value = likelihood.Evaluate(
-          guess, Noise(0.05, 24), 0.0, 1e-3, &mode, nullptr);
+      const MarginalValue value =
+          likelihood.Evaluate(guess, Noise(0.05, 24), {}, 1e-3, &mode, nullptr);
       EXPECT_TRUE(value.ok);
       return value.cost;
     };
@@ -222,12 +238,12 @@ TEST(MarginalLikelihood, StartOfTheModeDoesNotMatter) {
       Likelihood(LogRadiance(T, DrawLight(Proper(), 4.0, 3)), Proper());
   LightMode cold, warm;
   const double cost =
-      likelihood.Evaluate(T, Noise(0.05), 0.0, 1e-9, &cold, nullptr).cost;
+      likelihood.Evaluate(T, Noise(0.05), {}, 1e-9, &cold, nullptr).cost;
   const std::array<RowMatrix, 3> other = Lobes(0.9);
-  likelihood.Evaluate(other, Noise(0.05), 0.5, 1e-9, &warm, nullptr);
+  likelihood.Evaluate(other, Noise(0.05), {0.5}, 1e-9, &warm, nullptr);
   warm.level = cold.level;
   EXPECT_NEAR(
-      cost, likelihood.Evaluate(T, Noise(0.05), 0.0, 1e-9, &warm, nullptr).cost,
+      cost, likelihood.Evaluate(T, Noise(0.05), {}, 1e-9, &warm, nullptr).cost,
       1e-4);
 }
 
@@ -240,7 +256,7 @@ TEST(MarginalLikelihood, ExtremesAreFiniteOrRefused) {
     MarginalGradient gradient;
     const MarginalValue value =
         Likelihood(image, LightProcess())
-            .Evaluate(matrices, Noise(0.03), 0.0, 1e-3, &mode, &gradient);
+            .Evaluate(matrices, Noise(0.03), {}, 1e-3, &mode, &gradient);
     if (!value.ok) return;
     EXPECT_TRUE(std::isfinite(value.cost));
     for (const RowMatrix& m : gradient.matrices) EXPECT_TRUE(m.allFinite());
@@ -258,7 +274,7 @@ TEST(MarginalLikelihood, ExtremesAreFiniteOrRefused) {
   bad[0](1, 1) = std::nan("");
   LightMode mode;
   EXPECT_FALSE(Likelihood(y, LightProcess())
-                   .Evaluate(bad, Noise(0.03), 0.0, 1e-3, &mode, nullptr)
+                   .Evaluate(bad, Noise(0.03), {}, 1e-3, &mode, nullptr)
                    .ok);
 }
 
@@ -269,9 +285,9 @@ TEST(MarginalLikelihood, VarianceIsThePriorsWhereNothingIsSeen) {
   const MarginalLikelihood likelihood =
       Likelihood(LogRadiance(T, DrawLight(Proper(), 1.0, 3)), Proper());
   LightMode mode;
-  likelihood.Evaluate(T, Noise(0.02), 0.0, 1e-6, &mode, nullptr);
+  likelihood.Evaluate(T, Noise(0.02), {}, 1e-6, &mode, nullptr);
   const Eigen::VectorXd variance =
-      likelihood.LightVariance(T, Noise(0.02), 0.0, mode);
+      likelihood.LightVariance(T, Noise(0.02), {}, mode);
   const double prior = Proper().Local()(0, 0) + Proper().Level()(0, 0);
   EXPECT_LE(variance.maxCoeff(), prior + 1e-9);
   EXPECT_GE(variance.minCoeff(), 0.0);
@@ -281,6 +297,7 @@ TEST(MarginalLikelihood, VarianceIsThePriorsWhereNothingIsSeen) {
 }
 
 TEST(MarginalLikelihood, NoiseGrowsAsLobesShrink) {
+  constexpr LightScales kRoughnessOne = {0.0, {0.0, 0.0, 0.0, 0.0}};
   double last = 0.0;
   for (const double width : {1.5, 0.8, 0.4, 0.2}) {
     const std::array<RowMatrix, 3> T = Lobes(width);
@@ -288,7 +305,7 @@ TEST(MarginalLikelihood, NoiseGrowsAsLobesShrink) {
     mode.l = Eigen::VectorXd::Zero(3 * kTexels);
     const Eigen::VectorXd noise =
         Likelihood(std::vector<double>(3 * kPoints, 0.0), LightProcess())
-            .NoiseVariance(T, 0.03, mode);
+            .NoiseVariance(T, 0.03, kRoughnessOne, mode);
     EXPECT_GE(noise.minCoeff(), 0.03 * 0.03);
     EXPECT_GT(noise.mean(), last);
     last = noise.mean();
@@ -296,10 +313,38 @@ TEST(MarginalLikelihood, NoiseGrowsAsLobesShrink) {
   EXPECT_LT(last, LightProcess().VarianceWithin(180.0 / kHeight) + 1e-3);
 }
 
+TEST(LightProcess, ScalesAreWhitened) {
+  const LightScales scales = Rough();
+  const auto y = scales.Whitened();
+  const LightScales back = LightScales::FromWhitened(y.data());
+  EXPECT_NEAR(scales.log_amplitude, back.log_amplitude, 1e-14);
+  for (int b = 0; b < LightScales::kBands; ++b) {
+    EXPECT_NEAR(scales.log_roughness[b], back.log_roughness[b], 1e-14);
+  }
+  for (const double mean : LightScales().Whitened()) EXPECT_EQ(0.0, mean);
+}
+
+TEST(LightProcess, RoughnessIsLinearBetweenItsKnots) {
+  const int height = 180;
+  const RowMatrix weights = RoughnessWeights(height);
+  EXPECT_NEAR(height, weights.sum(), 1e-12);
+  EXPECT_GE(weights.minCoeff(), 0.0);
+  const Eigen::VectorXd S = Roughness(height, Rough());
+  // Rows are of half degrees.
+  EXPECT_NEAR(-1.5, std::log(S[0]), 1e-12);
+  EXPECT_NEAR(0.8, std::log(S[height - 1]), 1e-12);
+  const double half_way = (57.5 - 40.0) / (75.0 - 40.0);
+  EXPECT_NEAR(-1.5 + half_way * 1.9, std::log(S[57]), 1e-12);
+}
+
 TEST(LightProcess, CovariancesArePositive) {
   const LightProcess process;
-  const RowMatrix C = LightCorrelation(8, 16, process.correlation_degrees);
-  EXPECT_EQ(Eigen::Success, Eigen::LLT<Eigen::MatrixXd>(C).info());
+  // Smooth everywhere, and nowhere.
+  for (const double rough : {-8.0, 0.0, 3.0}) {
+    const RowMatrix C =
+        LightCorrelation(8, 16, process, {0.0, {rough, -rough, rough, 0.0}});
+    EXPECT_EQ(Eigen::Success, Eigen::LLT<Eigen::MatrixXd>(C).info()) << rough;
+  }
   EXPECT_EQ(Eigen::Success,
             Eigen::LLT<Eigen::Matrix3d>(process.Local()).info());
   EXPECT_DOUBLE_EQ(0.0, process.VarianceWithin(0.0));

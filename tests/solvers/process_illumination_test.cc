@@ -14,6 +14,7 @@ namespace {
 constexpr int kHeight = 4, kWidth = 8, kTexels = kHeight * kWidth;
 constexpr int kSize = 3 * kTexels;
 constexpr double kAmplitude = 1.5;
+const LightScales kScales = {std::log(kAmplitude), {-1.0, 0.5, 0.2, -2.0}};
 constexpr double kFloat = 6e-8;  // half a unit in the last place, relative
 
 std::vector<float> Random(int size, unsigned seed) {
@@ -61,7 +62,7 @@ class ProcessIlluminationTest : public ::testing::Test {
 
   const LightProcess process_;
   const std::unique_ptr<IlluminationModel> model_ =
-      MakeProcessIllumination(kWidth, kHeight, process_, kAmplitude);
+      MakeProcessIllumination(kWidth, kHeight, process_, kScales);
 };
 
 TEST_F(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
@@ -71,7 +72,7 @@ TEST_F(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
   const Eigen::MatrixXd S = Jacobian();
   const Eigen::MatrixXd covariance = S * S.transpose();
   const RowMatrix correlation =
-      LightCorrelation(kHeight, kWidth, process_.correlation_degrees);
+      LightCorrelation(kHeight, kWidth, process_, kScales);
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
       const Eigen::MatrixXd expected =
@@ -153,7 +154,7 @@ TEST(ProcessIllumination, LargeMapsAreConstantToo) {
   for (const int width : {2, 64, 128}) {
     const int height = width / 2;
     const std::unique_ptr<IlluminationModel> model =
-        MakeProcessIllumination(width, height, LightProcess(), 0.3);
+        MakeProcessIllumination(width, height, LightProcess(), {std::log(0.3)});
     for (const double level : {-30.0, 30.0}) {
       const double rgb[3] = {level, level + 1, level - 1};
       const std::vector<float> p = model->ConstantMap(rgb);

@@ -20,7 +20,7 @@ TEST(ProcessPrior, GradientAndProductMatchDifferences) {
   // Blocks of one texel and of four.
   for (const int width : {16, 64}) {
     const int height = width / 2;
-    ProcessPrior prior(height, width, LightProcess(), 1.5, 0.3);
+    ProcessPrior prior(height, width, LightProcess(), {0.4}, 0.3);
     const std::vector<float> map = RandomLogMap(height, width, 1);
     const std::vector<float> v = RandomLogMap(height, width, 2);
     std::vector<float> gradient(map.size(), 0.0f), product(map.size(), 0.0f);
@@ -46,7 +46,7 @@ TEST(ProcessPrior, GradientAndProductMatchDifferences) {
 }
 
 TEST(ProcessPrior, ConstantMapAtTheLevelCostsNothing) {
-  ProcessPrior prior(32, 64, LightProcess(), 1.0, -0.7);
+  ProcessPrior prior(32, 64, LightProcess(), {}, -0.7);
   std::vector<float> map(3 * 32 * 64, -0.7f);
   EXPECT_NEAR(0.0, prior.Evaluate(map.data(), nullptr), 1e-6);
   // Another grey level costs little, a colour cast of the same size more.

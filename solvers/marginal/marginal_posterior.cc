@@ -1,0 +1,111 @@
+// What the marginal likelihood says of parameters and light around its mode.
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+
+#include "solvers/marginal/marginal_likelihood.h"
+
+namespace ibrdf {
+
+Eigen::MatrixXd MarginalLikelihood::Information(
+    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    const LightScales& scales, const LightMode& mode,
+    const RowMatrix& G) const {
+  const Eigen::Index P = num_points_, n = G.cols();
+  constexpr int kCount = LightScales::kCount;
+  CHECK_EQ(G.rows(), 3 * P);
+  const Light light = LightAt(scales);
+  const auto linear =
+      Linearise(matrices, noise, light, At(matrices, mode.level, mode.l));
+  if (linear == nullptr) return {};
+  const RowMatrix whitened =
+      linear->factor.triangularView<Eigen::Lower>().solve(G);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n + kCount, n + kCount);
+  information.topLeftCorner(n, n).noalias() = whitened.transpose() * whitened;
+  RowMatrix inverse = linear->factor;
+  InvertFactored(&inverse);
+  // A^-1 J K_a J^T of each scale. The amplitude's: I - A^-1 (D + the level's
+  // part).
+  std::array<RowMatrix, kCount> by;
+  by[0] = -inverse * noise.asDiagonal();
+  for (int c = 0; c < 3; ++c) {
+    Eigen::VectorXd level = Eigen::VectorXd::Zero(3 * P);
+    for (int d = 0; d < 3; ++d) {
+      level += level_(d, c) * inverse.middleCols(d * P, P).rowwise().sum();
+    }
+    by[0].middleCols(c * P, P).colwise() -= level;
+  }
+  by[0].diagonal().array() += 1.0;
+  std::array<RowMatrix, 3> rough;
+  for (int c = 0; c < 3; ++c) {
+    light.rough.Multiply(linear->jacobian[c], &rough[c]);
+  }
+  for (int b = 0; b < LightScales::kBands; ++b) {
+    // Only its rows of the map.
+    int first = 0, last = map_height_;
+    while (first < last && roughness_weights_(b, first) == 0.0) ++first;
+    while (first < last && roughness_weights_(b, last - 1) == 0.0) --last;
+    const Eigen::Index from = Eigen::Index{first} * map_width_;
+    const Eigen::Index size = Eigen::Index{last - first} * map_width_;
+    RowMatrix half = RowMatrix::Zero(3 * P, 3 * P);
+    if (size > 0) {
+      const Eigen::VectorXd h = BandWeights(b).segment(from, size);
+      for (int c = 0; c < 3; ++c) {
+        const RowMatrix weighted =
+            rough[c].middleCols(from, size) * h.asDiagonal();
+        for (int d = 0; d < 3; ++d) {
+          RowMatrix product;
+          MultiplyTransposed(
+              weighted, RowMatrix(linear->jacobian[d].middleCols(from, size)),
+              &product);
+          half.block(c * P, d * P, P, P) =
+              light.amplitude * local_(c, d) * product;
+        }
+      }
+    }
+    MultiplyInTiles(inverse, half + half.transpose(), num_threads_, &by[1 + b]);
+  }
+  for (int a = 0; a < kCount; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      information(n + a, n + b) = information(n + b, n + a) =
+          0.5 * by[a].cwiseProduct(by[b].transpose()).sum();
+    }
+  }
+  return information;
+}
+
+Eigen::VectorXd MarginalLikelihood::LightVariance(
+    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    const LightScales& scales, const LightMode& mode) const {
+  const Eigen::Index t = num_texels(), P = num_points_;
+  const Light light = LightAt(scales);
+  const auto linear =
+      Linearise(matrices, noise, light, At(matrices, mode.level, mode.l));
+  CHECK(linear != nullptr);
+  RowMatrix inverse = linear->factor;
+  InvertFactored(&inverse);
+  const Eigen::VectorXd roughness = Roughness(map_height_, scales);
+  Eigen::ArrayXd correlation(t);  // of a texel with itself
+  for (int r = 0; r < map_height_; ++r) {
+    correlation.segment(r * map_width_, map_width_) =
+        smooth_share_ + rough_share_ * roughness[r] * roughness[r];
+  }
+  // diag(K - K J^T A^-1 J K), row by row of J K.
+  Eigen::VectorXd variance(3 * t);
+  for (int c = 0; c < 3; ++c) {
+    RowMatrix JK(3 * P, t);  // cov(data, l_c)
+    for (int d = 0; d < 3; ++d) {
+      JK.middleRows(d * P, P) =
+          (light.amplitude * local_(d, c) * linear->JC[d]).array() +
+          level_(d, c);
+    }
+    RowMatrix product;
+    MultiplyInTiles(inverse, JK, num_threads_, &product);
+    variance.segment(c * t, t) =
+        light.amplitude * local_(c, c) * correlation + level_(c, c) -
+        product.cwiseProduct(JK).colwise().sum().transpose().array();
+  }
+  return variance.cwiseMax(0.0);
+}
+
+}  // namespace ibrdf
