@@ -112,9 +112,12 @@ def main():
     middle = (ANGLES[:-1] + ANGLES[1:]) / 2
     print("angle, degrees         " + "".join(f"{a:7.0f}" for a in middle))
     print("grey                   " + "".join(f"{v:7.2f}" for v in mean[0]))
-    print("1.6 (1 - e^(-angle/52))" + "".join(f"{1.6 * (1 - np.exp(-a / 52)):7.2f}" for a in middle))
+    # LightProcess at roughness 1: its two parts.
+    x = 2 * np.sin(np.radians(middle) / 2) / np.radians(40)
+    process = 0.75 * (1 - (1 + x) * np.exp(-x)) + 0.375 * (1 - np.exp(-middle / 20))
+    print("1.6 LightProcess       " + "".join(f"{1.6 * v:7.2f}" for v in process))
     print("chroma                 " + "".join(f"{v:7.3f}" for v in mean[1]))
-    print("0.12 (the same)        " + "".join(f"{0.12 * (1 - np.exp(-a / 52)):7.3f}" for a in middle))
+    print("0.12 (the same)        " + "".join(f"{0.12 * v:7.3f}" for v in process))
     print(f"{'inside texels of 11 degrees':28s} {'mean':>7s} {'10 %':>7s} {'median':>7s} {'90 %':>7s} "
           f"{'above':>7s} {'horizon':>7s} {'below':>7s}")
     for path in sorted(args.maps.glob("*.hdr")):
