@@ -41,7 +41,7 @@ class MarginalReflectance {
   const MarginalResolution& resolution() const { return resolution_; }
 
   // As MarginalLikelihood::Evaluate. With gradient != nullptr it receives
-  // [num_parameters + 1]: by the lobes' parameters and log amplitude.
+  // [num_parameters + scales]: by the lobes' parameters and the scales.
   MarginalValue Evaluate(const double* parameters, const Eigen::VectorXd& noise,
                          const LightScales& scales, double tolerance,
                          LightMode* mode, std::vector<double>* gradient) const;
