@@ -56,7 +56,7 @@ double CeresCost(const JointScene& scene, const JointTerms& terms, bool unet,
       nullptr, light.data());
   double cost = 0.0;
   EXPECT_TRUE(problem.Evaluate({}, &cost, nullptr, nullptr, nullptr));
-  ProcessPrior process(8, 16, LightProcess(), {}, 0.0);
+  ProcessPrior process(8, 16, LightProcess(), LightScales::Average(), 0.0);
   return cost + process.Evaluate(log_map.data(), nullptr);
 }
 

@@ -84,7 +84,7 @@ struct JointScene {
   const NeuralBrdfModel model = SmoothTinyModel(2);
   const LobeModel lobes{model, 2, TinyTransportOptions().grid, 1};
   const std::unique_ptr<IlluminationModel> light;
-  ProcessPrior process{8, 16, LightProcess(), LightScales(), 0.0};
+  ProcessPrior process{8, 16, LightProcess(), LightScales::Average(), 0.0};
   std::vector<double> truth;
   BrdfGrid grid;
   Observations observed;

@@ -15,7 +15,7 @@ namespace {
 using namespace testing;  // NOLINT
 
 constexpr int kHeight = 8, kWidth = 16, kTexels = kHeight * kWidth;
-const LightScales kScales = {0.0, {-0.5, 0.5, 0.2, 0.3}};
+const LightScales kScales = LightScales::Average();
 
 std::vector<float> SmoothLogMap() {
   const Image map = SmoothMap(kHeight, kWidth);
