@@ -147,6 +147,11 @@ class EvidenceStudy {
         here.summary.cost - here.value.cost, here.value.misfit,
         here.noise.cwiseSqrt().mean(),
         metrics.ok() ? metrics->log_rmse_aligned : std::nan(""));
+    const LightScales& light = point.scales;
+    std::printf("  %-10s light: log amplitude %.2f, log roughness", "",
+                light.log_amplitude);
+    for (const double r : light.log_roughness) std::printf(" %.2f", r);
+    std::printf("\n");
     if (texel_noise_) SweepTexelNoise(fine, point, here.noise);
     std::fflush(stdout);  // one problem takes half a minute
   }

@@ -19,7 +19,7 @@ struct LightScales {
   // Normal prior.
   static constexpr double kAmplitudeStd = 0.7;
   static constexpr std::array<double, kBands> kMean = {-1.2, 0.0, -0.2, -0.8};
-  static constexpr std::array<double, kBands> kStd = {1.3, 0.8, 0.8, 1.0};
+  static constexpr std::array<double, kBands> kStd = {1.2, 0.5, 0.5, 0.6};
 
   double log_amplitude = 0.0;
   std::array<double, kBands> log_roughness = kMean;

@@ -52,15 +52,8 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
 
 MarginalLikelihood::Light MarginalLikelihood::LightAt(
     const LightScales& scales) const {
-  const double amplitude = std::exp(scales.log_amplitude);
-  const Eigen::ArrayXd by_row = Roughness(map_height_, scales).array();
-  Eigen::VectorXd variance(num_texels());
-  for (int r = 0; r < map_height_; ++r) {
-    variance.segment(r * map_width_, map_width_)
-        .setConstant(amplitude * texel_variance_ * by_row[r] * by_row[r]);
-  }
-  return {amplitude, spectrum_.At(scales), spectrum_.RoughAt(scales),
-          std::move(variance)};
+  return {std::exp(scales.log_amplitude), spectrum_.At(scales),
+          spectrum_.RoughAt(scales)};
 }
 
 double MarginalLikelihood::LevelFor(
@@ -76,14 +69,13 @@ double MarginalLikelihood::LevelFor(
 
 Eigen::VectorXd MarginalLikelihood::NoiseVariance(
     const std::array<RowMatrix, 3>& matrices, double sigma,
-    const LightScales& scales, const LightMode& mode) const {
+    const LightMode& mode) const {
   const Eigen::Index t = num_texels(), P = num_points_;
   const Point point = At(matrices, mode.level, mode.l);
-  const Eigen::VectorXd variance = LightAt(scales).texel_variance;
   Eigen::VectorXd noise(3 * P);
   for (int c = 0; c < 3; ++c) {
     const Eigen::VectorXd power =
-        variance.cwiseProduct(point.L.segment(c * t, t).cwiseAbs2());
+        texel_variance_ * point.L.segment(c * t, t).cwiseAbs2();
     for (Eigen::Index p = 0; p < P; ++p) {
       const double* T = matrices[c].row(p).data();
       double sum = 0.0;
@@ -111,7 +103,7 @@ Eigen::VectorXd MarginalLikelihood::FindNoise(
   const Eigen::VectorXd first =
       Eigen::VectorXd::Constant(y_.size(), kFirstSigma * kFirstSigma);
   Evaluate(matrices, first, scales, tolerance, mode, nullptr);
-  return NoiseVariance(matrices, sigma, scales, *mode);
+  return NoiseVariance(matrices, sigma, *mode);
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Light& light,
@@ -285,7 +277,8 @@ MarginalValue MarginalLikelihood::Evaluate(
   MarginalValue value;
   if (!weight.allFinite()) return value;
   const Light light = LightAt(scales);
-  if (!std::isfinite(light.amplitude) || !light.texel_variance.allFinite()) {
+  if (!std::isfinite(light.amplitude) ||
+      !Roughness(map_height_, scales).cwiseAbs2().allFinite()) {
     return value;
   }
   if (mode->l.size() == 0) {

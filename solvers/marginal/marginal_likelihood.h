@@ -82,12 +82,14 @@ class MarginalLikelihood {
   // sigma^2 and what the map's coarse texels cannot hold: light inside a texel
   // shows where a lobe changes within it,
   //   sigma^2 + 1 / E_p^2 sum_t v_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,
-  // n the four neighbours of t, v the process' variance inside texel t, L and E
-  // those of `mode`. Small for a matte surface under soft light, v for a ray.
-  // A mirror is then not blamed for what the map lacks, nor preferred for it.
+  // n the four neighbours of t, v the process' variance inside a texel at its
+  // average scales, L and E those of `mode`. Small for a matte surface under
+  // soft light, v for a ray. A mirror is then not blamed for what the map
+  // lacks, nor preferred for it. Were v to follow the estimated scales, what
+  // they are taken for would be the noise that suits a reflectance
+  // (experiments/evidence).
   Eigen::VectorXd NoiseVariance(const std::array<RowMatrix, 3>& matrices,
-                                double sigma, const LightScales& scales,
-                                const LightMode& mode) const;
+                                double sigma, const LightMode& mode) const;
 
   // NoiseVariance where no mode is known yet: at the one found, to `tolerance`
   // nats, with independent deviations of 0.15. `mode` as in Evaluate.
@@ -113,9 +115,8 @@ class MarginalLikelihood {
   // The process at some scales.
   struct Light {
     double amplitude;
-    LightSpectrum correlation;       // C
-    LightSpectrum rough;             // its rough part
-    Eigen::VectorXd texel_variance;  // v [texels]
+    LightSpectrum correlation;  // C
+    LightSpectrum rough;        // its rough part
   };
   Light LightAt(const LightScales& scales) const;
   // Of the log roughness of a band [texels].

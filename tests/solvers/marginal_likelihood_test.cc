@@ -297,7 +297,6 @@ TEST(MarginalLikelihood, VarianceIsThePriorsWhereNothingIsSeen) {
 }
 
 TEST(MarginalLikelihood, NoiseGrowsAsLobesShrink) {
-  constexpr LightScales kRoughnessOne = {0.0, {0.0, 0.0, 0.0, 0.0}};
   double last = 0.0;
   for (const double width : {1.5, 0.8, 0.4, 0.2}) {
     const std::array<RowMatrix, 3> T = Lobes(width);
@@ -305,7 +304,7 @@ TEST(MarginalLikelihood, NoiseGrowsAsLobesShrink) {
     mode.l = Eigen::VectorXd::Zero(3 * kTexels);
     const Eigen::VectorXd noise =
         Likelihood(std::vector<double>(3 * kPoints, 0.0), LightProcess())
-            .NoiseVariance(T, 0.03, kRoughnessOne, mode);
+            .NoiseVariance(T, 0.03, mode);
     EXPECT_GE(noise.minCoeff(), 0.03 * 0.03);
     EXPECT_GT(noise.mean(), last);
     last = noise.mean();
