@@ -1,7 +1,8 @@
 # Install and export, so that another project can find_package(ibrdf).
 include(CMakePackageConfigHelpers)
 
-install(TARGETS ibrdf_core ibrdf_io ibrdf_solvers EXPORT ibrdfTargets
+install(TARGETS ibrdf_core ibrdf_io ibrdf_solvers ibrdf_training
+        EXPORT ibrdfTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/ibrdf
