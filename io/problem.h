@@ -47,8 +47,11 @@ struct ReflectanceSpec {
 enum class IlluminationPrior { kUNet, kProcess, kNone };
 
 struct IlluminationSpec {
-  int width = 128;  // of the estimate, or of the map that a sky is made into
+  // Of the estimate, of the map that a sky is made into, or of what a known map
+  // is resampled to.
+  int width = 128;
   int height = 64;
+  bool sized = false;  // they were asked for
   IlluminationPrior prior = IlluminationPrior::kUNet;
   // Known illumination: at most one is set.
   std::string known_file;  // .exr or .hdr

@@ -205,6 +205,7 @@ void ReadIllumination(ConfigContext* context, const ConfigNode* node,
   ConfigReader reader(context, node, "illumination",
                       {"width", "height", "prior", "known"});
   reader.Integer("width", 8, kMaxMapSide, &illumination->width);
+  illumination->sized = reader.Has("width") || reader.Has("height");
   // One side given: the map stays twice as wide as high.
   if (reader.Has("width") && !reader.Has("height")) {
     illumination->height = illumination->width / 2;

@@ -73,8 +73,8 @@ json ReflectanceJson(const ReflectanceSpec& reflectance) {
 }
 
 json IlluminationJson(const IlluminationSpec& illumination, bool rendered) {
-  // A render takes the file's map as it is, an estimate resamples it.
-  if (!illumination.known_file.empty() && rendered) {
+  // A render takes the file's map as it is, an estimate may resample it.
+  if (!illumination.known_file.empty() && (rendered || !illumination.sized)) {
     return {{"known", illumination.known_file}};
   }
   json out = {{"width", illumination.width}, {"height", illumination.height}};

@@ -14,6 +14,10 @@
 namespace ibrdf {
 namespace {
 
+constexpr int kLeastKnownWidth = 128;
+// Beyond it texels are finer than pixels and rings (PointQuadrature) show them.
+constexpr int kMostKnownWidth = 256;
+
 Status LoadImage(const ImageSpec& spec, Image* image, Mask* mask) {
   StatusOr<Image> read = ReadImage(spec.file);
   if (!read.ok()) return read.status();
@@ -30,6 +34,13 @@ Status LoadImage(const ImageSpec& spec, Image* image, Mask* mask) {
                        std::to_string(mask->height));
   }
   return OkStatus();
+}
+
+// Of a known map that no size is asked for: its own, to a power of two.
+int KnownMapWidth(int width) {
+  int out = kLeastKnownWidth;
+  while (out < kMostKnownWidth && 2 * out <= width) out *= 2;
+  return out;
 }
 
 }  // namespace
@@ -84,6 +95,11 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
       return InvalidInput(problem.path + ": illumination.known",
                           "expected light from somewhere, found a black map");
     }
+    if (!problem.illumination.sized &&
+        !problem.illumination.known_file.empty()) {
+      inverse.map_width = KnownMapWidth(map->width);
+      inverse.map_height = inverse.map_width / 2;
+    }
     inverse.known_map =
         map->width == inverse.map_width && map->height == inverse.map_height
             ? *map
@@ -99,6 +115,14 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   if (inverse.effects.visibility) {
     VisibilityOptions rays;
     rays.num_threads = num_threads;
+    // A block of texels that is hidden in part is taken texel by texel.
+    if (inverse.known_map.has_value() && !problem.illumination.sized &&
+        inverse.map_width > kLeastKnownWidth) {
+      inverse.map_width = kLeastKnownWidth;
+      inverse.map_height = kLeastKnownWidth / 2;
+      inverse.known_map =
+          ResizeMap(*inverse.known_map, inverse.map_height, inverse.map_width);
+    }
     inverse.transport.visibility =
         std::make_shared<Visibility>(*scene, inverse.points, rays);
     if (inverse.effects.bounces > 0) {

@@ -19,10 +19,9 @@ constexpr double kSearchShare = 0.55;
 // learn from.
 constexpr int kKnownLightCells = 26;
 constexpr int kKnownLightStarts = 4;
-constexpr int kKnownLightFinalists = 2;
-// Of the trust region: of every start, of a finalist, and of a round.
+constexpr int kKnownLightFinalists = 3;
+// Of the trust region: of every start, and of a round.
 constexpr int kStartSteps = 3;
-constexpr int kFinalistSteps = 3;
 constexpr int kRoundSteps = 6;
 // Where nearly all of a point's light comes from the object the map's says
 // little of it.
@@ -126,58 +125,64 @@ void Estimator::StartAtMeanMaterial(JointState* state) {
   start_name_ = name;
 }
 
-JointState Estimator::StartUnderKnownLight() {
+JointState Estimator::EstimateUnderKnownLight() {
   // Pixels as they are: under a known lamp the mean of a cell is not the
   // radiance of its mean normal.
   few_ = MakeSampleLevel(problem_, kKnownLightCells);
   const std::vector<RankedMaterial> ranked =
       RankUnderKnownLight(TransportOf(few_.get()), *lobes_, materials_,
-                          problem_.known_map->rgb, few_->observed, likelihood_);
+                          known_map_, few_->observed, likelihood_);
   first_.lobes = ranked.front().parameters;
   start_name_ = ranked.front().name;
   const TraceEntry first = Evaluate("rank " + start_name_, few_.get(), first_);
   Report(first);
   if (problem_.solver.max_iterations == 0) return first_;
   const std::function<bool()> stop = StopAfter(kSearchShare);
-  struct Candidate {
-    std::string name;
-    JointState state;
-    double cost = 0.0;
-  };
   // The first as it is, too, should no step lower its cost.
   std::vector<Candidate> candidates = {{start_name_, first_, first.cost}};
-  const auto step = [&](const std::string& name, const JointState& from,
-                        int steps) {
-    Candidate next{name, from, 0.0};
-    LobeSteps(steps, kStartRadius, &next.state);
-    const TraceEntry entry = Evaluate("start " + name, few_.get(), next.state);
-    next.cost = entry.cost;
-    Report(entry);
-    candidates.push_back(std::move(next));
-  };
   const int starts =
       std::min<int>(kKnownLightStarts, static_cast<int>(ranked.size()));
   for (int k = 0; k < starts && !(k > 0 && stop()); ++k) {
-    JointState state;
-    state.lobes = ranked[k].parameters;
-    step(ranked[k].name, state, kStartSteps);
+    Candidate next{ranked[k].name, {}, 0.0};
+    next.state.lobes = ranked[k].parameters;
+    LobeSteps(kStartSteps, kStartRadius, &next.state);
+    const TraceEntry entry =
+        Evaluate("start " + next.name, few_.get(), next.state);
+    next.cost = entry.cost;
+    Report(entry);
+    candidates.push_back(std::move(next));
   }
-  const auto sort = [&candidates] {
-    std::stable_sort(
-        candidates.begin(), candidates.end(),
-        [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
-  };
-  sort();
-  const std::vector<Candidate> finalists(
-      candidates.begin(),
-      candidates.begin() +
-          std::min<size_t>(kKnownLightFinalists, candidates.size()));
-  for (const Candidate& c : finalists) {
-    if (!stop()) step(c.name, c.state, kFinalistSteps);
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  candidates.resize(std::min<size_t>(kKnownLightFinalists, candidates.size()));
+  return BestOf(std::move(candidates));
+}
+
+JointState Estimator::BestOf(std::vector<Candidate> candidates) {
+  // At the first, tolerant scale ends differ by a few nats that differ by
+  // hundreds at the image's own.
+  const double first_scale = likelihood_.scale;
+  double least_scale = first_scale;
+  for (size_t k = 0; k < candidates.size(); ++k) {
+    if (k > 0 && (Interrupted() || Elapsed() > Budget() - finish_seconds_)) {
+      candidates.resize(k);
+      break;
+    }
+    likelihood_.scale = first_scale;
+    iterations_ = 0;
+    KnownLightRounds(candidates[k].name, &candidates[k].state);
+    least_scale = std::min(least_scale, likelihood_.scale);
   }
-  sort();
-  start_name_ = candidates.front().name;
-  return candidates.front().state;
+  likelihood_.scale = least_scale;
+  for (Candidate& c : candidates) {
+    c.cost = Evaluate("", few_.get(), c.state).cost;
+  }
+  const auto best = std::min_element(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  start_name_ = best->name;
+  return best->state;
 }
 
 void Estimator::LobeSteps(int max_steps, double radius,
@@ -189,11 +194,11 @@ void Estimator::LobeSteps(int max_steps, double radius,
   o.trust_region_radius = radius;
   o.tolerance = problem_.solver.tolerance;
   o.should_stop = StopAfter(1.0);
-  SolveReflectance(*few_->transport, *lobes_, problem_.known_map->rgb,
-                   few_->observed, o, &state->lobes);
+  SolveReflectance(*few_->transport, *lobes_, known_map_, few_->observed, o,
+                   &state->lobes);
 }
 
-void Estimator::KnownLightRounds(JointState* state) {
+void Estimator::KnownLightRounds(const std::string& name, JointState* state) {
   TraceEntry before = Evaluate("refine", few_.get(), *state);
   for (int round = 0; iterations_ < problem_.solver.max_iterations; ++round) {
     if (Interrupted() || Elapsed() > Budget() - finish_seconds_) return;
@@ -202,7 +207,8 @@ void Estimator::KnownLightRounds(JointState* state) {
     JointState next = *state;
     LobeSteps(kRoundSteps, kRoundRadius, &next);
     const TraceEntry after =
-        Evaluate("refine round " + std::to_string(round + 1), few_.get(), next);
+        Evaluate("refine " + name + " round " + std::to_string(round + 1),
+                 few_.get(), next);
     ++iterations_;
     if (!(after.cost < before.cost)) return;
     *state = next;

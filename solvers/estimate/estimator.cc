@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
+#include "ibrdf/render/bright_texels.h"
 #include "solvers/embedding_prior.h"
 
 namespace ibrdf {
@@ -19,6 +21,13 @@ constexpr int kMapCells = 64;
 // render, the alternatives and the tables are the rest.
 constexpr double kFinishPerTransport = 2.5;
 constexpr double kMostFinishShare = 0.3;
+
+// Of directions that stand for a bright texel: finer than the narrowest lobes.
+constexpr double kBrightSpacing = 0.75 * M_PI / 180.0;
+int BrightSamplesPerSide(int map_height) {
+  const double texel = M_PI / map_height;
+  return 2 * static_cast<int>(std::ceil(texel / kBrightSpacing));
+}
 
 double Now() {
   return std::chrono::duration<double>(
@@ -38,8 +47,7 @@ StatusOr<Estimate> Estimator::Run() {
   likelihood_.scale = problem_.scale.value_or(kFirstScale);
   JointState state;
   if (!light_unknown()) {
-    state = StartUnderKnownLight();
-    if (problem_.solver.max_iterations > 0) KnownLightRounds(&state);
+    state = EstimateUnderKnownLight();
   } else if (joint_maximum()) {
     IBRDF_RETURN_IF_ERROR(EstimateBoth(&state));
   } else {
@@ -73,6 +81,13 @@ Status Estimator::Prepare() {
   mean /= 3.0 * full_->observed.num_valid;
   likelihood_.epsilon = problem_.epsilon.value_or(kEpsilonShare * mean);
 
+  if (!light_unknown()) {
+    const Image& map = *problem_.known_map;
+    BrightTexels split = SplitBrightTexels(map);
+    known_map_ = std::move(split.rest.rgb);
+    bright_ = SampleBrightTexels(split.texels, map.height, map.width,
+                                 BrightSamplesPerSide(map.height));
+  }
   if (lobes_unknown()) {
     lobes_ = std::make_unique<LobeModel>(problem_.model, problem_.lobes,
                                          problem_.transport.grid,
@@ -91,6 +106,7 @@ const Transport& Estimator::TransportOf(Level* level) {
       level->transport->map_width() != width) {
     TransportOptions options = problem_.transport;
     options.num_threads = problem_.num_threads;
+    options.bright = bright_;
     const double start = Elapsed();
     level->transport =
         std::make_unique<Transport>(level->points, height, width, options);
@@ -126,7 +142,7 @@ Estimator::LevelObjective Estimator::ObjectiveOn(Level* level) {
       terms.light_priors.push_back(prior.get());
     }
   } else {
-    terms.known_map = problem_.known_map->rgb;
+    terms.known_map = known_map_;
   }
   out.objective = std::make_unique<JointObjective>(std::move(terms));
   return out;

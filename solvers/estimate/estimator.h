@@ -84,13 +84,21 @@ class Estimator {
   Status SearchMarginal(JointState* state);
   // The first of the spread materials.
   void StartAtMeanMaterial(JointState* state);
-  // The materials under the known light, the best few refined.
-  JointState StartUnderKnownLight();
+  // The materials under the known light, the best few refined and the best of
+  // those finished.
+  JointState EstimateUnderKnownLight();
+  struct Candidate {
+    std::string name;
+    JointState state;
+    double cost = 0.0;
+  };
+  // Each finished, at least one; compared at one scale, the least.
+  JointState BestOf(std::vector<Candidate> candidates);
   // Steps of the lobes under the known light, on few_: at most so many, from
   // a trust region of so large a radius.
   void LobeSteps(int max_steps, double radius, JointState* state) const;
   // Steps at a falling scale, until they settle or time is up.
-  void KnownLightRounds(JointState* state);
+  void KnownLightRounds(const std::string& name, JointState* state);
 
   // estimate_light.cc
   std::unique_ptr<IlluminationModel> MakeLight() const;
@@ -162,6 +170,9 @@ class Estimator {
   // Centred at the image's level, whatever its unit; those of first_.
   LightPriors light_priors_, first_priors_;
   LightScales light_scales_ = LightScales::Average();
+  // A known map, less the texels that are sampled by themselves, and those.
+  std::vector<float> known_map_;
+  std::vector<BrightSample> bright_;
   JointState first_;
   double finish_seconds_ = 0.0;  // predicted
   std::string start_name_;

@@ -30,7 +30,8 @@ StatusOr<Estimate> Estimator::Finish(JointState best) {
   Report(end);
   const std::vector<double>& E = on.objective->radiance();
   estimate.map = Image(problem_.map_width, problem_.map_height);
-  estimate.map.rgb = on.objective->map();
+  estimate.map.rgb =
+      light_unknown() ? on.objective->map() : problem_.known_map->rgb;
   estimate.render = Image(problem_.image.width, problem_.image.height);
   for (size_t i = 0; i < full_->points.size(); ++i) {
     float* rgb =

@@ -80,6 +80,7 @@ truth: {brdf: gt.binary, illumination: gt.exr}
   EXPECT_EQ(dir_.File("m.ibrdf"), p.reflectance.model);
   EXPECT_EQ(3, p.reflectance.lobes);
   EXPECT_EQ(dir_.File("env.hdr"), p.illumination.known_file);
+  EXPECT_FALSE(p.illumination.sized);
   EXPECT_EQ(0.02, *p.likelihood.scale);
   EXPECT_EQ(1e-5, *p.likelihood.epsilon);
   ASSERT_EQ(2u, p.effects.list.size());
@@ -105,6 +106,7 @@ noise: 0.02
   EXPECT_EQ(0.2, read->reflectance.analytic->roughness[2]);
   EXPECT_EQ(0.04, read->reflectance.analytic->f0[0]);
   EXPECT_EQ(128, read->illumination.height);
+  EXPECT_TRUE(read->illumination.sized);
   EXPECT_EQ(30.0, read->illumination.sky->sun_theta_degrees);
   EXPECT_EQ(60.0, read->illumination.sky->sun_phi_degrees);
   EXPECT_EQ(RenderQuality::kPreview, read->quality);

@@ -151,8 +151,9 @@ Problem AnyProblem() {
   }
   const bool map_file = (rendered || p.kind == ProblemKind::kReflectance) &&
                         *rc::gen::arbitrary<bool>();
-  // A render takes the file's map as it is; else it is resampled.
-  if (!(rendered && map_file)) {
+  // A render takes the file's map as it is; else it may be resampled.
+  if (!map_file || (!rendered && *rc::gen::arbitrary<bool>())) {
+    p.illumination.sized = true;
     p.illumination.width = 2 * *rc::gen::inRange(4, 4097);
     p.illumination.height = *rc::gen::inRange(4, 8193);
   }
@@ -232,6 +233,7 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
   }
   RC_ASSERT(p.illumination.width == q.illumination.width);
   RC_ASSERT(p.illumination.height == q.illumination.height);
+  RC_ASSERT(p.illumination.sized == q.illumination.sized);
   RC_ASSERT(p.illumination.prior == q.illumination.prior);
   RC_ASSERT(p.illumination.known_file == q.illumination.known_file);
   RC_ASSERT(p.illumination.sky.has_value() == q.illumination.sky.has_value());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/render/reference_renderer.h"
 #include "tests/solvers/solver_testing.h"
 
 namespace ibrdf {
@@ -13,6 +14,7 @@ namespace {
 using namespace testing;  // NOLINT
 
 constexpr int kSize = 12;  // pixels a side
+constexpr double kSunMisfit = 0.01;
 
 // A sphere of the model's first material under a smooth map; a budget of time
 // that no test needs, so that iterations alone end it.
@@ -232,6 +234,31 @@ INSTANTIATE_TEST_SUITE_P(Problems, InverseRenderingTest,
                                       ? "Reflectance"
                                       : "Illumination";
                          });
+
+// Of one texel of 64 rows, which the coarse rings here miss or take for more.
+// The image is the reference renderer's.
+TEST_F(InverseRenderingTest, ASmallSunUnderKnownLightIsRendered) {
+  Image map = SmoothMap(64, 128);
+  for (int c = 0; c < 3; ++c) map.At(20, 20)[c] = 3e3f;
+  problem_.kind = ProblemKind::kReflectance;
+  problem_.known_map = map;
+  problem_.map_width = map.width;
+  problem_.map_height = map.height;
+  problem_.solver.max_iterations = 12;
+  std::vector<double> E(3 * problem_.points.size());
+  ReferenceRenderer(map, {}).Render(
+      problem_.points,
+      [&](double h, double d, double p) { return truth_.Evaluate(h, d, p); },
+      E.data());
+  for (size_t i = 0; i < E.size(); ++i) {
+    problem_.image.rgb[3 * problem_.points[i / 3].pixel + i % 3] =
+        static_cast<float>(E[i]);
+  }
+  const Estimate e = Solve();
+  EXPECT_EQ(StatusCode::kOk, e.status.code()) << e.status.message();
+  EXPECT_LT(e.misfit, kSunMisfit);
+  EXPECT_EQ(map.rgb, e.map.rgb);
+}
 
 TEST_F(InverseRenderingTest, TheImagesUnitMovesTheMapAlone) {
   SetKind(ProblemKind::kIllumination);

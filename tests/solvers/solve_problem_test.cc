@@ -95,6 +95,8 @@ TEST_F(SolveProblemTest, KnownPartsAreLoadedAtTheProblemsSize) {
             "illumination={known: truth.exr, width: 8, height: 4}"});
   ASSERT_TRUE(p.ok()) << p.status().message();
   ASSERT_TRUE(p->known_map.has_value());
+  EXPECT_EQ(8, p->map_width);
+  EXPECT_EQ(4, p->map_height);
   EXPECT_EQ(p->map_width, p->known_map->width);
   EXPECT_EQ(p->map_height, p->known_map->height);
   const StatusOr<InverseProblem> q =
@@ -104,6 +106,33 @@ TEST_F(SolveProblemTest, KnownPartsAreLoadedAtTheProblemsSize) {
     EXPECT_NEAR(0.5 / kPi, q->known_brdf->values[0], 1e-5);
   } else {
     ADD_FAILURE() << q.status().message();
+  }
+}
+
+// Where no size is asked for: the map's own, to a power of two.
+TEST_F(SolveProblemTest, KnownMapsKeepTheirDetail) {
+  ASSERT_TRUE(WriteExr(SmoothMap(150, 300), dir_.File("fine.exr")).ok());
+  ASSERT_TRUE(WriteExr(SmoothMap(400, 800), dir_.File("finest.exr")).ok());
+  WriteBytes(dir_.File("cube.obj"),
+             "v -1 -1 -1\nv 1 -1 -1\nv 0 1 -1\nv 0 0 1\n"
+             "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const struct {
+    std::string map, geometry, effects;
+    int width;
+  } cases[] = {{"truth.exr", "{sphere: {}}", "auto", 128},
+               {"fine.exr", "{sphere: {}}", "auto", 256},
+               {"finest.exr", "{sphere: {}}", "auto", 256},
+               {"fine.exr", "{mesh: cube.obj}", "[visibility]", 128}};
+  for (const auto& c : cases) {
+    const StatusOr<InverseProblem> p =
+        Load({"problem=reflectance", "geometry=" + c.geometry,
+              "effects=" + c.effects, "illumination={known: " + c.map + "}"});
+    ASSERT_TRUE(p.ok()) << p.status().message();
+    EXPECT_EQ(c.effects != "auto", p->transport.visibility != nullptr);
+    EXPECT_EQ(c.width, p->map_width) << c.map << " " << c.geometry;
+    EXPECT_EQ(c.width / 2, p->map_height);
+    EXPECT_EQ(c.width, p->known_map->width);
+    EXPECT_EQ(c.width / 2, p->known_map->height);
   }
 }
 

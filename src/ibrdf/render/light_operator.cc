@@ -29,8 +29,7 @@ LightOperator Transport::ByLight(const BrdfGrid& grid) const {
   }
   const size_t num_texels = static_cast<size_t>(map_height_) * map_width_;
   const size_t num_sources =
-      num_blocks_ + num_texels +
-      (options_.emitters != nullptr ? options_.emitters->count() : 0);
+      num_blocks_ + num_texels + static_cast<size_t>(num_emitters());
   op.num_sources_ = num_sources;
   op.chunks_.resize(chunks_.size());
   // Per worker: a point's sums by source, all zero between points, and which
@@ -64,6 +63,7 @@ LightOperator Transport::ByLight(const BrdfGrid& grid) const {
           w.sources.clear();
           for (; far < chunk.far_end[i]; ++far) {
             const FarPair& pair = chunk.far[far];
+            if (pair.block >= num_blocks_ + num_emitters()) continue;
             const size_t emitters = pair.block < num_blocks_ ? 0 : num_texels;
             add(emitters + pair.block,
                 pair.weight * Interpolate(pair, corners, f.data()));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/map_sources.h"
 #include "ibrdf/render/transport_taps.h"
@@ -21,6 +22,19 @@ constexpr int kMaxChunks = 32;
 
 uint16_t Quantise(double fraction) {
   return static_cast<uint16_t>(std::clamp(fraction, 0.0, 1.0) * 65535.0 + 0.5);
+}
+
+// Where a sample's angles lie in the grid, and its weight.
+template <typename Sample, typename Pair>
+void SetCell(const BrdfGridShape& shape, const Sample& sample, Pair* pair) {
+  const BrdfGridCell cell =
+      FindCell(shape, ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
+  pair->node = static_cast<uint32_t>(
+      (cell.h * shape.d + cell.d) * (shape.p + 1) + cell.p);
+  pair->fh = Quantise(cell.fh);
+  pair->fd = Quantise(cell.fd);
+  pair->fp = Quantise(cell.fp);
+  pair->weight = static_cast<float>(sample.weight);
 }
 
 }  // namespace
@@ -50,9 +64,8 @@ Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
   CHECK(options.grid.h >= 2 && options.grid.d >= 2 && options.grid.p >= 1);
   num_blocks_ = (map_height / block_) * (map_width / block_);
   CHECK(options.emitters == nullptr || options.visibility != nullptr);
-  const int emitters =
-      options.emitters != nullptr ? options.emitters->count() : 0;
-  CHECK_LE(num_blocks_ + emitters, 65536) << "map of odd size: resize it first";
+  CHECK_LE(num_blocks_ + num_emitters() + options.bright.size(), 65536u)
+      << "map of odd size: resize it first";
   const std::vector<FarCell> cells = MapCells(map_height, map_width, block_);
   const PointQuadrature quadrature(cells, options.quadrature);
   const int num_chunks = std::min(kMaxChunks, num_points_);
@@ -69,16 +82,8 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
                            const std::vector<FarCell>& cells,
                            const PointQuadrature& quadrature, Of of,
                            Chunk* chunk) const {
-  const BrdfGridShape& shape = options_.grid;
-  const auto set_cell = [&shape](const auto& sample, auto* pair) {
-    const BrdfGridCell cell = FindCell(
-        shape, ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
-    pair->node = static_cast<uint32_t>(
-        (cell.h * shape.d + cell.d) * (shape.p + 1) + cell.p);
-    pair->fh = Quantise(cell.fh);
-    pair->fd = Quantise(cell.fd);
-    pair->fp = Quantise(cell.fp);
-    pair->weight = static_cast<float>(sample.weight);
+  const auto set_cell = [this](const auto& sample, auto* pair) {
+    SetCell(options_.grid, sample, pair);
   };
   const Visibility* const visibility = options_.visibility.get();
   const SurfaceEmitters* const emitters = options_.emitters.get();
@@ -153,11 +158,42 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
       pair.fx = Quantise(column - 0.5 - x0);
       chunk->near.push_back(pair);
     }
+    AddBright(points[i], hidden, chunk);
     chunk->far_end.push_back(chunk->far.size());
     chunk->near_end.push_back(chunk->near.size());
   }
   chunk->far.shrink_to_fit();
   chunk->near.shrink_to_fit();
+}
+
+void Transport::AddBright(const ShadingPoint& point, const uint64_t* hidden,
+                          Chunk* chunk) const {
+  if (options_.bright.empty()) return;
+  const Eigen::Vector3d n = point.normal.cast<double>().normalized();
+  const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
+  Eigen::Vector3d t, b;
+  ViewFrame(n, wo, &t, &b);
+  const auto local = [&](const Eigen::Vector3d& w) {
+    return Eigen::Vector3d(w.dot(t), w.dot(b), w.dot(n));
+  };
+  const int first = num_blocks_ + num_emitters();
+  for (size_t k = 0; k < options_.bright.size(); ++k) {
+    const Eigen::Vector3d& wi = options_.bright[k].direction;
+    FarSample sample{};
+    sample.weight = wi.dot(n);
+    if (sample.weight > 0.0 && hidden != nullptr) {
+      sample.weight *= options_.visibility->grid().VisibleAlong(hidden, n, wi);
+    }
+    if (sample.weight <= 0.0) continue;
+    const HalfDiff angles = ToHalfDiff(local(wi), local(wo));
+    sample.theta_h = angles.theta_h;
+    sample.theta_d = angles.theta_d;
+    sample.phi_d = angles.phi_d;
+    FarPair pair{};
+    SetCell(options_.grid, sample, &pair);
+    pair.block = static_cast<uint16_t>(first + k);
+    chunk->far.push_back(pair);
+  }
 }
 
 void Transport::SplitBlock(const uint64_t* hidden, const Eigen::Vector3d& n,
@@ -218,10 +254,15 @@ std::vector<float> Transport::PadGrid(const BrdfGrid& grid) const {
 std::vector<float> Transport::FarSources(const float* map,
                                          const double* emitted) const {
   std::vector<float> sources = SumBlocks(map, map_height_, map_width_, block_);
-  if (options_.emitters == nullptr) return sources;
   const size_t first = sources.size();
-  const auto count = static_cast<size_t>(options_.emitters->count());
-  sources.resize(first + 4 * count, 0.0f);
+  const auto count = static_cast<size_t>(num_emitters());
+  sources.resize(first + 4 * (count + options_.bright.size()), 0.0f);
+  for (size_t k = 0; k < options_.bright.size(); ++k) {
+    for (int c = 0; c < 3; ++c) {
+      sources[first + 4 * (count + k) + c] =
+          static_cast<float>(options_.bright[k].power[c]);
+    }
+  }
   if (emitted == nullptr) return sources;
   for (size_t j = 0; j < count; ++j) {
     for (size_t c = 0; c < 3; ++c) {
@@ -360,9 +401,10 @@ std::vector<double> Transport::ByEmitted(const std::vector<float>& f,
           const double* a = adjoint + 3 * static_cast<size_t>(chunk.begin + i);
           for (; far < chunk.far_end[i]; ++far) {
             const FarPair& pair = chunk.far[far];
-            if (pair.block < num_blocks_) continue;
+            const int emitter = pair.block - num_blocks_;
+            if (emitter < 0 || emitter >= num_emitters()) continue;
             const Float4 v = pair.weight * Interpolate(pair, corners, f.data());
-            double* const to = &g[size_t{4} * (pair.block - num_blocks_)];
+            double* const to = &g[size_t{4} * emitter];
             for (int c = 0; c < 3; ++c) to[c] += v[c] * a[c];
           }
         }

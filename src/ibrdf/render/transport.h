@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/render/bright_texels.h"
 #include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/scene.h"
 #include "ibrdf/render/surface_emitters.h"
@@ -39,6 +40,10 @@ struct TransportOptions {
   std::shared_ptr<const Visibility> visibility;
   // With `visibility`, and of the same points; null: no bounces.
   std::shared_ptr<const SurfaceEmitters> emitters;
+  // Light besides the map's: what SplitBrightTexels took out of a known one. In
+  // all radiance for a grid or for fields and its gradients in those, not in
+  // what is linear in the map: ByLight, LightMatrix.
+  std::vector<BrightSample> bright;
 };
 
 class LightOperator;
@@ -48,7 +53,8 @@ class ReflectanceOperator;
 // a time (they are parallel inside).
 class Transport {
  public:
-  // map_width even; at most 65536 far cells (see FarBlockSize) and emitters.
+  // map_width even; at most 65536 far cells (see FarBlockSize), emitters and
+  // bright samples.
   Transport(const std::vector<ShadingPoint>& points, int map_height,
             int map_width, const TransportOptions& options);
 
@@ -111,7 +117,8 @@ class Transport {
   struct FarPair {
     uint32_t node;  // lowest node of the cell, in the padded grid
     uint16_t fh, fd, fp;
-    uint16_t block;  // or num_blocks_ + an emitter
+    uint16_t block;  // or num_blocks_ + an emitter or, after those, a sample of
+                     // bright light
     float weight;
   };
   struct NearPair {
@@ -133,6 +140,9 @@ class Transport {
   void BuildChunk(const std::vector<ShadingPoint>& points,
                   const std::vector<FarCell>& cells,
                   const PointQuadrature& quadrature, Of of, Chunk* chunk) const;
+  // Pairs of a point with the bright light that it sees.
+  void AddBright(const ShadingPoint& point, const uint64_t* hidden,
+                 Chunk* chunk) const;
   // A far sample whose block is hidden in part, as pairs with its texels.
   void SplitBlock(const uint64_t* hidden, const Eigen::Vector3d& n, int block,
                   const NearPair& sample, std::vector<NearPair>* pairs) const;
@@ -162,11 +172,15 @@ class Transport {
   // R_0 to R_bounces; empty: R_0 = 0.
   std::vector<std::vector<double>> Emitted(const std::vector<float>& f,
                                            const float* map, int bounces) const;
-  // SumBlocks, then the emitters; four floats each, the last one 0.
+  // SumBlocks, then the emitters, then bright samples; four floats each, the
+  // last one 0.
   std::vector<float> FarSources(const float* map, const double* emitted) const;
   // See PaddedTexels; four floats per entry, the last one 0.
   std::vector<float> PadMap(const float* map) const;
   std::vector<float> PadGrid(const BrdfGrid& grid) const;
+  int num_emitters() const {
+    return options_.emitters != nullptr ? options_.emitters->count() : 0;
+  }
   int PaddedNodes() const {
     return options_.grid.h * options_.grid.d * (options_.grid.p + 1);
   }
