@@ -160,29 +160,38 @@ JointState Estimator::EstimateUnderKnownLight() {
 }
 
 JointState Estimator::BestOf(std::vector<Candidate> candidates) {
+  for (Candidate& c : candidates) c.scale = likelihood_.scale;
+  const auto going = [](const Candidate& c) { return !c.settled; };
+  while (iterations_ < problem_.solver.max_iterations &&
+         std::any_of(candidates.begin(), candidates.end(), going)) {
+    for (Candidate& c : candidates) {
+      if (Interrupted() || Elapsed() > Budget() - finish_seconds_) {
+        KeepBest(1, &candidates);
+        return candidates.front().state;
+      }
+      if (!c.settled) KnownLightRound(&c);
+    }
+    ++iterations_;
+    KeepBest(candidates.size() - 1, &candidates);
+  }
+  KeepBest(1, &candidates);
+  return candidates.front().state;
+}
+
+void Estimator::KeepBest(size_t count, std::vector<Candidate>* candidates) {
   // At the first, tolerant scale ends differ by a few nats that differ by
   // hundreds at the image's own.
-  const double first_scale = likelihood_.scale;
-  double least_scale = first_scale;
-  for (size_t k = 0; k < candidates.size(); ++k) {
-    if (k > 0 && (Interrupted() || Elapsed() > Budget() - finish_seconds_)) {
-      candidates.resize(k);
-      break;
-    }
-    likelihood_.scale = first_scale;
-    iterations_ = 0;
-    KnownLightRounds(candidates[k].name, &candidates[k].state);
-    least_scale = std::min(least_scale, likelihood_.scale);
+  for (const Candidate& c : *candidates) {
+    likelihood_.scale = std::min(likelihood_.scale, c.scale);
   }
-  likelihood_.scale = least_scale;
-  for (Candidate& c : candidates) {
+  for (Candidate& c : *candidates) {
     c.cost = Evaluate("", few_.get(), c.state).cost;
   }
-  const auto best = std::min_element(
-      candidates.begin(), candidates.end(),
+  std::stable_sort(
+      candidates->begin(), candidates->end(),
       [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
-  start_name_ = best->name;
-  return best->state;
+  candidates->resize(std::min(std::max<size_t>(count, 1), candidates->size()));
+  start_name_ = candidates->front().name;
 }
 
 void Estimator::LobeSteps(int max_steps, double radius,
@@ -198,24 +207,24 @@ void Estimator::LobeSteps(int max_steps, double radius,
                    &state->lobes);
 }
 
-void Estimator::KnownLightRounds(const std::string& name, JointState* state) {
-  TraceEntry before = Evaluate("refine", few_.get(), *state);
-  for (int round = 0; iterations_ < problem_.solver.max_iterations; ++round) {
-    if (Interrupted() || Elapsed() > Budget() - finish_seconds_) return;
-    UpdateScale(before.misfit);
-    before = Evaluate("refine", few_.get(), *state);
-    JointState next = *state;
-    LobeSteps(kRoundSteps, kRoundRadius, &next);
-    const TraceEntry after =
-        Evaluate("refine " + name + " round " + std::to_string(round + 1),
-                 few_.get(), next);
-    ++iterations_;
-    if (!(after.cost < before.cost)) return;
-    *state = next;
-    Report(after);
-    if (RoundsSettled(before, after)) return;
-    before = after;
+void Estimator::KnownLightRound(Candidate* candidate) {
+  likelihood_.scale = candidate->scale;
+  TraceEntry before = Evaluate("refine", few_.get(), candidate->state);
+  UpdateScale(before.misfit);
+  candidate->scale = likelihood_.scale;
+  before = Evaluate("refine", few_.get(), candidate->state);
+  JointState next = candidate->state;
+  LobeSteps(kRoundSteps, kRoundRadius, &next);
+  const TraceEntry after = Evaluate(
+      "refine " + candidate->name + " round " + std::to_string(iterations_ + 1),
+      few_.get(), next);
+  if (!(after.cost < before.cost)) {
+    candidate->settled = true;
+    return;
   }
+  candidate->state = next;
+  Report(after);
+  candidate->settled = RoundsSettled(before, after);
 }
 
 }  // namespace ibrdf

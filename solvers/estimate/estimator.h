@@ -91,14 +91,19 @@ class Estimator {
     std::string name;
     JointState state;
     double cost = 0.0;
+    double scale = 0.0;  // of the likelihood
+    bool settled = false;
   };
-  // Each finished, at least one; compared at one scale, the least.
+  // Rounds of all in turn, after each of which the worst is given up.
   JointState BestOf(std::vector<Candidate> candidates);
+  // The best so many, at least one, best first: compared at one scale, the
+  // least of theirs, which is the likelihood's then.
+  void KeepBest(size_t count, std::vector<Candidate>* candidates);
+  // Steps at a scale that may fall, unless they do not lower the cost.
+  void KnownLightRound(Candidate* candidate);
   // Steps of the lobes under the known light, on few_: at most so many, from
   // a trust region of so large a radius.
   void LobeSteps(int max_steps, double radius, JointState* state) const;
-  // Steps at a falling scale, until they settle or time is up.
-  void KnownLightRounds(const std::string& name, JointState* state);
 
   // estimate_light.cc
   std::unique_ptr<IlluminationModel> MakeLight() const;
@@ -149,6 +154,17 @@ class Estimator {
   void UpdateScale(double misfit);
 
   // finish.cc
+  // What a state looks like, under the present priors.
+  struct View {
+    JointCost cost;
+    BrdfGrid grid;
+    std::vector<float> map;        // [H, W, 3]
+    std::vector<double> radiance;  // [points of full_ * 3]
+  };
+  // All but the likelihood of every pixel, and its radiance.
+  View ViewOf(const JointState& state);
+  // These, slice by slice.
+  void RenderPixels(const std::vector<View*>& views);
   // Evaluates the end at every pixel, against the start.
   StatusOr<Estimate> Finish(JointState best);
   void AddAlternatives(Estimate* estimate) const;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -7,17 +8,62 @@
 #include "solvers/estimate/estimator.h"
 
 namespace ibrdf {
+namespace {
+
+// Transported at once: the lists of pairs of all pixels would take gigabytes.
+constexpr size_t kPointsAtOnce = 4096;
+
+}  // namespace
+
+Estimator::View Estimator::ViewOf(const JointState& state) {
+  // Priors and map are the same on any level.
+  const LevelObjective on =
+      ObjectiveOn(light_unknown() ? cells_.get() : few_.get());
+  View view;
+  view.cost = on.objective->Evaluate(state);
+  view.map = on.objective->map();
+  view.grid =
+      lobes_unknown() ? lobes_->Grid(state.lobes.data()) : *problem_.known_brdf;
+  return view;
+}
+
+void Estimator::RenderPixels(const std::vector<View*>& views) {
+  const std::vector<ShadingPoint>& points = full_->points;
+  for (View* const view : views) view->radiance.resize(3 * points.size());
+  // Emitters are lit anew by every transport that has them.
+  const bool bounces = problem_.transport.emitters != nullptr;
+  const size_t at_once = bounces ? points.size() : kPointsAtOnce;
+  for (size_t begin = 0; begin < points.size(); begin += at_once) {
+    Level slice;
+    const size_t end = std::min(begin + at_once, points.size());
+    slice.points.assign(points.begin() + begin, points.begin() + end);
+    const Transport& transport = TransportOf(&slice);
+    for (View* const view : views) {
+      transport.Render(view->grid, view->map.data(),
+                       &view->radiance[3 * begin]);
+    }
+  }
+  for (View* const view : views) {
+    const LikelihoodValue value = EvaluateLikelihood(
+        view->radiance, full_->observed, likelihood_, nullptr);
+    view->cost.likelihood = value.cost;
+    view->cost.misfit = value.misfit;
+  }
+}
 
 StatusOr<Estimate> Estimator::Finish(JointState best) {
   Estimate estimate;
   // The start with its own centre of the light's priors.
   std::swap(light_priors_, first_priors_);
-  const TraceEntry start = Evaluate("start", full_.get(), first_);
+  View first = ViewOf(first_);
   std::swap(light_priors_, first_priors_);
-  const LevelObjective on = ObjectiveOn(full_.get());
-  TraceEntry end = Entry("end", *full_, best, on.objective->Evaluate(best));
+  View last = ViewOf(best);
+  RenderPixels({&first, &last});
+  const TraceEntry start = Entry("start", *full_, first_, first.cost);
+  TraceEntry end = Entry("end", *full_, best, last.cost);
   if (!(end.cost < start.cost)) {
     best = first_;
+    last = std::move(first);
     end = start;
     end.stage = "end";
     estimate.status = Status(StatusCode::kNoImprovement,
@@ -28,15 +74,15 @@ StatusOr<Estimate> Estimator::Finish(JointState best) {
                              "interrupted; the best iterate was kept");
   }
   Report(end);
-  const std::vector<double>& E = on.objective->radiance();
   estimate.map = Image(problem_.map_width, problem_.map_height);
-  estimate.map.rgb =
-      light_unknown() ? on.objective->map() : problem_.known_map->rgb;
+  estimate.map.rgb = light_unknown() ? last.map : problem_.known_map->rgb;
   estimate.render = Image(problem_.image.width, problem_.image.height);
   for (size_t i = 0; i < full_->points.size(); ++i) {
     float* rgb =
         estimate.render.rgb.data() + size_t{3} * full_->points[i].pixel;
-    for (int c = 0; c < 3; ++c) rgb[c] = static_cast<float>(E[3 * i + c]);
+    for (int c = 0; c < 3; ++c) {
+      rgb[c] = static_cast<float>(last.radiance[3 * i + c]);
+    }
   }
   if (lobes_unknown()) {
     estimate.lobe_parameters = best.lobes;

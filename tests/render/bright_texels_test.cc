@@ -105,6 +105,31 @@ TEST(BrightTexels, SamplesHoldTheLightOfTheirTents) {
   }
 }
 
+// Together as one by one, in fewer directions; also across the map's seam.
+TEST(BrightTexels, NeighboursShareDirections) {
+  const int height = 32, width = 64, per_side = 4;
+  const std::vector<BrightTexel> texels = {{9, width - 1, {3.0, 2.0, 1.0}},
+                                           {9, 0, {1.0, 5.0, 2.0}},
+                                           {10, width - 1, {4.0, 4.0, 4.0}}};
+  const auto moments = [&](const std::vector<BrightTexel>& of, size_t* count) {
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    const std::vector<BrightSample> samples =
+        SampleBrightTexels(of, height, width, per_side);
+    for (const BrightSample& s : samples) {
+      sum += s.power.matrix() * s.direction.transpose();
+    }
+    *count += samples.size();
+    return sum;
+  };
+  size_t together = 0, apart = 0;
+  const Eigen::Matrix3d all = moments(texels, &together);
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const BrightTexel& texel : texels) sum += moments({texel}, &apart);
+  EXPECT_LT((all - sum).norm(), 1e-12 * sum.norm());
+  EXPECT_EQ(48u, apart);
+  EXPECT_EQ(32u, together);  // 16 and twice the half of 16
+}
+
 // A sun of a degree, from the mirrored view to where no peak of a lobe is.
 TEST(BrightTexels, CoarseRingsShowASunToo) {
   const int height = 128, width = 256;

@@ -144,7 +144,7 @@ TEST_F(TransportTest, GridGradientIsTheTransposeOfRender) {
 TEST_F(TransportTest, LobesAddUpToTheRender) {
   const Image map = RandomMap(64, 128, 5);
   const int num_nodes = BrdfGridShape().num_nodes();
-  for (const int num_fields : {1, 5, 34}) {
+  for (const int num_fields : {1, 5, 34, 70}) {
     std::vector<std::vector<float>> fields(num_fields);
     std::vector<const float*> pointers;
     std::vector<double> colours(3 * num_fields);

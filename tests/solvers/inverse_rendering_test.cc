@@ -199,6 +199,29 @@ TEST_P(InverseRenderingTest, NoIterationsKeepTheStart) {
   EXPECT_EQ(StatusCode::kNoImprovement, e.status.code());
 }
 
+// More pixels than are transported at once.
+TEST_P(InverseRenderingTest, EveryPixelOfALargeImageIsRendered) {
+  SetKind(GetParam());
+  problem_.solver.max_iterations = 0;
+  const int size = 90;
+  problem_.points = SpherePoints(size);
+  ASSERT_GT(problem_.points.size(), 5000u);
+  problem_.image = Image(size, size);
+  std::fill(problem_.image.rgb.begin(), problem_.image.rgb.end(), 1.0f);
+  const Estimate e = Solve();
+  ASSERT_EQ(problem_.image.rgb.size(), e.render.rgb.size());
+  const LobeModel lobes(problem_.model, 2, problem_.transport.grid, 1);
+  const BrdfGrid grid =
+      e.lobe_parameters.empty() ? truth_ : lobes.Grid(e.lobe_parameters.data());
+  std::vector<double> E(3 * problem_.points.size());
+  Transport(problem_.points, 8, 16, problem_.transport)
+      .Render(grid, e.map.rgb.data(), E.data());
+  for (size_t i = 0; i < E.size(); ++i) {
+    const size_t at = 3 * problem_.points[i / 3].pixel + i % 3;
+    EXPECT_EQ(static_cast<float>(E[i]), e.render.rgb[at]) << i;
+  }
+}
+
 TEST_P(InverseRenderingTest, ImageWithoutAValueIsRefused) {
   SetKind(GetParam());
   for (const float value :

@@ -2,6 +2,7 @@
 // Chen et al. 2020, Eq. 4).
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 
 namespace ibrdf {
 
@@ -12,6 +13,12 @@ struct HalfDiff {
   double theta_d;  // [0, pi/2]  half-vector to light
   double phi_d;    // [0, pi)
 };
+
+// [-pi, pi] to [0, pi), by reciprocity.
+inline double FoldPhi(double phi) {
+  if (phi < 0.0) phi += M_PI;
+  return phi >= M_PI ? 0.0 : phi;
+}
 
 // wi, wo: unit, z > 0. At theta_h = 0 or theta_d = 0, where phi_d is not
 // defined, some finite value of its range is returned.

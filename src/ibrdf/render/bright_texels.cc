@@ -62,25 +62,37 @@ std::vector<BrightSample> SampleBrightTexels(
     const std::vector<BrightTexel>& texels, int map_height, int map_width,
     int per_side) {
   CHECK(per_side > 0 && per_side % 2 == 0);
-  const double step = 2.0 / per_side;  // texels
+  const int half = per_side / 2;   // samples from a texel's centre to the next
+  const double step = 1.0 / half;  // texels
   const double cell = step * kPi / map_height * step * 2.0 * kPi / map_width;
-  std::vector<BrightSample> samples;
+  // By row and column of their grid, which has `half` steps to a texel; the
+  // first step begins half a texel before the map.
+  std::map<std::pair<int, int>, Eigen::Array3d> excess;
   for (const BrightTexel& texel : texels) {
     for (int i = 0; i < per_side; ++i) {
       const double v = (i + 0.5) * step - 1.0;
-      // Beyond a pole the same formulas go on across it.
-      const double row = texel.row + 0.5 + v;
-      const double sine = std::abs(std::sin(kPi * row / map_height));
       for (int j = 0; j < per_side; ++j) {
         const double u = (j + 0.5) * step - 1.0;
-        BrightSample sample;
-        sample.direction =
-            MapDirection(row, texel.column + 0.5 + u, map_height, map_width);
-        sample.power = texel.excess * ((1.0 - std::abs(u)) *
-                                       (1.0 - std::abs(v)) * sine * cell);
-        samples.push_back(sample);
+        const int columns = map_width * half;
+        const int column = (texel.column * half + j + columns) % columns;
+        auto& sum = excess
+                        .try_emplace({texel.row * half + i, column},
+                                     Eigen::Array3d::Zero())
+                        .first->second;
+        sum += texel.excess * ((1.0 - std::abs(u)) * (1.0 - std::abs(v)));
       }
     }
+  }
+  std::vector<BrightSample> samples;
+  for (const auto& [at, radiance] : excess) {
+    // Beyond a pole the same formulas go on across it.
+    const double row = (at.first + 0.5) * step - 0.5;
+    const double column = (at.second + 0.5) * step - 0.5;
+    BrightSample sample;
+    sample.direction = MapDirection(row, column, map_height, map_width);
+    sample.power =
+        radiance * (std::abs(std::sin(kPi * row / map_height)) * cell);
+    samples.push_back(sample);
   }
   return samples;
 }

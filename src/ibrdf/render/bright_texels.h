@@ -29,7 +29,7 @@ struct BrightSample {
   Eigen::Array3d power;       // radiance times solid angle
 };
 
-// per_side^2 directions a texel; per_side even.
+// per_side^2 directions a texel, which neighbours share; per_side even.
 std::vector<BrightSample> SampleBrightTexels(
     const std::vector<BrightTexel>& texels, int map_height, int map_width,
     int per_side);

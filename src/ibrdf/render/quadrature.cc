@@ -22,12 +22,6 @@ constexpr int kIntegralSteps = 90;
 constexpr int kIntegralRings = 120;
 constexpr int kIntegralRingSamples = 240;
 
-// phi_d folded to [0, pi).
-double FoldPhi(double phi) {
-  if (phi < 0.0) phi += kPi;
-  return phi >= kPi ? 0.0 : phi;
-}
-
 // Moves wi, at cosine c in a cell of half-extent a, to the cosine-weighted
 // centre of the cell's part above the horizon.
 Eigen::Vector3d CentreAboveHorizon(const Eigen::Vector3d& wi,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/fast_atan2.h"
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
@@ -35,6 +36,26 @@ void SetCell(const BrdfGridShape& shape, const Sample& sample, Pair* pair) {
   pair->fd = Quantise(cell.fd);
   pair->fp = Quantise(cell.fp);
   pair->weight = static_cast<float>(sample.weight);
+}
+
+constexpr double kSpare = 1.1;
+
+// Room for so many times what is there: lists that grow by doubling are copied,
+// and touch new pages, twice over.
+template <typename Pair>
+void ReserveFor(double times, std::vector<Pair>* pairs) {
+  const double expected = times * static_cast<double>(pairs->size());
+  if (expected > static_cast<double>(pairs->capacity())) {
+    pairs->reserve(static_cast<size_t>(kSpare * expected));
+  }
+}
+
+template <typename Pair>
+void GiveBackSpare(std::vector<Pair>* pairs) {
+  const auto size = static_cast<double>(pairs->size());
+  if (static_cast<double>(pairs->capacity()) > kSpare * kSpare * size) {
+    pairs->shrink_to_fit();
+  }
 }
 
 }  // namespace
@@ -159,11 +180,15 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
       chunk->near.push_back(pair);
     }
     AddBright(points[i], hidden, chunk);
+    const double of_done =
+        1.0 * (chunk->end - chunk->begin) / (i + 1 - chunk->begin);
+    ReserveFor(of_done, &chunk->far);
+    ReserveFor(of_done, &chunk->near);
     chunk->far_end.push_back(chunk->far.size());
     chunk->near_end.push_back(chunk->near.size());
   }
-  chunk->far.shrink_to_fit();
-  chunk->near.shrink_to_fit();
+  GiveBackSpare(&chunk->far);
+  GiveBackSpare(&chunk->near);
 }
 
 void Transport::AddBright(const ShadingPoint& point, const uint64_t* hidden,
@@ -171,11 +196,6 @@ void Transport::AddBright(const ShadingPoint& point, const uint64_t* hidden,
   if (options_.bright.empty()) return;
   const Eigen::Vector3d n = point.normal.cast<double>().normalized();
   const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
-  Eigen::Vector3d t, b;
-  ViewFrame(n, wo, &t, &b);
-  const auto local = [&](const Eigen::Vector3d& w) {
-    return Eigen::Vector3d(w.dot(t), w.dot(b), w.dot(n));
-  };
   const int first = num_blocks_ + num_emitters();
   for (size_t k = 0; k < options_.bright.size(); ++k) {
     const Eigen::Vector3d& wi = options_.bright[k].direction;
@@ -185,10 +205,15 @@ void Transport::AddBright(const ShadingPoint& point, const uint64_t* hidden,
       sample.weight *= options_.visibility->grid().VisibleAlong(hidden, n, wi);
     }
     if (sample.weight <= 0.0) continue;
-    const HalfDiff angles = ToHalfDiff(local(wi), local(wo));
-    sample.theta_h = angles.theta_h;
-    sample.theta_d = angles.theta_d;
-    sample.phi_d = angles.phi_d;
+    const Eigen::Vector3d h = (wi + wo).normalized();
+    const double cos_h = std::max(n.dot(h), 0.0), cos_d = wi.dot(h);
+    const Eigen::Vector3d across = n.cross(h);
+    sample.theta_h = FastAtan2(across.norm(), cos_h);
+    sample.theta_d = FastAtan2(wi.cross(h).norm(), cos_d);
+    // As PointQuadrature has it; at theta_h = 0, where no direction is meant,
+    // an isotropic reflectance does not depend on it.
+    sample.phi_d =
+        FoldPhi(FastAtan2(across.dot(wi), cos_h * cos_d - n.dot(wi)));
     FarPair pair{};
     SetCell(options_.grid, sample, &pair);
     pair.block = static_cast<uint16_t>(first + k);
