@@ -36,9 +36,10 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
                         const ReflectanceStepOptions& options,
                         std::vector<double>* parameters) {
   ceres::Problem problem;
-  problem.AddResidualBlock(new LobeRadianceCost(&transport, &lobes, map,
-                                                &observed, options.likelihood),
-                           nullptr, parameters->data());
+  problem.AddResidualBlock(
+      new LobeRadianceCost(&transport, &lobes, map, &observed,
+                           options.likelihood, options.stored),
+      nullptr, parameters->data());
   ceres::CostFunction* const prior =
       options.materials != nullptr
           ? static_cast<ceres::CostFunction*>(

@@ -26,16 +26,26 @@ namespace ibrdf {
 namespace {
 
 constexpr int kDescentIterations = 40;
+// Past the search's own stop.
+constexpr int kFurtherIterations = 200;
+constexpr double kFurtherGain = 1e-4;  // nats
 // Factors of the noise that light inside texels makes, at which the likelihood
 // is taken.
 constexpr std::array<double, 6> kTexelNoise = {2.0, 1.0, 0.5, 0.25, 0.1, 0.0};
+
+struct StudyOptions {
+  int cells_across = 0;  // of the finest resolution; 0: the search's
+  bool texel_noise = false;
+  bool found_alone = false;
+  bool further = false;
+  int num_threads = 0;
+};
 
 // Its search's finest resolution, its truth, and the metric.
 class EvidenceStudy {
  public:
   EvidenceStudy(std::string name, const InverseProblem& problem,
-                const Truth& truth, int cells_across, bool texel_noise,
-                bool found_alone)
+                const Truth& truth, const StudyOptions& study)
       : name_(std::move(name)),
         problem_(problem),
         truth_(truth),
@@ -44,17 +54,16 @@ class EvidenceStudy {
         lobes_(problem.model, problem.lobes, problem.transport.grid,
                problem.num_threads),
         gauge_(problem.model, prior_, problem.num_threads),
-        texel_noise_(texel_noise),
-        found_alone_(found_alone),
+        study_(study),
         radiance_(RadianceOf(problem.image, problem.points)) {
     options_.num_threads = problem.num_threads;
     options_.covariance = false;
     options_.screen.visibility = options_.coarse.visibility =
         options_.fine.visibility = problem.transport.visibility;
-    if (cells_across > 0) {
-      options_.fine.cells.cells_across = cells_across;
-      options_.fine.map_width = 2 * cells_across;
-      options_.fine.map_height = cells_across;
+    if (study.cells_across > 0) {
+      options_.fine.cells.cells_across = study.cells_across;
+      options_.fine.map_width = 2 * study.cells_across;
+      options_.fine.map_height = study.cells_across;
     }
   }
 
@@ -75,8 +84,15 @@ class EvidenceStudy {
     };
     std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
                 found->start.c_str());
-    Show(fine, "found", {vector(found->parameters), found->scales});
-    if (found_alone_) return OkStatus();
+    const Point end = {vector(found->parameters), found->scales};
+    Show(fine, "found", end);
+    if (study_.further) {
+      const Descent descent =
+          DescendFrom(fine, end, kFurtherIterations, kFurtherGain);
+      std::printf("  %d steps further\n", descent.summary.iterations);
+      Show(fine, "further", descent.end);
+    }
+    if (study_.found_alone) return OkStatus();
     LobeTableFitOptions fit_options;
     fit_options.lobes = problem_.lobes;
     fit_options.num_threads = problem_.num_threads;
@@ -95,7 +111,10 @@ class EvidenceStudy {
     }
     const Point truth = {vector(nearest), {}};
     Show(fine, "truth", truth);
-    Show(fine, "from truth", DescendFrom(fine, truth, kDescentIterations).end);
+    Show(fine, "from truth",
+         DescendFrom(fine, truth, kDescentIterations,
+                     MarginalDescentOptions().least_gain)
+             .end);
     return OkStatus();
   }
 
@@ -111,7 +130,7 @@ class EvidenceStudy {
     Point end;
   };
   Descent DescendFrom(const MarginalReflectance& fine, const Point& start,
-                      int iterations) const {
+                      int iterations, double least_gain) const {
     Descent descent;
     LightMode mode;
     descent.noise = fine.likelihood().FindNoise(
@@ -121,6 +140,7 @@ class EvidenceStudy {
     std::vector<double> y = objective.Whitened(start.lobes, start.scales);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
+    o.least_gain = least_gain;
     descent.summary = Descend(objective, o, &y);
     descent.value = objective.last_value();
     descent.end = {objective.LobesOf(y.data()), objective.ScalesOf(y.data())};
@@ -130,7 +150,7 @@ class EvidenceStudy {
   // With the noise of the point itself, so that all costs compare.
   void Show(const MarginalReflectance& fine, const char* what,
             const Point& point) const {
-    const Descent here = DescendFrom(fine, point, 0);
+    const Descent here = DescendFrom(fine, point, 0, 0.0);
     if (!here.summary.ok) {
       std::printf("  %-10s no cost\n", what);
       return;
@@ -152,7 +172,7 @@ class EvidenceStudy {
                 light.log_amplitude);
     for (const double r : light.log_roughness) std::printf(" %.2f", r);
     std::printf("\n");
-    if (texel_noise_) SweepTexelNoise(fine, point, here.noise);
+    if (study_.texel_noise) SweepTexelNoise(fine, point, here.noise);
     std::fflush(stdout);  // one problem takes half a minute
   }
 
@@ -177,17 +197,16 @@ class EvidenceStudy {
   const MaterialPrior prior_;
   const LobeModel lobes_;
   const LevelGauge gauge_;
-  const bool texel_noise_, found_alone_;
+  const StudyOptions study_;
   const std::vector<double> radiance_;
   ReflectanceSearchOptions options_;
 };
 
-Status Study(const std::string& path, int cells_across, bool texel_noise,
-             bool found_alone, int num_threads) {
+Status Study(const std::string& path, const StudyOptions& options) {
   const StatusOr<Problem> problem = ReadProblem(path, {});
   if (!problem.ok()) return problem.status();
   const StatusOr<InverseProblem> inverse =
-      LoadInverseProblem(*problem, 1, num_threads);
+      LoadInverseProblem(*problem, 1, options.num_threads);
   if (!inverse.ok()) return inverse.status();
   const StatusOr<Truth> truth =
       LoadTruth(problem->truth, inverse->map_width, inverse->map_height);
@@ -195,9 +214,7 @@ Status Study(const std::string& path, int cells_across, bool texel_noise,
   if (truth->brdf.raw.empty()) {
     return InvalidInput(path, "truth.brdf is needed here");
   }
-  return EvidenceStudy(path, *inverse, *truth, cells_across, texel_noise,
-                       found_alone)
-      .Run();
+  return EvidenceStudy(path, *inverse, *truth, options).Run();
 }
 
 }  // namespace
@@ -208,21 +225,21 @@ int main(int argc, char** argv) {
   FLAGS_logtostderr = true;
   CLI::App app("Costs of the truth and of what a search finds");
   std::vector<std::string> problems;
-  int cells = 0, threads = 0;
-  bool texel_noise = false, found_alone = false;
+  ibrdf::StudyOptions options;
   app.add_option("problems", problems, "joint problems with truth.brdf")
       ->required();
-  app.add_option("--cells", cells,
+  app.add_option("--cells", options.cells_across,
                  "cells across and rows of the map, finest resolution");
-  app.add_flag("--texel-noise", texel_noise,
+  app.add_flag("--texel-noise", options.texel_noise,
                "the likelihood at several strengths of light inside texels");
-  app.add_flag("--found", found_alone,
+  app.add_flag("--found", options.found_alone,
                "the search alone, without the lobes nearest to the truth");
-  app.add_option("--threads", threads, "0: all");
+  app.add_flag("--further", options.further,
+               "the search's last descent, far past its stop");
+  app.add_option("--threads", options.num_threads, "0: all");
   CLI11_PARSE(app, argc, argv);
   for (const std::string& path : problems) {
-    const ibrdf::Status status =
-        ibrdf::Study(path, cells, texel_noise, found_alone, threads);
+    const ibrdf::Status status = ibrdf::Study(path, options);
     if (status.ok()) continue;
     std::fprintf(stderr, "%s\n", status.message().c_str());
     return status.ExitCode();

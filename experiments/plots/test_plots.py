@@ -23,6 +23,7 @@ def load(name):
 
 
 pareto, joint_grid = load("pareto"), load("joint_grid")
+known_light, known_brdf = load("known_light"), load("known_brdf")
 HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -55,6 +56,19 @@ def joint_row(material, error, **cells):
                constant_map_relative_log_rmse_aligned=0.1)
     row.update(cells)
     return {name: str(value) for name, value in row.items()}
+
+
+def light_row(material, name, error):
+    row = {column: error for column, _ in known_light.METRICS}
+    row.update(material=material, map=name, status="ok")
+    return {key: str(value) for key, value in row.items()}
+
+
+def brdf_row(material, name, prior, error):
+    row = {column: error for column, _ in known_brdf.METRICS}
+    row.update(material=material, map=name, prior=prior, status="ok",
+               geometry="sphere", **{known_brdf.CONSTANT: 0.2})
+    return {key: str(value) for key, value in row.items()}
 
 
 class Results(unittest.TestCase):
@@ -183,6 +197,57 @@ class JointGrid(unittest.TestCase):
             halves = joint_grid.halved(numpy.arange(90.0).reshape(6, 5, 3))
             self.assertEqual((3, 2, 3), halves.shape)
             self.assertEqual((0 + 3 + 15 + 18) / 4, halves[0, 0, 0])
+
+
+class KnownLight(unittest.TestCase):
+    ROWS = [light_row("a", "m", 0.4), light_row("b", "m", 0.1),
+            light_row("a", "n", 0.2), light_row("b", "n", 0.3),
+            light_row("c", "n", "")]
+
+    def test_order_and_table(self):
+        # Medians 0.3 and 0.2; c was solved without a truth to compare with.
+        self.assertEqual(["b", "a"], known_light.materials_by_error(self.ROWS))
+        lines = known_light.table(self.ROWS).splitlines()
+        self.assertEqual(["m", "n", "all"],
+                         [line.split()[1] for line in lines[2:]])
+        self.assertIn("| m | 2 | 0.25; 0.37 |", lines[2])
+        self.assertIn("| all | 5 | 0.25; 0.37 |", lines[4])
+        self.assertEqual(3, len(known_light.table(self.ROWS[:2]).splitlines()))
+
+    @unittest.skipUnless(HAS_MATPLOTLIB, "no matplotlib")
+    def test_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "p.png"
+            known_light.draw(self.ROWS, path)
+            self.assertTrue(path.read_bytes().startswith(PNG))
+
+
+class KnownBrdf(unittest.TestCase):
+    ROWS = [brdf_row("a", "m", "unet", 0.1), brdf_row("a", "m", "none", 0.3),
+            brdf_row("b", "m", "unet", 0.3), brdf_row("b", "m", "none", 0.2),
+            brdf_row("a", "n", "unet", 0.5), brdf_row("a", "n", "none", 0.4),
+            brdf_row("b", "n", "unet", 9.0)]
+
+    def test_means_are_over_shared_cases(self):
+        groups = known_brdf.shared(self.ROWS)
+        self.assertEqual(["m", "n"], list(groups))
+        self.assertEqual(1, len(groups["n"]["unet"]))  # b lacks the other
+        self.assertAlmostEqual(
+            0.2, known_brdf.mean(groups["m"]["unet"], known_brdf.ERROR))
+        self.assertEqual(
+            1, known_brdf.wins(groups, "unet", "none", known_brdf.ERROR))
+        text = known_brdf.table(self.ROWS)
+        self.assertIn("| m | none | 2 | 0.25 | 0.25 |", text)
+        self.assertIn("aligned, is below that with `none` on 1 of 2", text)
+        with self.assertRaisesRegex(ValueError, "every prior"):
+            known_brdf.shared(self.ROWS[:1] + self.ROWS[3:4])
+
+    @unittest.skipUnless(HAS_MATPLOTLIB, "no matplotlib")
+    def test_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "p.png"
+            known_brdf.draw(self.ROWS, path)
+            self.assertTrue(path.read_bytes().startswith(PNG))
 
 
 if __name__ == "__main__":

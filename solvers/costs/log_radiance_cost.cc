@@ -117,15 +117,16 @@ LobeRadianceCost::LobeRadianceCost(const Transport* transport,
                                    const LobeModel* lobes,
                                    std::vector<float> map,
                                    const Observations* observed,
-                                   const RobustLogLikelihood& likelihood)
+                                   const RobustLogLikelihood& likelihood,
+                                   const ReflectanceOperator* stored)
     : transport_(transport),
       lobes_(lobes),
       map_(std::move(map)),
+      operator_(stored),
       observed_(observed),
       likelihood_(likelihood) {
-  if (transport->bounces() == 0 &&
-      transport->num_points() <= kMaxStoredPoints) {
-    operator_.emplace(transport->ByReflectance(map_.data()));
+  if (operator_ == nullptr && IsStored(*transport)) {
+    operator_ = &own_.emplace(transport->ByReflectance(map_.data()));
   }
   mutable_parameter_block_sizes()->push_back(lobes->num_parameters());
   set_num_residuals(transport->num_points() * 3);

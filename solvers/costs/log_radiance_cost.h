@@ -40,12 +40,18 @@ class LogRadianceCost final : public ceres::CostFunction {
 
 // The same residuals for a fixed map [H, W, 3]: one block, the lobes. Of few
 // points, the light that each gathers is stored at the start (some 40 kB per
-// point) and serves every evaluation.
+// point) and serves every evaluation; `stored`: it was before, for this map.
 class LobeRadianceCost final : public ceres::CostFunction {
  public:
   LobeRadianceCost(const Transport* transport, const LobeModel* lobes,
                    std::vector<float> map, const Observations* observed,
-                   const RobustLogLikelihood& likelihood);
+                   const RobustLogLikelihood& likelihood,
+                   const ReflectanceOperator* stored = nullptr);
+  // Whether light is worth storing.
+  static bool IsStored(const Transport& transport) {
+    return transport.bounces() == 0 &&
+           transport.num_points() <= kMaxStoredPoints;
+  }
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
@@ -56,7 +62,8 @@ class LobeRadianceCost final : public ceres::CostFunction {
   const Transport* transport_;
   const LobeModel* lobes_;
   const std::vector<float> map_;
-  std::optional<ReflectanceOperator> operator_;
+  std::optional<ReflectanceOperator> own_;
+  const ReflectanceOperator* operator_;  // null: none is stored
   const Observations* observed_;
   const RobustLogLikelihood likelihood_;
 };

@@ -129,38 +129,55 @@ JointState Estimator::EstimateUnderKnownLight() {
   // Pixels as they are: under a known lamp the mean of a cell is not the
   // radiance of its mean normal.
   few_ = MakeSampleLevel(problem_, kKnownLightCells);
-  const std::vector<RankedMaterial> ranked =
-      RankUnderKnownLight(TransportOf(few_.get()), *lobes_, materials_,
-                          known_map_, few_->observed, likelihood_);
+  const Transport& transport = TransportOf(few_.get());
+  if (LobeRadianceCost::IsStored(transport)) {
+    few_light_ = transport.ByReflectance(known_map_.data());
+  }
+  const std::vector<RankedMaterial> ranked = RankUnderKnownLight(
+      transport, *lobes_, materials_, known_map_, few_->observed, likelihood_);
   first_.lobes = ranked.front().parameters;
   start_name_ = ranked.front().name;
-  const TraceEntry first = Evaluate("rank " + start_name_, few_.get(), first_);
-  Report(first);
+  // The first as it is, too, should no step lower its cost.
+  std::vector<Candidate> candidates = {CandidateOf(start_name_, first_)};
+  Report(Entry("rank " + start_name_, candidates.front()));
   if (problem_.solver.max_iterations == 0) return first_;
   const std::function<bool()> stop = StopAfter(kSearchShare);
-  // The first as it is, too, should no step lower its cost.
-  std::vector<Candidate> candidates = {{start_name_, first_, first.cost}};
   const int starts =
       std::min<int>(kKnownLightStarts, static_cast<int>(ranked.size()));
   for (int k = 0; k < starts && !(k > 0 && stop()); ++k) {
-    Candidate next{ranked[k].name, {}, 0.0};
-    next.state.lobes = ranked[k].parameters;
-    LobeSteps(kStartSteps, kStartRadius, &next.state);
-    const TraceEntry entry =
-        Evaluate("start " + next.name, few_.get(), next.state);
-    next.cost = entry.cost;
-    Report(entry);
-    candidates.push_back(std::move(next));
+    JointState next;
+    next.lobes = ranked[k].parameters;
+    LobeSteps(kStartSteps, kStartRadius, &next);
+    candidates.push_back(CandidateOf(ranked[k].name, std::move(next)));
+    Report(Entry("start " + ranked[k].name, candidates.back()));
   }
-  std::stable_sort(
-      candidates.begin(), candidates.end(),
-      [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
-  candidates.resize(std::min<size_t>(kKnownLightFinalists, candidates.size()));
   return BestOf(std::move(candidates));
 }
 
+Estimator::Candidate Estimator::CandidateOf(const std::string& name,
+                                            JointState state) {
+  const LevelObjective on = ObjectiveOn(few_.get());
+  Candidate candidate;
+  candidate.name = name;
+  candidate.priors = on.objective->Evaluate(state);
+  candidate.radiance = on.objective->radiance();
+  candidate.state = std::move(state);
+  candidate.scale = likelihood_.scale;
+  return candidate;
+}
+
+TraceEntry Estimator::Entry(const std::string& stage,
+                            const Candidate& candidate) const {
+  JointCost cost = candidate.priors;
+  const LikelihoodValue value = EvaluateLikelihood(
+      candidate.radiance, few_->observed, likelihood_, nullptr);
+  cost.likelihood = value.cost;
+  cost.misfit = value.misfit;
+  return Entry(stage, *few_, candidate.state, cost);
+}
+
 JointState Estimator::BestOf(std::vector<Candidate> candidates) {
-  for (Candidate& c : candidates) c.scale = likelihood_.scale;
+  KeepBest(kKnownLightFinalists, &candidates);
   const auto going = [](const Candidate& c) { return !c.settled; };
   while (iterations_ < problem_.solver.max_iterations &&
          std::any_of(candidates.begin(), candidates.end(), going)) {
@@ -184,9 +201,7 @@ void Estimator::KeepBest(size_t count, std::vector<Candidate>* candidates) {
   for (const Candidate& c : *candidates) {
     likelihood_.scale = std::min(likelihood_.scale, c.scale);
   }
-  for (Candidate& c : *candidates) {
-    c.cost = Evaluate("", few_.get(), c.state).cost;
-  }
+  for (Candidate& c : *candidates) c.cost = Entry("", c).cost;
   std::stable_sort(
       candidates->begin(), candidates->end(),
       [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
@@ -199,6 +214,7 @@ void Estimator::LobeSteps(int max_steps, double radius,
   ReflectanceStepOptions o;
   o.likelihood = likelihood_;
   o.materials = &materials_;
+  o.stored = few_light_ ? &*few_light_ : nullptr;
   o.max_iterations = max_steps;
   o.trust_region_radius = radius;
   o.tolerance = problem_.solver.tolerance;
@@ -209,20 +225,20 @@ void Estimator::LobeSteps(int max_steps, double radius,
 
 void Estimator::KnownLightRound(Candidate* candidate) {
   likelihood_.scale = candidate->scale;
-  TraceEntry before = Evaluate("refine", few_.get(), candidate->state);
-  UpdateScale(before.misfit);
+  UpdateScale(Entry("", *candidate).misfit);
   candidate->scale = likelihood_.scale;
-  before = Evaluate("refine", few_.get(), candidate->state);
-  JointState next = candidate->state;
-  LobeSteps(kRoundSteps, kRoundRadius, &next);
-  const TraceEntry after = Evaluate(
-      "refine " + candidate->name + " round " + std::to_string(iterations_ + 1),
-      few_.get(), next);
+  const TraceEntry before = Entry("", *candidate);
+  JointState state = candidate->state;
+  LobeSteps(kRoundSteps, kRoundRadius, &state);
+  Candidate next = CandidateOf(candidate->name, std::move(state));
+  const TraceEntry after =
+      Entry("refine " + next.name + " round " + std::to_string(iterations_ + 1),
+            next);
   if (!(after.cost < before.cost)) {
     candidate->settled = true;
     return;
   }
-  candidate->state = next;
+  *candidate = std::move(next);
   Report(after);
   candidate->settled = RoundsSettled(before, after);
 }

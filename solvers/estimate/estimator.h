@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -87,13 +88,19 @@ class Estimator {
   // The materials under the known light, the best few refined and the best of
   // those finished.
   JointState EstimateUnderKnownLight();
+  // A state under the known light and what few_ looks like in it.
   struct Candidate {
     std::string name;
     JointState state;
-    double cost = 0.0;
-    double scale = 0.0;  // of the likelihood
+    JointCost priors;
+    std::vector<double> radiance;  // [points of few_ * 3]
+    double cost = 0.0;             // when candidates were last compared
+    double scale = 0.0;            // of the likelihood
     bool settled = false;
   };
+  Candidate CandidateOf(const std::string& name, JointState state);
+  // Of a candidate, at the present scale; renders nothing.
+  TraceEntry Entry(const std::string& stage, const Candidate& candidate) const;
   // Rounds of all in turn, after each of which the worst is given up.
   JointState BestOf(std::vector<Candidate> candidates);
   // The best so many, at least one, best first: compared at one scale, the
@@ -177,7 +184,8 @@ class Estimator {
   // Every pixel; pixels of like normals joined, for the light; some pixels, for
   // the reflectance under known light.
   std::unique_ptr<Level> full_, cells_, few_;
-  std::unique_ptr<LobeModel> lobes_;  // null: known
+  std::optional<ReflectanceOperator> few_light_;  // of few_ and the known map
+  std::unique_ptr<LobeModel> lobes_;              // null: known
   LobePrior lobe_prior_;
   MaterialPrior materials_;
   std::unique_ptr<IlluminationModel> light_;  // null: known
