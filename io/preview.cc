@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "ibrdf/base/format.h"
 #include "io/tone_map.h"
 
 namespace ibrdf {
@@ -192,20 +192,18 @@ Placed Place(const PreviewPanel& panel, int max_width) {
   const double fit =
       std::min(static_cast<double>(max_width) / image.width,
                static_cast<double>(kMaxPanelHeight) / image.height);
-  char caption[80];
   cv::Mat resized;
   if (fit >= 1.0) {
     const int factor = static_cast<int>(fit);
     cv::resize(colours, resized, {}, factor, factor, cv::INTER_NEAREST);
-    std::snprintf(caption, sizeof(caption), "%d x %d px, shown x%d (nearest)",
-                  image.width, image.height, factor);
+    placed.caption = Format("%d x %d px, shown x%d (nearest)", image.width,
+                            image.height, factor);
   } else {
     const cv::Size size(Reduced(image.width, fit), Reduced(image.height, fit));
     cv::resize(colours, resized, size, 0, 0, cv::INTER_AREA);
-    std::snprintf(caption, sizeof(caption), "%d x %d px, shown at %d x %d",
-                  image.width, image.height, size.width, size.height);
+    placed.caption = Format("%d x %d px, shown at %d x %d", image.width,
+                            image.height, size.width, size.height);
   }
-  placed.caption = caption;
   placed.pixels = EncodeColours(resized);
   placed.label =
       Wrap(panel.label, std::max(placed.width(), max_width / 2), kLabelStyle);
@@ -221,15 +219,12 @@ void DrawColourBar(cv::Mat* canvas, int left, int top, int height,
              cv::Scalar(rgb[0], rgb[1], rgb[2]));
   }
   cv::rectangle(*canvas, {left, top, kBarWidth, height}, kFaintInk);
-  char number[32];
   const int x = left + kBarWidth + 6;
   const int half_line = kCaptionStyle.line_height / 2;
-  std::snprintf(number, sizeof(number), "+%g", range);
-  DrawText(canvas, number, x, top, kCaptionStyle);
+  DrawText(canvas, Format("+%g", range), x, top, kCaptionStyle);
   DrawText(canvas, "0", x, top + height / 2 - half_line, kCaptionStyle);
-  std::snprintf(number, sizeof(number), "-%g", range);
-  DrawText(canvas, number, x, top + height - kCaptionStyle.line_height,
-           kCaptionStyle);
+  DrawText(canvas, Format("-%g", range), x,
+           top + height - kCaptionStyle.line_height, kCaptionStyle);
 }
 
 // Columns where the map looks along an axis; +y is the top, -y the bottom.

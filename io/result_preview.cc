@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/brdf_sphere.h"
 #include "io/png.h"
@@ -22,14 +22,8 @@ constexpr int kSkyHeight = 64;
 
 using Row = std::vector<PreviewPanel>;
 
-std::string Number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g", value);
-  return text;
-}
-
 std::string White(double exposure, const char* unit) {
-  return "white = " + Number(1.0 / exposure) + unit;
+  return Format("white = %.3g", 1.0 / exposure) + unit;
 }
 
 PreviewPanel Picture(std::string label, const Image& image, const Mask& mask,
@@ -95,7 +89,7 @@ double BrdfScale(const MerlTable& estimate, const MerlTable& reference) {
 }
 
 // Explained by kScaleNote.
-std::string Times(double scale) { return " x" + Number(scale); }
+std::string Times(double scale) { return Format(" x%.3g", scale); }
 constexpr char kScaleNote[] =
     "xN after an estimate: shown times this factor, the one for all channels "
     "that brings its mean logarithm to the reference's.";

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 
+#include "ibrdf/base/format.h"
 #include "io/html.h"
 
 namespace ibrdf {
@@ -24,16 +23,6 @@ constexpr double kMarker = 3.2;
 // Of middling lightness: readable on white and on black.
 constexpr std::array<const char*, 5> kColours = {
     "#2f7fc1", "#d2691e", "#2f9460", "#a463c4", "#8c8c3c"};
-
-__attribute__((format(printf, 1, 2))) std::string Format(const char* format,
-                                                         ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof(text), format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 std::string TickLabel(double value, double step) {
   const double largest = std::max(std::fabs(value), step);

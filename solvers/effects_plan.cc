@@ -1,8 +1,8 @@
 #include "solvers/effects_plan.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/light/procedural_sky.h"
@@ -13,12 +13,6 @@ namespace {
 // Maps are looked at in this size: wide enough for a hard shadow.
 constexpr int kProbeWidth = 128;
 constexpr BrdfGridShape kProbeGrid = {48, 20, 12};
-
-std::string Format(const char* format, double a, double b = 0, double c = 0) {
-  char text[256];
-  std::snprintf(text, sizeof(text), format, a, b, c);
-  return text;
-}
 
 CookTorrance ProbeMaterial(double specular) {
   CookTorrance brdf;

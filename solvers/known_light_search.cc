@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/eigen_vectors.h"
+
 namespace ibrdf {
 
 std::vector<RankedMaterial> RankUnderKnownLight(
@@ -53,8 +55,7 @@ std::vector<RankedMaterial> RankUnderKnownLight(
     double cost = EvaluateLikelihood(E, observed, likelihood, nullptr).cost +
                   prior.Cost(x, nullptr);
     if (!std::isfinite(cost)) cost = std::numeric_limits<double>::infinity();
-    ranked.push_back({prior.materials[m].name, cost,
-                      std::vector<double>(x.data(), x.data() + x.size())});
+    ranked.push_back({prior.materials[m].name, cost, ToVector(x)});
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const RankedMaterial& a, const RankedMaterial& b) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/render/lobe_bundles.h"
 #include "ibrdf/render/scene_probe.h"
 
@@ -46,12 +46,6 @@ double HarmonicSeconds(int order, double points) {
 double GaussianSeconds(int spread, double points) {
   return kGaussianScene + (kGaussianSceneEach + kGaussianPoint * points) *
                               static_cast<double>(spread);
-}
-
-std::string Format(const char* format, double a, double b = 0, double c = 0) {
-  char text[256];
-  std::snprintf(text, sizeof(text), format, a, b, c);
-  return text;
 }
 
 // Mean |log E - log truth| over points and channels, and twice its standard
@@ -179,7 +173,7 @@ bool TierRadiance::Choose(const std::vector<ShadingPoint>& points,
     plan_.words = Format(
         "; spherical harmonics and spherical Gaussians are not within %.4f for "
         "a lobe of %.1f degrees",
-        options.log_error, lobe * 180.0 / 3.14159265358979323846);
+        options.log_error, lobe * 180.0 / M_PI);
     return true;
   }
 
@@ -304,7 +298,7 @@ void TierRadiance::Take(const Candidate& candidate, double found,
   plan_.words = "; light in " + light + (options.forced ? ", as asked" : "") +
                 Format(
                     ": predicted error of log radiance %.4f, found %.4f at "
-                    "%.0f points",
+                    "%d points",
                     candidate.predicted, found, plan_.checked) +
                 Format(" (allowed %.4f; point by point %.4f)",
                        options.log_error, plan_.quadrature_error) +

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/base/version.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/metrics/illumination_metrics.h"
@@ -236,10 +236,7 @@ std::vector<std::string> MetricLines(const Json& metrics) {
   std::vector<std::string> lines;
   for (const auto& [name, value] : metrics.items()) {
     if (!value.is_number()) continue;
-    char line[120];
-    std::snprintf(line, sizeof(line), "%s %.4g", name.c_str(),
-                  value.get<double>());
-    lines.push_back(line);
+    lines.push_back(Format("%s %.4g", name.c_str(), value.get<double>()));
   }
   return lines;
 }

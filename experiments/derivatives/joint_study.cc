@@ -10,6 +10,7 @@
 #include "experiments/derivatives/reference_scene.h"
 #include "experiments/derivatives/studies.h"
 #include "ibrdf/light/illumination_unet_reference.h"
+#include "solvers/eigen_vectors.h"
 #include "solvers/joint/joint_objective.h"
 #include "tests/render/render_testing.h"
 #include "tests/solvers/solver_testing.h"
@@ -63,9 +64,7 @@ class JointStudy {
     objective.Gradient(state, &gradient);
     objective.Linearise(state);
     const std::vector<Real> right = Gradient(state, exact, observed);
-    const auto numbers = [](const Eigen::VectorXd& v) {
-      return std::vector<double>(v.data(), v.data() + v.size());
-    };
+    const auto numbers = [](const Eigen::VectorXd& v) { return ToVector(v); };
     // The blocks apart: the larger one would hide the other.
     const auto nl = static_cast<std::ptrdiff_t>(state.lobes.size());
     const auto add = [&](const std::string& what, const Eigen::VectorXd& v) {

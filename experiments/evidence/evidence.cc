@@ -15,6 +15,7 @@
 
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "io/problem_file.h"
+#include "solvers/eigen_vectors.h"
 #include "solvers/estimate/image_levels.h"
 #include "solvers/level_gauge.h"
 #include "solvers/lobe_table_fit.h"
@@ -78,13 +79,9 @@ class EvidenceStudy {
     const MarginalReflectance fine(problem_.model, problem_.lobes,
                                    problem_.points, radiance_, options_.process,
                                    options_.fine, problem_.num_threads);
-    const auto vector = [](const std::vector<double>& v) {
-      return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
-          v.data(), static_cast<Eigen::Index>(v.size())));
-    };
     std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
                 found->start.c_str());
-    const Point end = {vector(found->parameters), found->scales};
+    const Point end = {ToEigen(found->parameters), found->scales};
     Show(fine, "found", end);
     if (study_.further) {
       const Descent descent =
@@ -105,11 +102,11 @@ class EvidenceStudy {
     std::vector<double> turned = nearest;
     std::rotate(turned.begin(), turned.end() - lobes_.lobe_size(),
                 turned.end());
-    if (prior_.Cost(vector(turned), nullptr) <
-        prior_.Cost(vector(nearest), nullptr)) {
+    if (prior_.Cost(ToEigen(turned), nullptr) <
+        prior_.Cost(ToEigen(nearest), nullptr)) {
       nearest = turned;
     }
-    const Point truth = {vector(nearest), {}};
+    const Point truth = {ToEigen(nearest), {}};
     Show(fine, "truth", truth);
     Show(fine, "from truth",
          DescendFrom(fine, truth, kDescentIterations,
@@ -155,8 +152,7 @@ class EvidenceStudy {
       std::printf("  %-10s no cost\n", what);
       return;
     }
-    std::vector<double> parameters(point.lobes.data(),
-                                   point.lobes.data() + point.lobes.size());
+    std::vector<double> parameters = ToVector(point.lobes);
     gauge_.Fix(parameters.data());
     const StatusOr<BrdfMetrics> metrics =
         CompareBrdfs(lobes_.ToMerl(parameters.data()), truth_.brdf);

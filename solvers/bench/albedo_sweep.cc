@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <random>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/brdf/brdf_sampler.h"
 #include "ibrdf/metrics/albedo.h"
 #include "io/atomic_file.h"
@@ -106,12 +106,6 @@ double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const size_t n = values.size();
   return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
-
-std::string Format(const char* format, double a, double b = 0.0) {
-  char text[160];
-  std::snprintf(text, sizeof(text), format, a, b);
-  return text;
 }
 
 // Rows of one source: how much energy is made.

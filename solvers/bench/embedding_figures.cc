@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <numeric>
 #include <vector>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/brdf/flow_brdf.h"
 #include "ibrdf/brdf/lobe_model.h"
 #include "io/atomic_file.h"
@@ -141,10 +141,8 @@ class Figures {
     std::vector<NamedSphere> steps;
     for (int i = 0; i < kWalkSteps; ++i) {
       const double t = i / (kWalkSteps - 1.0);
-      char label[32];
-      std::snprintf(label, sizeof(label), "t = %.3g", t);
-      steps.push_back(
-          {label, studio_.Render(lobes_.Grid(Blend(a, b, t).data()))});
+      steps.push_back({Format("t = %.3g", t),
+                       studio_.Render(lobes_.Grid(Blend(a, b, t).data()))});
     }
     return WalkPage(steps, materials_[from].name, materials_[to].name,
                     (points.row(from) - points.row(to)).norm(),

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "ibrdf/base/format.h"
 #include "io/picture.h"
 
 namespace ibrdf {
@@ -11,12 +11,6 @@ namespace {
 
 constexpr double kTitleHeight = 17.0, kTextHeight = 11.0, kNameHeight = 9.0;
 constexpr double kMargin = 36.0;
-
-std::string Format(const char* format, double value) {
-  char text[96];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
 
 // Names wrap at a hyphen into lines no wider than `width`.
 std::vector<std::string> WrapName(const std::string& name, double width,
@@ -54,11 +48,10 @@ Rgb8Image MapPage(const EmbeddingMap& map,
   Picture page(kWidth, kHeight);
   page.Text("Embedding of the materials, first two principal axes", kMargin,
             48.0, kTitleHeight);
-  char note[160];
-  std::snprintf(note, sizeof(note),
-                "%d materials; codes of the three channels in a row. Spheres "
-                "that would overlap are moved; a line leads to the place.",
-                n);
+  const std::string note = Format(
+      "%d materials; codes of the three channels in a row. Spheres "
+      "that would overlap are moved; a line leads to the place.",
+      n);
   page.Text(note, kMargin, 74.0, kTextHeight, Picture::Align::kLeft, kGreyInk);
 
   // One scale for both axes would leave a band: axes are scaled by themselves.

@@ -3,12 +3,12 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "ibrdf/base/format.h"
 #include "solvers/bench/merl_fit_sweep.h"
 
 namespace ibrdf {
@@ -67,12 +67,6 @@ std::vector<double> Values(const Group& group, const std::string& column,
   return values;
 }
 
-std::string Rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.4g", value);
-  return text;
-}
-
 double Mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double v : values) sum += v;
@@ -99,14 +93,14 @@ std::string ScoreTable(const std::vector<Group>& groups,
         line.insert(line.end(), 3, "");
         continue;
       }
-      line.push_back(Rounded(Mean(values)));
-      line.push_back(Rounded(Median(values)));
+      line.push_back(Format("%.4g", Mean(values)));
+      line.push_back(Format("%.4g", Median(values)));
       line.push_back(
           NumberCell(*std::max_element(values.begin(), values.end())));
     }
     const std::vector<double> seconds =
         Values(group, "seconds", prefix + "_rmse", with_hard);
-    line.push_back(seconds.empty() ? "" : Rounded(Mean(seconds)));
+    line.push_back(seconds.empty() ? "" : Format("%.4g", Mean(seconds)));
     if (line[1] != "0") lines.push_back(line);
   }
   if (lines.empty()) return "";

@@ -1,8 +1,8 @@
 #include "solvers/bench/pareto_sweep.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/metrics/illumination_metrics.h"
 #include "io/image_file.h"
@@ -128,12 +128,6 @@ std::string Cells(const std::vector<std::string>& cells) {
   return line + "\n";
 }
 
-std::string Short(double value, const char* format) {
-  char text[32];
-  std::snprintf(text, sizeof(text), format, value);
-  return text;
-}
-
 // How long the default takes to the reference's last misfit.
 std::string MisfitTimeTable(const ParetoSweepOptions& options,
                             const std::vector<SolverRun>& defaults,
@@ -152,11 +146,11 @@ std::string MisfitTimeTable(const ParetoSweepOptions& options,
     const std::optional<double> at = SecondsToMisfit(*fast, end.misfit);
     lines += Cells({reference.of.material, reference.of.map,
                     std::to_string(CountRounds(*slow)),
-                    Short(end.misfit, "%.4f"), Short(end.seconds, "%.1f"),
-                    at.has_value() ? Short(*at, "%.1f") : "not reached",
-                    at.has_value() ? Short(end.seconds / *at, "%.1f") : "",
-                    Short(fast->back().misfit, "%.4f"),
-                    Short(fast->back().seconds, "%.1f")});
+                    Format("%.4f", end.misfit), Format("%.1f", end.seconds),
+                    at.has_value() ? Format("%.1f", *at) : "not reached",
+                    at.has_value() ? Format("%.1f", end.seconds / *at) : "",
+                    Format("%.4f", fast->back().misfit),
+                    Format("%.1f", fast->back().seconds)});
   }
   if (lines.empty()) return "";
   return "## Time to Adam's last misfit\n\n" +

@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
+#include "ibrdf/base/format.h"
 #include "io/atomic_file.h"
 
 namespace ibrdf {
@@ -57,9 +57,7 @@ Status WriteAll(int file, const std::string& path, const std::string& text) {
 
 std::string NumberCell(double value) {
   if (!std::isfinite(value)) return "";
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
+  return Format("%.6g", value);
 }
 
 NamedRow::NamedRow(const std::vector<std::string>& columns)

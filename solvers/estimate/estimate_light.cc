@@ -168,11 +168,14 @@ Status Estimator::EstimateNetwork(JointState* state) {
                       light_->height(), light_->width()),
             o, light_.get(), &state->light);
   Report("network", cells_.get(), *state);
+  // A draw of another size is no map to fall back on.
+  const double most_misfit =
+      process->width() == problem_.map_width ? kWorseMisfit * draw_misfit : 0.0;
   IBRDF_RETURN_IF_ERROR(Rounds("network", MethodFor(JointBlocks::kLight),
-                               JointBlocks::kLight, kMapShare, state));
+                               JointBlocks::kLight, kMapShare, state,
+                               most_misfit));
   const double misfit = Evaluate("network", cells_.get(), *state).misfit;
-  if (misfit > kWorseMisfit * draw_misfit &&
-      process->width() == problem_.map_width) {
+  if (most_misfit > 0.0 && misfit > most_misfit) {
     SetLight(std::move(process), false);
     StartAtLevel(state);
     StartFirstLight();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "solvers/eigen_vectors.h"
 #include "solvers/embedding_prior.h"
 #include "solvers/estimate/estimator.h"
 #include "solvers/known_light_search.h"
@@ -100,8 +101,7 @@ Status Estimator::SearchMarginal(JointState* state) {
   const auto start =
       std::find_if(materials.begin(), materials.end(),
                    [&](const auto& m) { return m.name == found->start; });
-  first_.lobes.assign(start->parameters.data(),
-                      start->parameters.data() + start->parameters.size());
+  first_.lobes = ToVector(start->parameters);
   gauge.Fix(first_.lobes.data());
   covariance_ = found->covariance;
   std::vector<double> log_radiance = found->log_radiance;
@@ -119,8 +119,7 @@ void Estimator::StartAtMeanMaterial(JointState* state) {
   const std::string name = SpreadMaterials(problem_.model, 1).front().name;
   for (const MaterialPrior::Material& m : materials_.materials) {
     if (m.name != name) continue;
-    state->lobes.assign(m.parameters.data(),
-                        m.parameters.data() + m.parameters.size());
+    state->lobes = ToVector(m.parameters);
   }
   start_name_ = name;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ibrdf/render/bright_texels.h"
+#include "solvers/eigen_vectors.h"
 #include "solvers/embedding_prior.h"
 
 namespace ibrdf {
@@ -149,7 +150,7 @@ Estimator::LevelObjective Estimator::ObjectiveOn(Level* level) {
 }
 
 double Estimator::ReflectancePrior(const JointState& state) const {
-  const Eigen::VectorXd lobes = VectorOf(state.lobes);
+  const Eigen::VectorXd lobes = ToEigen(state.lobes);
   return light_unknown() ? materials_.CostAtBestLevel(lobes)
                          : materials_.Cost(lobes, nullptr);
 }

@@ -75,10 +75,6 @@ class Estimator {
                       const JointState& state);
   void Report(const TraceEntry& entry);
   void Report(const std::string& stage, Level* level, const JointState& state);
-  static Eigen::VectorXd VectorOf(const std::vector<double>& v) {
-    return Eigen::Map<const Eigen::VectorXd>(
-        v.data(), static_cast<Eigen::Index>(v.size()));
-  }
 
   // estimate_reflectance.cc
   // The reflectance whose posterior is highest with the light integrated out.
@@ -149,9 +145,15 @@ class Estimator {
   void FixGauge(JointState* state);
   JointMethod MethodFor(JointBlocks blocks) const;
   // Lowers the objective over the blocks, some steps at a scale, until a share
-  // of the time is spent or a round gains less than the tolerance.
+  // of the time is spent or a round gains less than the tolerance. most_misfit
+  // > 0: of no use above it, and given up once it is out of reach.
   Status Rounds(const std::string& stage, JointMethod method,
-                JointBlocks blocks, double share, JointState* state);
+                JointBlocks blocks, double share, JointState* state,
+                double most_misfit = 0.0);
+  // Whether rounds as quick and as good as the last would not come to a misfit
+  // in the time that is left; later ones rarely gain more.
+  bool OutOfReach(double misfit, const TraceEntry& before,
+                  const TraceEntry& after) const;
   // Whether another round is not worth its time.
   bool RoundsSettled(const TraceEntry& before, const TraceEntry& after) const;
   // The Laplacian's maximum-likelihood scale is the mean magnitude of the

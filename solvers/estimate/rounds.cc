@@ -63,7 +63,8 @@ JointMethod Estimator::MethodFor(JointBlocks blocks) const {
 }
 
 Status Estimator::Rounds(const std::string& stage, JointMethod method,
-                         JointBlocks blocks, double share, JointState* state) {
+                         JointBlocks blocks, double share, JointState* state,
+                         double most_misfit) {
   Level* const level = cells_.get();
   const std::function<bool()> stop = StopAfter(share);
   if (stop() || iterations_ >= problem_.solver.max_iterations) {
@@ -101,6 +102,7 @@ Status Estimator::Rounds(const std::string& stage, JointMethod method,
     *state = next;
     Report(after);
     if (!whole_schedule && RoundsSettled(before, after)) break;
+    if (OutOfReach(most_misfit, before, after)) break;
     before = after;
   }
   return OkStatus();
@@ -112,6 +114,16 @@ bool Estimator::RoundsSettled(const TraceEntry& before,
          before.cost - after.cost < kRoundTolerance *
                                         problem_.solver.tolerance *
                                         std::max(after.cost, 1.0);
+}
+
+bool Estimator::OutOfReach(double misfit, const TraceEntry& before,
+                           const TraceEntry& after) const {
+  if (misfit <= 0.0 || after.misfit <= misfit) return false;
+  const double gain = std::log(before.misfit / after.misfit);
+  if (gain <= 0.0) return true;
+  const double rounds = std::log(after.misfit / misfit) / gain;
+  return rounds * (after.seconds - before.seconds) >
+         Budget() - finish_seconds_ - after.seconds;
 }
 
 double Estimator::ScaleFor(double misfit) const {

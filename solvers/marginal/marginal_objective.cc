@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "solvers/eigen_vectors.h"
+
 namespace ibrdf {
 
 MarginalObjective::MarginalObjective(const MarginalReflectance* reflectance,
@@ -37,7 +39,7 @@ std::vector<double> MarginalObjective::Whitened(
     const Eigen::VectorXd& lobes, const LightScales& scales) const {
   const Eigen::VectorXd y =
       prior_->factor.triangularView<Eigen::Lower>().solve(lobes - prior_->mean);
-  std::vector<double> out(y.data(), y.data() + y.size());
+  std::vector<double> out = ToVector(y);
   const auto whitened = scales.Whitened();
   out.insert(out.end(), whitened.begin(), whitened.end());
   return out;

@@ -10,6 +10,7 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "solvers/conditioning.h"
+#include "solvers/eigen_vectors.h"
 #include "solvers/marginal/marginal_descent.h"
 #include "solvers/marginal/marginal_objective.h"
 
@@ -101,15 +102,6 @@ class Level {
   const ReflectanceSearchOptions& options_;
   MarginalReflectance reflectance_;
 };
-
-std::vector<double> ToVector(const Eigen::VectorXd& v) {
-  return {v.data(), v.data() + v.size()};
-}
-
-Eigen::VectorXd ToEigen(const std::vector<double>& v) {
-  return Eigen::Map<const Eigen::VectorXd>(v.data(),
-                                           static_cast<Eigen::Index>(v.size()));
-}
 
 // The search from stage to stage: what was tried, and the best end so far.
 class Search {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "ibrdf/base/format.h"
 #include "io/model_file.h"
 #include "solvers/programs/common_flags.h"
 #include "solvers/solve_problem.h"
@@ -154,12 +155,11 @@ Status Train(const TrainFlags& flags, const CommonFlags& common,
   const double mean =
       std::accumulate(by_material.begin(), by_material.end(), 0.0) /
       static_cast<double>(by_material.size());
-  char score[160];
-  std::snprintf(score, sizeof(score),
-                "mean log-RMSE over %zu materials at columns not trained on, "
-                "one code per channel: %.4f",
-                by_material.size(), mean);
-  std::printf("%s\n", score);
+  const std::string score = Format(
+      "mean log-RMSE over %zu materials at columns not trained on, "
+      "one code per channel: %.4f",
+      by_material.size(), mean);
+  std::printf("%s\n", score.c_str());
   model->note = flags.note + (flags.note.empty() ? "" : " ") + score + "; " +
                 std::to_string(flags.analytic) +
                 " analytic materials beside; " + std::to_string(options.steps) +
@@ -260,12 +260,10 @@ int Main(int argc, char** argv) {
                  "seconds between checkpoints")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  return RunProgram(&app, argc, argv,
-                    [&] {
-                      return flags.refit.empty()
-                                 ? Train(flags, common, options)
-                                 : Refit(flags, common);
-                    });
+  return RunProgram(&app, argc, argv, [&] {
+    return flags.refit.empty() ? Train(flags, common, options)
+                               : Refit(flags, common);
+  });
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 // Values of a JSON document that may lack them.
 #pragma once
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "ibrdf/base/format.h"
 
 namespace ibrdf {
 
@@ -42,9 +43,7 @@ inline nlohmann::ordered_json MemberAt(const nlohmann::ordered_json& object,
 inline std::string ShortNumber(double value) {
   if (!std::isfinite(value)) return "-";
   const bool whole = value == std::floor(value) && std::fabs(value) < 1e9;
-  char text[32];
-  std::snprintf(text, sizeof(text), whole ? "%.0f" : "%.4g", value);
-  return text;
+  return Format(whole ? "%.0f" : "%.4g", value);
 }
 
 }  // namespace ibrdf

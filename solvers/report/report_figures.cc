@@ -1,7 +1,6 @@
 #include "solvers/report/report_figures.h"
 
-#include <cstdio>
-
+#include "ibrdf/base/format.h"
 #include "io/html.h"
 #include "io/png.h"
 #include "io/preview.h"
@@ -54,9 +53,7 @@ ReportGroup Group(std::string heading, std::string text,
 std::string CssColour(double t) {
   uint8_t rgb[3];
   DivergingColour(t, rgb);
-  char text[32];
-  std::snprintf(text, sizeof(text), "rgb(%d %d %d)", rgb[0], rgb[1], rgb[2]);
-  return text;
+  return Format("rgb(%d %d %d)", rgb[0], rgb[1], rgb[2]);
 }
 
 std::string Labels(const std::vector<std::string>& labels) {
@@ -68,9 +65,8 @@ std::string Labels(const std::vector<std::string>& labels) {
 std::string ColourBar(const ReportFigure& figure) {
   if (figure.bar == ReportFigure::Bar::kNone) return "";
   const bool is_signed = figure.bar == ReportFigure::Bar::kSigned;
-  char high[32], low[32];
-  std::snprintf(high, sizeof(high), is_signed ? "+%g" : "%g", figure.range);
-  std::snprintf(low, sizeof(low), "-%g", figure.range);
+  const std::string high = Format(is_signed ? "+%g" : "%g", figure.range);
+  const std::string low = Format("-%g", figure.range);
   std::string colours = CssColour(0.0) + "," + CssColour(1.0);
   if (is_signed) colours = CssColour(-1.0) + "," + colours;
   return "<div class=\"bar\" style=\"background:linear-gradient(to right," +

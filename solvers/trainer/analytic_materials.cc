@@ -1,8 +1,9 @@
 #include "solvers/trainer/analytic_materials.h"
 
 #include <cmath>
-#include <cstdio>
 #include <random>
+
+#include "ibrdf/base/format.h"
 
 namespace ibrdf {
 
@@ -30,8 +31,7 @@ void AddAnalyticMaterials(int count, uint64_t seed, TrainingData* data) {
   const FlowColumns& x = data->columns;
   for (int m = 0; m < count; ++m) {
     const Disney brdf = RandomDisney(seed * 1000003 + m);
-    char name[32];
-    std::snprintf(name, sizeof(name), "analytic-%03d", m);
+    const std::string name = Format("analytic-%03d", m);
     const size_t begin = data->log_raw.size();
     const size_t channel = static_cast<size_t>(x.columns) * kMerlThetaH;
     data->log_raw.resize(begin + 3 * channel);

@@ -1,0 +1,10 @@
+// printf to a string.
+#pragma once
+#include <string>
+
+namespace ibrdf {
+
+// Of any length; "" where the format is not one.
+[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...);
+
+}  // namespace ibrdf
