@@ -4,7 +4,7 @@
     experiments/stopping/run.py PROBLEM.yaml ... [--bin build/release/bin] [--results FILE.csv]
 
 For each joint problem that states its truth: the search's last descent goes on far past its stop (`evidence --further`); the
-whole solve as the file asks for it, without a clock, and without a clock with a tolerance of 1e-9 for the map. The
+whole solve as the file asks for it, without a clock, and without a clock for 40 rounds at a tolerance of 1e-9. The
 solver never sees the truth; this script reads it after the fact.
 """
 import argparse
@@ -19,7 +19,8 @@ import tempfile
 # Name, and what is set.
 SOLVES = (("as asked", ()),
           ("no clock", ("solver.seconds=100000",)),
-          ("no clock, tolerance 1e-9", ("solver.seconds=100000", "solver.tolerance=1e-9")))
+          ("no clock, tolerance 1e-9, 40 rounds",
+           ("solver.seconds=100000", "solver.tolerance=1e-9", "solver.max_iterations=40")))
 COLUMNS = ("problem", "what", "seconds", "rounds", "cost", "misfit", "brdf_log_rmse_aligned",
            "illumination_relative_log_rmse_aligned")
 POINT = re.compile(r"^  (found|further) +cost +(\S+) .* misfit (\S+) .*BRDF aligned (\S+)", re.M)
