@@ -76,9 +76,9 @@ class EvidenceStudy {
     if (!found.ok()) return found.status();
     const double seconds =
         std::chrono::duration<double>(Clock::now() - start).count();
-    const MarginalReflectance fine(problem_.model, problem_.lobes,
-                                   problem_.points, radiance_, options_.process,
-                                   options_.fine, problem_.num_threads);
+    const MarginalReflectance fine(
+        problem_.model, problem_.lobes, problem_.points, radiance_,
+        options_.process, options_.fine, problem_.num_threads, found->lamps);
     std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
                 found->start.c_str());
     const Point end = {ToEigen(found->parameters), found->scales};
@@ -117,7 +117,7 @@ class EvidenceStudy {
 
  private:
   struct Point {
-    Eigen::VectorXd lobes;
+    Eigen::VectorXd lobes;  // lamps where the search left them
     LightScales scales;
   };
   struct Descent {
@@ -126,15 +126,22 @@ class EvidenceStudy {
     Eigen::VectorXd noise;  // taken at the start
     Point end;
   };
+  static Eigen::VectorXd WithLamps(const MarginalReflectance& fine,
+                                   const Eigen::VectorXd& lobes) {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(fine.num_parameters());
+    all.head(lobes.size()) = lobes;
+    return all;
+  }
   Descent DescendFrom(const MarginalReflectance& fine, const Point& start,
                       int iterations, double least_gain) const {
     Descent descent;
     LightMode mode;
     descent.noise = fine.likelihood().FindNoise(
-        fine.Matrices(start.lobes.data()), options_.sigma, start.scales,
-        MarginalObjective::kModeTolerance, &mode);
+        fine.Matrices(WithLamps(fine, start.lobes).data()), options_.sigma,
+        start.scales, MarginalObjective::kModeTolerance, &mode);
     const MarginalObjective objective(&fine, &prior_, descent.noise, &mode);
-    std::vector<double> y = objective.Whitened(start.lobes, start.scales);
+    std::vector<double> y =
+        objective.Whitened(WithLamps(fine, start.lobes), start.scales);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
     o.least_gain = least_gain;
@@ -174,7 +181,8 @@ class EvidenceStudy {
 
   void SweepTexelNoise(const MarginalReflectance& fine, const Point& point,
                        const Eigen::VectorXd& noise) const {
-    const std::array<RowMatrix, 3> matrices = fine.Matrices(point.lobes.data());
+    const std::array<RowMatrix, 3> matrices =
+        fine.Matrices(WithLamps(fine, point.lobes).data());
     const double own = options_.sigma * options_.sigma;
     std::printf("    texel noise times:");
     for (const double factor : kTexelNoise) {

@@ -61,8 +61,10 @@ Status Estimator::SearchMarginal(JointState* state) {
   o.should_stop = StopAfter(kSearchShare);
   // The first stages of a small budget of iterations are cut short alike.
   const int iterations = problem_.solver.max_iterations;
-  o.starts = iterations == 0 ? 1 : o.starts;
-  o.coarse_iterations = std::min(o.coarse_iterations, 5 * iterations);
+  if (iterations == 0) o.coarse_rounds = {{1, 0}};
+  for (SearchRound& round : o.coarse_rounds) {
+    round.iterations = std::min(round.iterations, 5 * iterations);
+  }
   o.fine_iterations = std::min(o.fine_iterations, 5 * iterations);
   o.covariance = iterations > 0;
   o.report = [this](const std::string& stage, double cost, double misfit) {

@@ -59,6 +59,10 @@ Eigen::Matrix3d LightProcess::Level() const {
   return GreyAndChroma(level_variance, level_chroma_variance);
 }
 
+Eigen::Matrix3d LightProcess::Lamp() const {
+  return GreyAndChroma(lamp_variance, lamp_chroma_variance);
+}
+
 Eigen::Matrix3d ColourAxes() {
   Eigen::Matrix3d axes;
   axes << 1 / std::sqrt(3.0), 1 / std::sqrt(3.0), 1 / std::sqrt(3.0),  //

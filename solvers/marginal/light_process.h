@@ -28,6 +28,13 @@ struct LightScales {
   // rough places make.
   static LightScales Average() { return {0.0, {0.0, 0.0, 0.0, 0.0}}; }
 
+  // A deviation above the mean in all: few bright lamps in the dark.
+  static LightScales Harsh() {
+    LightScales scales{kAmplitudeStd, kMean};
+    for (int b = 0; b < kBands; ++b) scales.log_roughness[b] += kStd[b];
+    return scales;
+  }
+
   // As standard normal variables, the amplitude first.
   static constexpr int kCount = 1 + kBands;
   std::array<double, kCount> Whitened() const;
@@ -51,6 +58,9 @@ struct LightProcess {
   double chroma_variance = 0.12;
   double level_variance = 4.0;
   double level_chroma_variance = 0.12;
+  // Of a lamp's log radiance besides (light_lamps.h); no amplitude scales it.
+  double lamp_variance = 6.25;
+  double lamp_chroma_variance = 0.25;
 
   // Variance of one channel's log radiance inside a square of that side, at
   // amplitude 1 and roughness 1.
@@ -58,14 +68,15 @@ struct LightProcess {
 
   Eigen::Matrix3d Local() const;  // M
   Eigen::Matrix3d Level() const;  // B
+  Eigen::Matrix3d Lamp() const;   // of a lamp, besides B
 
   // The two parts of C between unit directions, without shares and roughness.
   double Smooth(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
   double Rough(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 };
 
-// Rows: grey, then two axes of chroma; orthonormal. They diagonalise Local()
-// and Level().
+// Rows: grey, then two axes of chroma; orthonormal. They diagonalise Local(),
+// Level() and Lamp().
 Eigen::Matrix3d ColourAxes();
 
 // Weights of log_roughness in the rows of a map, [bands][rows].

@@ -32,16 +32,18 @@ constexpr double kFirstSigma = 0.15;
 MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
                                        const LightProcess& process,
                                        int map_height, int map_width,
-                                       int num_threads)
+                                       int num_lamps, int num_threads)
     : num_points_(static_cast<int>(log_radiance.size() / 3)),
       y_(Eigen::Map<const Eigen::VectorXd>(
           log_radiance.data(), static_cast<Eigen::Index>(log_radiance.size()))),
       local_(process.Local()),
       level_(process.Level()),
+      lamp_(process.Lamp()),
       spectrum_(map_height, map_width, process),
       roughness_weights_(RoughnessWeights(map_height)),
       map_height_(map_height),
       map_width_(map_width),
+      num_lamps_(num_lamps),
       smooth_share_(process.smooth_share),
       rough_share_(process.rough_share),
       texel_variance_(process.VarianceWithin(180.0 / map_height)),
@@ -61,7 +63,7 @@ double MarginalLikelihood::LevelFor(
   double sum = y_.sum();
   for (const RowMatrix& T : matrices) {
     for (Eigen::Index p = 0; p < T.rows(); ++p) {
-      sum -= std::log(std::max(T.row(p).sum(), 1e-300));
+      sum -= std::log(std::max(T.row(p).head(num_texels()).sum(), 1e-300));
     }
   }
   return sum / static_cast<double>(y_.size());
@@ -70,12 +72,12 @@ double MarginalLikelihood::LevelFor(
 Eigen::VectorXd MarginalLikelihood::NoiseVariance(
     const std::array<RowMatrix, 3>& matrices, double sigma,
     const LightMode& mode) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
   const Point point = At(matrices, mode.level, mode.l);
   Eigen::VectorXd noise(3 * P);
   for (int c = 0; c < 3; ++c) {
     const Eigen::VectorXd power =
-        texel_variance_ * point.L.segment(c * t, t).cwiseAbs2();
+        texel_variance_ * point.L.segment(c * n, t).cwiseAbs2();
     for (Eigen::Index p = 0; p < P; ++p) {
       const double* T = matrices[c].row(p).data();
       double sum = 0.0;
@@ -108,36 +110,37 @@ Eigen::VectorXd MarginalLikelihood::FindNoise(
 
 Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Light& light,
                                                const Eigen::VectorXd& g) const {
-  const Eigen::Index t = num_texels();
-  const Eigen::Map<const RowMatrix> by_channel(g.data(), 3, t);
+  const Eigen::Index t = num_texels(), n = num_sources();
   RowMatrix correlated;
-  light.correlation.Multiply(by_channel, &correlated);
-  Eigen::VectorXd out(g.size());
-  Eigen::Map<RowMatrix>(out.data(), 3, t).noalias() = local_ * correlated;
+  light.correlation.Multiply(
+      Eigen::Map<const RowMatrix>(g.data(), 3, n).leftCols(t), &correlated);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(g.size());
+  Eigen::Map<RowMatrix>(out.data(), 3, n).leftCols(t).noalias() =
+      local_ * correlated;
   return out;
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyCovariance(
     const Light& light, const Eigen::VectorXd& g) const {
-  const Eigen::Index t = num_texels();
+  const Eigen::Index n = num_sources();
   Eigen::VectorXd out = light.amplitude * ApplyLocal(light, g);
-  Eigen::Vector3d sums;
-  for (int c = 0; c < 3; ++c) sums[c] = g.segment(c * t, t).sum();
-  const Eigen::Vector3d level = level_ * sums;
-  for (int c = 0; c < 3; ++c) out.segment(c * t, t).array() += level[c];
+  const Eigen::Map<const RowMatrix> in(g.data(), 3, n);
+  Eigen::Map<RowMatrix> by_channel(out.data(), 3, n);
+  by_channel.rightCols(num_lamps_) += lamp_ * in.rightCols(num_lamps_);
+  by_channel.colwise() += level_ * in.rowwise().sum();
   return out;
 }
 
 MarginalLikelihood::Point MarginalLikelihood::At(
     const std::array<RowMatrix, 3>& matrices, double level,
     const Eigen::VectorXd& l) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::Index n = num_sources(), P = num_points_;
   Point point;
   point.L = (l.array() + level).min(kMaxLogRadiance).exp();
   point.E.resize(3 * P);
   for (int c = 0; c < 3; ++c) {
     point.E.segment(c * P, P) =
-        MultiplyVector(matrices[c], point.L.segment(c * t, t));
+        MultiplyVector(matrices[c], point.L.segment(c * n, n));
   }
   point.E = point.E.cwiseMax(kSmallestRadiance);
   point.residual = y_ - point.E.array().log().matrix();
@@ -148,13 +151,13 @@ std::unique_ptr<const MarginalLikelihood::Linearisation>
 MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
                               const Eigen::VectorXd& noise, const Light& light,
                               const Point& point) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
   auto linear = std::make_unique<Linearisation>();
   ParallelFor(3, num_threads_, [&](int64_t c, int) {
     linear->jacobian[c] =
         point.E.segment(c * P, P).cwiseInverse().asDiagonal() * matrices[c] *
-        point.L.segment(c * t, t).asDiagonal();
-    light.correlation.Multiply(linear->jacobian[c], &linear->JC[c]);
+        point.L.segment(c * n, n).asDiagonal();
+    light.correlation.Multiply(linear->jacobian[c].leftCols(t), &linear->JC[c]);
   });
   RowMatrix& A = linear->factor;
   A.setZero(3 * P, 3 * P);
@@ -162,33 +165,41 @@ MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
   ParallelFor(6, num_threads_, [&](int64_t pair, int) {
     const int c = kPairs[pair][0], d = kPairs[pair][1];
     RowMatrix block;
-    MultiplyTransposed(linear->JC[c], linear->jacobian[d], &block);
+    MultiplyTransposed(linear->JC[c], linear->jacobian[d].leftCols(t), &block);
     // The rows of a Jacobian sum to 1: a level moves log radiance as it is.
     A.block(c * P, d * P, P, P) =
-        (light.amplitude * local_(c, d) * block).array() + level_(c, d);
+        (light.amplitude * local_(c, d) * block + LampBlock(*linear, c, d))
+            .array() +
+        level_(c, d);
   });
   A.diagonal() += noise;
   if (!A.allFinite() || !Factorise(&A)) return nullptr;
   return linear;
 }
 
+RowMatrix MarginalLikelihood::LampBlock(const Linearisation& linear, int c,
+                                        int d) const {
+  return lamp_(c, d) * linear.jacobian[c].rightCols(num_lamps_) *
+         linear.jacobian[d].rightCols(num_lamps_).transpose();
+}
+
 Eigen::VectorXd MarginalLikelihood::ApplyJacobian(
     const Linearisation& linear, const Eigen::VectorXd& l) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::Index n = num_sources(), P = num_points_;
   Eigen::VectorXd out(3 * P);
   for (int c = 0; c < 3; ++c) {
     out.segment(c * P, P) =
-        MultiplyVector(linear.jacobian[c], l.segment(c * t, t));
+        MultiplyVector(linear.jacobian[c], l.segment(c * n, n));
   }
   return out;
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyJacobianTransposed(
     const Linearisation& linear, const Eigen::VectorXd& a) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
-  Eigen::VectorXd out(3 * t);
+  const Eigen::Index n = num_sources(), P = num_points_;
+  Eigen::VectorXd out(3 * n);
   for (int c = 0; c < 3; ++c) {
-    out.segment(c * t, t) =
+    out.segment(c * n, n) =
         MultiplyTransposedVector(linear.jacobian[c], a.segment(c * P, P));
   }
   return out;
@@ -205,11 +216,11 @@ Eigen::VectorXd MarginalLikelihood::SolveDual(const Linearisation& linear,
 Eigen::VectorXd MarginalLikelihood::JacobianTimes(
     const std::array<RowMatrix, 3>& matrices, const Point& point,
     const Eigen::VectorXd& v) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::Index n = num_sources(), P = num_points_;
   const Eigen::VectorXd dL = point.L.cwiseProduct(v);
   Eigen::VectorXd out(3 * P);
   for (int c = 0; c < 3; ++c) {
-    out.segment(c * P, P) = MultiplyVector(matrices[c], dL.segment(c * t, t));
+    out.segment(c * P, P) = MultiplyVector(matrices[c], dL.segment(c * n, n));
   }
   return out.cwiseQuotient(point.E);
 }
@@ -217,11 +228,11 @@ Eigen::VectorXd MarginalLikelihood::JacobianTimes(
 Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
     const std::array<RowMatrix, 3>& matrices, const Point& point,
     const Eigen::VectorXd& a) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::Index n = num_sources(), P = num_points_;
   const Eigen::VectorXd dE = a.cwiseQuotient(point.E);
-  Eigen::VectorXd out(3 * t);
+  Eigen::VectorXd out(3 * n);
   for (int c = 0; c < 3; ++c) {
-    out.segment(c * t, t) =
+    out.segment(c * n, n) =
         MultiplyTransposedVector(matrices[c], dE.segment(c * P, P));
   }
   return out.cwiseProduct(point.L);
@@ -269,7 +280,7 @@ MarginalValue MarginalLikelihood::Evaluate(
     const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
     const LightScales& scales, double tolerance, LightMode* mode,
     MarginalGradient* gradient) const {
-  const Eigen::Index t = num_texels();
+  const Eigen::Index n = num_sources();
   const Eigen::VectorXd weight = noise.cwiseInverse();
   const auto likelihood_of = [&](const Point& at) {
     return 0.5 * at.residual.cwiseAbs2().dot(weight);
@@ -283,7 +294,7 @@ MarginalValue MarginalLikelihood::Evaluate(
   }
   if (mode->l.size() == 0) {
     mode->level = LevelFor(matrices);
-    mode->l = mode->dual = Eigen::VectorXd::Zero(3 * t);
+    mode->l = mode->dual = Eigen::VectorXd::Zero(3 * n);
   } else {
     mode->l = ApplyCovariance(light, mode->dual);
   }
@@ -371,7 +382,7 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
                                      const Point& point,
                                      const Linearisation& linear,
                                      MarginalGradient* gradient) const {
-  const Eigen::Index t = num_texels(), P = num_points_;
+  const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
   const Eigen::VectorXd& r = point.residual;
   RowMatrix inverse = linear.factor;
   InvertFactored(&inverse);
@@ -379,24 +390,31 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
   // G = A^-1 J K per channel; a constant along a row has no effect, as it only
   // meets differences of a Jacobian's rows. Then centred: G - sum_t G J.
   std::array<RowMatrix, 3> G;
-  Eigen::VectorXd q(3 * t);
+  Eigen::VectorXd q(3 * n);
   // By texel, diag(J^T A^-1 J K_rough) / 2.
   Eigen::VectorXd rough_share = Eigen::VectorXd::Zero(t);
   for (int c = 0; c < 3; ++c) {
-    RowMatrix sum = RowMatrix::Zero(P, t), product;
+    RowMatrix sum = RowMatrix::Zero(P, t),
+              lamps = RowMatrix::Zero(P, num_lamps_);
+    RowMatrix product;
     for (int d = 0; d < 3; ++d) {
       MultiplyInTiles(inverse.block(c * P, d * P, P, P), linear.jacobian[d],
                       num_threads_, &product);
-      sum += light.amplitude * local_(c, d) * product;
+      sum += light.amplitude * local_(c, d) * product.leftCols(t);
+      lamps += lamp_(c, d) * product.rightCols(num_lamps_);
     }
     light.rough.Multiply(sum, &product);
-    rough_share +=
-        product.cwiseProduct(linear.jacobian[c]).colwise().sum().transpose();
-    light.correlation.Multiply(sum, &G[c]);
+    rough_share += product.cwiseProduct(linear.jacobian[c].leftCols(t))
+                       .colwise()
+                       .sum()
+                       .transpose();
+    light.correlation.Multiply(sum, &product);
+    G[c].resize(P, n);
+    G[c] << product, lamps;
     const Eigen::VectorXd means =
         G[c].cwiseProduct(linear.jacobian[c]).rowwise().sum();
     G[c].colwise() -= means;
-    q.segment(c * t, t) =
+    q.segment(c * n, n) =
         G[c].cwiseProduct(linear.jacobian[c]).colwise().sum().transpose();
   }
 
@@ -407,7 +425,7 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
   const Eigen::VectorXd Jv = ApplyJacobian(linear, v);
 
   for (int c = 0; c < 3; ++c) {
-    const auto L = point.L.segment(c * t, t);
+    const auto L = point.L.segment(c * n, n);
     const Eigen::ArrayXd weighted_c = weighted.segment(c * P, P).array();
     const Eigen::ArrayXd weight_c = weight.segment(c * P, P).array();
     const Eigen::ArrayXd Jv_c = Jv.segment(c * P, P).array();
@@ -418,17 +436,20 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
     // d(grad_l Phi) . v in T is that of -(J v) . r / D.
     out.colwise() -=
         (weighted_c + Jv_c * weighted_c + Jv_c * weight_c).matrix();
-    out.noalias() += weighted_c.matrix() * v.segment(c * t, t).transpose();
+    out.noalias() += weighted_c.matrix() * v.segment(c * n, n).transpose();
     out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
   }
 
   const Eigen::VectorXd local = ApplyLocal(light, mode.dual);
-  // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the level.
+  // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D, the level and
+  // the lamps.
   double trace = 3.0 * static_cast<double>(P) -
                  inverse.diagonal().dot(weight.cwiseInverse());
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
-      trace -= level_(c, d) * inverse.block(c * P, d * P, P, P).sum();
+      const auto block = inverse.block(c * P, d * P, P, P);
+      trace -= level_(c, d) * block.sum() +
+               LampBlock(linear, c, d).cwiseProduct(block).sum();
     }
   }
   const auto by_scale = [&](const Eigen::VectorXd& K_dual, double its_trace) {
@@ -437,17 +458,18 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
   gradient->scales[0] = by_scale(light.amplitude * local, trace);
   // Of C, by the log roughness of a band with weights h along the texels:
   // diag(h) R + R diag(h), R the rough part.
-  const Eigen::Map<const RowMatrix> dual(mode.dual.data(), 3, t);
+  const Eigen::Map<const RowMatrix> dual(mode.dual.data(), 3, n);
   RowMatrix rough_dual;
-  light.rough.Multiply(dual, &rough_dual);
+  light.rough.Multiply(dual.leftCols(t), &rough_dual);
   for (int b = 0; b < LightScales::kBands; ++b) {
     const Eigen::VectorXd h = BandWeights(b);
     RowMatrix other;
-    light.rough.Multiply(dual * h.asDiagonal(), &other);
-    const RowMatrix moved =
+    light.rough.Multiply(dual.leftCols(t) * h.asDiagonal(), &other);
+    RowMatrix moved = RowMatrix::Zero(3, n);
+    moved.leftCols(t) =
         light.amplitude * local_ * (rough_dual * h.asDiagonal() + other);
     gradient->scales[1 + b] =
-        by_scale(Eigen::Map<const Eigen::VectorXd>(moved.data(), 3 * t),
+        by_scale(Eigen::Map<const Eigen::VectorXd>(moved.data(), 3 * n),
                  2.0 * h.dot(rough_share));
   }
 }

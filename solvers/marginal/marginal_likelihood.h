@@ -19,15 +19,16 @@
 
 namespace ibrdf {
 
-// The most probable log radiance of the light, m + l, and l = K dual.
+// The most probable log radiance of the light, m + l, and l = K dual. Sources
+// are the map's texels, then lamps.
 struct LightMode {
   double level = 0.0;    // m, of all three channels
-  Eigen::VectorXd l;     // [3 * texels], channel by channel; empty: none yet
-  Eigen::VectorXd dual;  // [3 * texels]
+  Eigen::VectorXd l;     // [3 * sources], channel by channel; empty: none yet
+  Eigen::VectorXd dual;  // [3 * sources]
 };
 
 struct MarginalGradient {
-  std::array<RowMatrix, 3> matrices;  // [points][texels] each
+  std::array<RowMatrix, 3> matrices;  // [points][sources] each
   // By log amplitude and log roughness.
   std::array<double, LightScales::kCount> scales = {};
 };
@@ -51,12 +52,14 @@ class MarginalLikelihood {
   // log_radiance [3 * points], channel by channel.
   MarginalLikelihood(std::vector<double> log_radiance,
                      const LightProcess& process, int map_height, int map_width,
-                     int num_threads);
+                     int num_lamps, int num_threads);
 
   int num_points() const { return num_points_; }
   int num_texels() const { return map_height_ * map_width_; }
+  int num_lamps() const { return num_lamps_; }
+  int num_sources() const { return num_texels() + num_lamps_; }
 
-  // matrices: T_c [points][texels], >= 0, of the reflectance in channel c;
+  // matrices: T_c [points][sources], >= 0, of the reflectance in channel c;
   // noise: the diagonal of D [3 * points], > 0; scales: of the process.
   // `mode` is where the search starts, if it holds one, and receives the mode,
   // found where another step would gain less than `tolerance` nats; gradient
@@ -123,8 +126,8 @@ class MarginalLikelihood {
   Eigen::VectorXd BandWeights(int band) const;
   // Of log E in l, d log E = J dl, with what its normal equations need.
   struct Linearisation {
-    std::array<RowMatrix, 3> jacobian;  // [points][texels] of a channel
-    std::array<RowMatrix, 3> JC;        // jacobian * correlation
+    std::array<RowMatrix, 3> jacobian;  // [points][sources] of a channel
+    std::array<RowMatrix, 3> JC;        // that of texels * correlation
     RowMatrix factor;                   // of D + J K J^T
   };
   // Radiance and residuals at l.
@@ -140,6 +143,8 @@ class MarginalLikelihood {
   // K1 g, the part that the amplitude scales, at amplitude 1.
   Eigen::VectorXd ApplyLocal(const Light& light,
                              const Eigen::VectorXd& g) const;
+  // J K_lamps J^T, channels c and d.
+  RowMatrix LampBlock(const Linearisation& linear, int c, int d) const;
   Eigen::VectorXd ApplyJacobian(const Linearisation& linear,
                                 const Eigen::VectorXd& l) const;
   Eigen::VectorXd ApplyJacobianTransposed(const Linearisation& linear,
@@ -169,10 +174,10 @@ class MarginalLikelihood {
 
   int num_points_;
   Eigen::VectorXd y_;  // [3 * points]
-  Eigen::Matrix3d local_, level_;
+  Eigen::Matrix3d local_, level_, lamp_;
   ProcessSpectrum spectrum_;
   RowMatrix roughness_weights_;  // [bands][rows]
-  int map_height_, map_width_;
+  int map_height_, map_width_, num_lamps_;
   double smooth_share_, rough_share_;
   double texel_variance_;  // at amplitude and roughness 1
   int num_threads_;

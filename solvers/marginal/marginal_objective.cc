@@ -22,7 +22,7 @@ MarginalObjective::MarginalObjective(const MarginalReflectance* reflectance,
 }
 
 int MarginalObjective::NumParameters() const {
-  return prior_->num_parameters() + LightScales::kCount;
+  return reflectance_->num_parameters() + LightScales::kCount;
 }
 
 Eigen::VectorXd MarginalObjective::LobesOf(const double* y) const {
@@ -31,14 +31,25 @@ Eigen::VectorXd MarginalObjective::LobesOf(const double* y) const {
              Eigen::Map<const Eigen::VectorXd>(y, prior_->num_parameters());
 }
 
+Eigen::VectorXd MarginalObjective::ParametersOf(const double* y) const {
+  const Eigen::Index all = reflectance_->num_parameters();
+  Eigen::VectorXd out =
+      kLampOffsetStd * Eigen::Map<const Eigen::VectorXd>(y, all);
+  out.head(prior_->num_parameters()) = LobesOf(y);
+  return out;
+}
+
 LightScales MarginalObjective::ScalesOf(const double* y) const {
-  return LightScales::FromWhitened(y + prior_->num_parameters());
+  return LightScales::FromWhitened(y + reflectance_->num_parameters());
 }
 
 std::vector<double> MarginalObjective::Whitened(
-    const Eigen::VectorXd& lobes, const LightScales& scales) const {
-  const Eigen::VectorXd y =
-      prior_->factor.triangularView<Eigen::Lower>().solve(lobes - prior_->mean);
+    const Eigen::VectorXd& parameters, const LightScales& scales) const {
+  CHECK_EQ(parameters.size(), reflectance_->num_parameters());
+  const Eigen::Index n = prior_->num_parameters();
+  Eigen::VectorXd y = parameters / kLampOffsetStd;
+  y.head(n) = prior_->factor.triangularView<Eigen::Lower>().solve(
+      parameters.head(n) - prior_->mean);
   std::vector<double> out = ToVector(y);
   const auto whitened = scales.Whitened();
   out.insert(out.end(), whitened.begin(), whitened.end());
@@ -48,15 +59,17 @@ std::vector<double> MarginalObjective::Whitened(
 bool MarginalObjective::Evaluate(const double* y, double* cost,
                                  double* gradient) const {
   const Eigen::Index n = prior_->num_parameters(), all = NumParameters();
-  const Eigen::VectorXd lobes = LobesOf(y);
-  std::vector<double> by_lobes;
+  const Eigen::Index first_scale = reflectance_->num_parameters();
+  const Eigen::VectorXd parameters = ParametersOf(y);
+  const Eigen::VectorXd lobes = parameters.head(n);
+  std::vector<double> by_parameter;
   // A trial that a line search turns down must not move the mode's start.
   const bool tried =
       !trial_.empty() && std::equal(trial_.begin(), trial_.end(), y);
   LightMode mode = tried ? trial_mode_ : *mode_;
-  const MarginalValue value =
-      reflectance_->Evaluate(lobes.data(), noise_, ScalesOf(y), mode_tolerance_,
-                             &mode, gradient != nullptr ? &by_lobes : nullptr);
+  const MarginalValue value = reflectance_->Evaluate(
+      parameters.data(), noise_, ScalesOf(y), mode_tolerance_, &mode,
+      gradient != nullptr ? &by_parameter : nullptr);
   if (!value.ok) return false;
   last_value_ = value;
   const Eigen::Map<const Eigen::VectorXd> whitened(y, all);
@@ -68,14 +81,17 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
     trial_mode_ = std::move(mode);
   } else {
     *mode_ = std::move(mode);
-    wall += Eigen::Map<const Eigen::VectorXd>(by_lobes.data(), n);
+    wall += Eigen::Map<const Eigen::VectorXd>(by_parameter.data(), n);
     Eigen::Map<Eigen::VectorXd> out(gradient, all);
     out = whitened;
     out.head(n) +=
         prior_->factor.triangularView<Eigen::Lower>().transpose() * wall;
     const auto stds = LightScales::Stds();
+    for (Eigen::Index i = n; i < first_scale; ++i) {
+      out[i] += kLampOffsetStd * by_parameter[i];
+    }
     for (int k = 0; k < LightScales::kCount; ++k) {
-      out[n + k] += stds[k] * by_lobes[n + k];
+      out[first_scale + k] += stds[k] * by_parameter[first_scale + k];
     }
   }
   return true;
@@ -83,20 +99,24 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
 
 Eigen::MatrixXd MarginalObjective::Information(const double* y) const {
   const Eigen::Index n = prior_->num_parameters(), all = NumParameters();
-  const Eigen::VectorXd lobes = LobesOf(y);
-  Eigen::MatrixXd by_lobes =
-      reflectance_->Information(lobes.data(), noise_, ScalesOf(y), *mode_);
-  if (by_lobes.size() == 0 || !by_lobes.allFinite()) return {};
-  prior_->AddWallInformation(lobes, &by_lobes);
-  // Both sides by the whitening, whose last rows are the scales'.
+  const Eigen::Index first_scale = reflectance_->num_parameters();
+  const Eigen::VectorXd parameters = ParametersOf(y);
+  Eigen::MatrixXd information =
+      reflectance_->Information(parameters.data(), noise_, ScalesOf(y), *mode_);
+  if (information.size() == 0 || !information.allFinite()) return {};
+  prior_->AddWallInformation(parameters.head(n), &information);
+  // Both sides by the whitening.
   Eigen::MatrixXd whitening = Eigen::MatrixXd::Zero(all, all);
   whitening.topLeftCorner(n, n) = prior_->factor.triangularView<Eigen::Lower>();
   const auto stds = LightScales::Stds();
+  for (Eigen::Index i = n; i < first_scale; ++i) {
+    whitening(i, i) = kLampOffsetStd;
+  }
   for (int k = 0; k < LightScales::kCount; ++k) {
-    whitening(n + k, n + k) = stds[k];
+    whitening(first_scale + k, first_scale + k) = stds[k];
   }
   return Eigen::MatrixXd::Identity(all, all) +
-         whitening.transpose() * by_lobes * whitening;
+         whitening.transpose() * information * whitening;
 }
 
 }  // namespace ibrdf

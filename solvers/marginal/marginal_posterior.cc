@@ -25,20 +25,24 @@ Eigen::MatrixXd MarginalLikelihood::Information(
   RowMatrix inverse = linear->factor;
   InvertFactored(&inverse);
   // A^-1 J K_a J^T of each scale. The amplitude's: I - A^-1 (D + the level's
-  // part).
+  // and the lamps' parts).
   std::array<RowMatrix, kCount> by;
   by[0] = -inverse * noise.asDiagonal();
   for (int c = 0; c < 3; ++c) {
     Eigen::VectorXd level = Eigen::VectorXd::Zero(3 * P);
     for (int d = 0; d < 3; ++d) {
-      level += level_(d, c) * inverse.middleCols(d * P, P).rowwise().sum();
+      const auto columns = inverse.middleCols(d * P, P);
+      level += level_(d, c) * columns.rowwise().sum();
+      if (num_lamps_ > 0) {
+        by[0].middleCols(c * P, P) -= columns * LampBlock(*linear, d, c);
+      }
     }
     by[0].middleCols(c * P, P).colwise() -= level;
   }
   by[0].diagonal().array() += 1.0;
   std::array<RowMatrix, 3> rough;
   for (int c = 0; c < 3; ++c) {
-    light.rough.Multiply(linear->jacobian[c], &rough[c]);
+    light.rough.Multiply(linear->jacobian[c].leftCols(num_texels()), &rough[c]);
   }
   for (int b = 0; b < LightScales::kBands; ++b) {
     // Only its rows of the map.

@@ -4,9 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "ibrdf/light/environment_map.h"
+#include "solvers/marginal/light_lamps.h"
 
 namespace ibrdf {
 namespace {
+
+// Radians, of LampSlopes: below a cell of the grid for most half-vectors.
+constexpr double kLampStep = 1e-3;
 
 double Colour(double log_colour, int channel) {
   return std::exp(std::min(log_colour, LobeModel::kMaxLogColour)) *
@@ -32,9 +39,11 @@ MarginalReflectance::MarginalReflectance(
     const NeuralBrdfModel& model, int num_lobes,
     const std::vector<ShadingPoint>& points,
     const std::vector<double>& radiance, const LightProcess& process,
-    const MarginalResolution& resolution, int num_threads)
+    const MarginalResolution& resolution, int num_threads,
+    std::vector<Eigen::Vector3d> lamps)
     : resolution_(resolution),
-      cells_(GroupByNormal(points, radiance, resolution.cells)) {
+      cells_(GroupByNormal(points, radiance, resolution.cells)),
+      lamps_(std::move(lamps)) {
   CHECK_GT(cells_.num_cells(), 0);
   TransportOptions options;
   options.grid = resolution.grid;
@@ -48,41 +57,113 @@ MarginalReflectance::MarginalReflectance(
                                        num_threads);
   likelihood_ = std::make_unique<MarginalLikelihood>(
       cells_.log_radiance, process, resolution.map_height, resolution.map_width,
-      num_threads);
+      static_cast<int>(lamps_.size()), num_threads);
+}
+
+std::vector<Eigen::Vector3d> MarginalReflectance::LampDirections(
+    const double* parameters) const {
+  std::vector<Eigen::Vector3d> directions;
+  const double* offsets = parameters + lobes_->num_parameters();
+  for (const Eigen::Vector3d& lamp : lamps_) {
+    directions.push_back(MovedLamp(lamp, offsets));
+    offsets += 2;
+  }
+  return directions;
+}
+
+LampResponses MarginalReflectance::Lamps(const double* parameters) const {
+  return LampResponses(cells_, resolution_.grid, resolution_.visibility.get(),
+                       LampDirections(parameters));
+}
+
+std::vector<RowMatrix> MarginalReflectance::LampSlopes(
+    const double* parameters, const std::vector<float>& fields,
+    int stride) const {
+  const size_t nodes = lobes_->grid_shape().num_nodes();
+  const int num_lobes = lobes_->num_lobes();
+  const auto num_lamps = static_cast<Eigen::Index>(lamps_.size());
+  std::vector<RowMatrix> slopes(
+      num_lobes, RowMatrix::Zero(cells_.num_cells(), 2 * num_lamps));
+  if (num_lamps == 0) return slopes;
+  for (int axis = 0; axis < 2; ++axis) {
+    for (const double step : {kLampStep, -kLampStep}) {
+      std::vector<double> moved(parameters, parameters + num_parameters());
+      for (Eigen::Index k = 0; k < num_lamps; ++k) {
+        moved[lobes_->num_parameters() + 2 * k + axis] += step;
+      }
+      const LampResponses responses = Lamps(moved.data());
+      for (int lobe = 0; lobe < num_lobes; ++lobe) {
+        const RowMatrix of = responses.Of(&fields[lobe * stride * nodes]);
+        for (Eigen::Index k = 0; k < num_lamps; ++k) {
+          slopes[lobe].col(2 * k + axis) += of.col(k) / (2.0 * step);
+        }
+      }
+    }
+  }
+  return slopes;
+}
+
+std::vector<double> MarginalReflectance::LogRadiance(
+    const double* parameters, const LightMode& mode) const {
+  const int H = resolution_.map_height, W = resolution_.map_width;
+  const Eigen::Index t = likelihood_->num_texels(),
+                     n = likelihood_->num_sources();
+  const std::vector<Eigen::Vector3d> lamps = LampDirections(parameters);
+  std::vector<double> out;
+  out.reserve(3 * t);
+  for (int c = 0; c < 3; ++c) {
+    const double* l = mode.l.data() + c * n;
+    for (Eigen::Index i = 0; i < t; ++i) out.push_back(l[i] + mode.level);
+    for (size_t k = 0; k < lamps.size(); ++k) {
+      double row = 0.0, column = 0.0;
+      MapPosition(lamps[k], H, W, &row, &column);
+      const int r = std::clamp(static_cast<int>(row), 0, H - 1);
+      const int x = std::clamp(static_cast<int>(column), 0, W - 1);
+      double& texel = out[c * t + r * W + x];
+      texel = std::log(std::exp(texel) + std::exp(l[t + k] + mode.level) *
+                                             kLampSolidAngle /
+                                             TexelSolidAngle(r, H, W));
+    }
+  }
+  return out;
 }
 
 MarginalReflectance::FloatMatrix MarginalReflectance::CellMatrix(
-    const float* field) const {
-  FloatMatrix by_point(static_cast<Eigen::Index>(cells_.points.size()),
-                       likelihood_->num_texels());
+    const LampResponses& lamps, const float* field) const {
+  const Eigen::Index t = likelihood_->num_texels();
+  FloatMatrix by_point(static_cast<Eigen::Index>(cells_.points.size()), t);
   transport_->LightMatrix(field, by_point.data());
-  FloatMatrix by_cell(cells_.num_cells(), by_point.cols());
+  FloatMatrix by_cell(cells_.num_cells(), likelihood_->num_sources());
   for (int i = 0; i < cells_.num_cells(); ++i) {
     const int begin = cells_.first[i], count = cells_.first[i + 1] - begin;
-    by_cell.row(i) = by_point.middleRows(begin, count).colwise().mean();
+    by_cell.row(i).head(t) = by_point.middleRows(begin, count).colwise().mean();
   }
+  by_cell.rightCols(lamps.num_lamps()) = lamps.Of(field).cast<float>();
   return by_cell;
 }
 
-void MarginalReflectance::CellMatrixGradient(const FloatMatrix& adjoint,
+void MarginalReflectance::CellMatrixGradient(const LampResponses& lamps,
+                                             const FloatMatrix& adjoint,
                                              float* gradient) const {
-  FloatMatrix by_point(static_cast<Eigen::Index>(cells_.points.size()),
-                       adjoint.cols());
+  const Eigen::Index t = likelihood_->num_texels();
+  FloatMatrix by_point(static_cast<Eigen::Index>(cells_.points.size()), t);
   for (int i = 0; i < cells_.num_cells(); ++i) {
     const int begin = cells_.first[i], count = cells_.first[i + 1] - begin;
     by_point.middleRows(begin, count).rowwise() =
-        adjoint.row(i) / static_cast<float>(count);
+        adjoint.row(i).head(t) / static_cast<float>(count);
   }
   transport_->LightMatrixGradient(by_point.data(), gradient);
+  lamps.AddGradient(adjoint.rightCols(lamps.num_lamps()), gradient);
 }
 
 std::vector<MarginalReflectance::FloatMatrix>
-MarginalReflectance::ShapeMatrices(const std::vector<float>& fields,
+MarginalReflectance::ShapeMatrices(const LampResponses& lamps,
+                                   const std::vector<float>& fields,
                                    int stride) const {
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<FloatMatrix> shapes;
   for (int k = 0; k < lobes_->num_lobes(); ++k) {
-    shapes.push_back(CellMatrix(&fields[k * stride * nodes]));
+    shapes.push_back(CellMatrix(lamps, &fields[k * stride * nodes]));
   }
   return shapes;
 }
@@ -105,7 +186,7 @@ std::array<RowMatrix, 3> MarginalReflectance::Matrices(
     const double* parameters) const {
   std::vector<float> fields;
   lobes_->Tabulate(parameters, false, &fields);
-  return Coloured(parameters, ShapeMatrices(fields, 1));
+  return Coloured(parameters, ShapeMatrices(Lamps(parameters), fields, 1));
 }
 
 MarginalValue MarginalReflectance::Evaluate(
@@ -117,13 +198,16 @@ MarginalValue MarginalReflectance::Evaluate(
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<float> fields;
   lobes_->Tabulate(parameters, gradient != nullptr, &fields);
-  const std::vector<FloatMatrix> shapes = ShapeMatrices(fields, stride);
+  const LampResponses lamps = Lamps(parameters);
+  const std::vector<FloatMatrix> shapes = ShapeMatrices(lamps, fields, stride);
   MarginalGradient by_matrix;
   const MarginalValue value = likelihood_->Evaluate(
       Coloured(parameters, shapes), noise, scales, tolerance, mode,
       gradient != nullptr ? &by_matrix : nullptr);
   if (gradient == nullptr || !value.ok) return value;
-  gradient->assign(lobes_->num_parameters() + LightScales::kCount, 0.0);
+  gradient->assign(num_parameters() + LightScales::kCount, 0.0);
+  const std::vector<RowMatrix> slopes = LampSlopes(parameters, fields, stride);
+  const Eigen::Index t = likelihood_->num_texels();
   std::vector<float> by_node(nodes);
   for (int k = 0; k < num_lobes; ++k) {
     const double* lobe = parameters + k * lobes_->lobe_size();
@@ -137,7 +221,11 @@ MarginalValue MarginalReflectance::Evaluate(
           colour *
           by_matrix.matrices[c].cwiseProduct(shapes[k].cast<double>()).sum();
     }
-    CellMatrixGradient(adjoint, by_node.data());
+    CellMatrixGradient(lamps, adjoint, by_node.data());
+    for (Eigen::Index i = 0; i < slopes[k].cols(); ++i) {
+      (*gradient)[lobes_->num_parameters() + i] +=
+          adjoint.col(t + i / 2).cast<double>().dot(slopes[k].col(i));
+    }
     for (int d = 0; d < size; ++d) {
       const float* derivative = &fields[(k * stride + 1 + d) * nodes];
       double sum = 0.0;
@@ -161,13 +249,30 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<const float*> field(num_fields);
   for (int i = 0; i < num_fields; ++i) field[i] = &fields[i * nodes];
+  const Eigen::Index t = likelihood_->num_texels(),
+                     n = likelihood_->num_sources();
   // The level of the light cancels in the ratios below.
+  const RowMatrix texels =
+      Eigen::Map<const RowMatrix>(mode.l.data(), 3, n).leftCols(t);
+  const double highest = texels.maxCoeff();
   const std::vector<float> map =
-      RelativeMap(mode.l.data(), likelihood_->num_texels());
+      RelativeMap(texels.data(), likelihood_->num_texels());
+  const RowMatrix of_lamps = (Eigen::Map<const RowMatrix>(mode.l.data(), 3, n)
+                                  .rightCols(likelihood_->num_lamps())
+                                  .array() -
+                              highest)
+                                 .exp();
   std::vector<float> by_point(size_t{3} * cells_.points.size() * num_fields);
   transport_->RenderLobes(field.data(), num_fields, map.data(),
                           by_point.data());
-  RowMatrix jacobian = RowMatrix::Zero(3 * P, lobes_->num_parameters());
+  const LampResponses lamps = Lamps(parameters);
+  std::vector<RowMatrix> under_lamps;  // of a field [cells][3]
+  for (int f = 0; f < num_fields; ++f) {
+    under_lamps.push_back(lamps.Of(field[f]) * of_lamps.transpose());
+  }
+  const std::vector<RowMatrix> slopes =
+      LampSlopes(parameters, fields, 1 + size);
+  RowMatrix jacobian = RowMatrix::Zero(3 * P, num_parameters());
   std::vector<double> sum(size_t{3} * num_fields);
   for (Eigen::Index i = 0; i < P; ++i) {
     std::fill(sum.begin(), sum.end(), 0.0);
@@ -175,11 +280,23 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
       const float* out = &by_point[p * sum.size()];
       for (size_t k = 0; k < sum.size(); ++k) sum[k] += out[k];
     }
+    const double count = cells_.first[i + 1] - cells_.first[i];
+    for (size_t k = 0; k < sum.size(); ++k) {
+      sum[k] = sum[k] / count + under_lamps[k / 3](i, k % 3);
+    }
     for (int c = 0; c < 3; ++c) {
       double radiance = 0.0;
       for (int k = 0; k < num_lobes; ++k) {
         const double* lobe = parameters + k * lobes_->lobe_size();
         radiance += Colour(lobe[size + c], c) * sum[3 * k * (1 + size) + c];
+      }
+      for (Eigen::Index j = 0; j < slopes[0].cols(); ++j) {
+        double& slope = jacobian(c * P + i, lobes_->num_parameters() + j);
+        for (int k = 0; k < num_lobes; ++k) {
+          const double* lobe = parameters + k * lobes_->lobe_size();
+          slope += Colour(lobe[size + c], c) * slopes[k](i, j);
+        }
+        slope *= of_lamps(c, j / 2) / radiance;
       }
       for (int k = 0; k < num_lobes; ++k) {
         const double log_colour =
@@ -206,7 +323,8 @@ Eigen::MatrixXd MarginalReflectance::Information(const double* parameters,
   const RowMatrix G = LogRadianceJacobian(parameters, fields, mode);
   if (!G.allFinite()) return {};
   return likelihood_->Information(
-      Coloured(parameters, ShapeMatrices(fields, 1 + lobes_->code_size())),
+      Coloured(parameters, ShapeMatrices(Lamps(parameters), fields,
+                                         1 + lobes_->code_size())),
       noise, scales, mode, G);
 }
 

@@ -8,6 +8,7 @@
 #include "ibrdf/brdf/lobe_model.h"
 #include "ibrdf/render/transport.h"
 #include "solvers/marginal/image_cells.h"
+#include "solvers/marginal/lamp_responses.h"
 #include "solvers/marginal/marginal_likelihood.h"
 
 namespace ibrdf {
@@ -24,8 +25,9 @@ struct MarginalResolution {
 // The map [H W, 3] of log radiance [3][H W], its largest value 1.
 std::vector<float> RelativeMap(const double* log_radiance, int num_texels);
 
-// Lobe parameters as LobeModel's. Immutable but for what its callers keep; may
-// be used from several threads.
+// Parameters: the lobes' as LobeModel's, then of each lamp where it is
+// (MovedLamp's offsets). Immutable but for what its callers keep; may be used
+// from several threads.
 class MarginalReflectance {
  public:
   // radiance [points][3]. CHECKs that at least one point can be used.
@@ -33,15 +35,21 @@ class MarginalReflectance {
                       const std::vector<ShadingPoint>& points,
                       const std::vector<double>& radiance,
                       const LightProcess& process,
-                      const MarginalResolution& resolution, int num_threads);
+                      const MarginalResolution& resolution, int num_threads,
+                      std::vector<Eigen::Vector3d> lamps = {});
 
   const LobeModel& lobes() const { return *lobes_; }
   const MarginalLikelihood& likelihood() const { return *likelihood_; }
+  std::vector<Eigen::Vector3d> LampDirections(const double* parameters) const;
   const ImageCells& cells() const { return cells_; }
   const MarginalResolution& resolution() const { return resolution_; }
 
+  int num_parameters() const {
+    return lobes_->num_parameters() + 2 * static_cast<int>(lamps_.size());
+  }
+
   // As MarginalLikelihood::Evaluate. With gradient != nullptr it receives
-  // [num_parameters + scales]: by the lobes' parameters and the scales.
+  // [num_parameters + scales].
   MarginalValue Evaluate(const double* parameters, const Eigen::VectorXd& noise,
                          const LightScales& scales, double tolerance,
                          LightMode* mode, std::vector<double>* gradient) const;
@@ -52,28 +60,40 @@ class MarginalReflectance {
                               const LightScales& scales,
                               const LightMode& mode) const;
 
-  // The matrices T_c of a reflectance.
+  // The matrices T_c of parameters.
   std::array<RowMatrix, 3> Matrices(const double* parameters) const;
+  // Log radiance of the texels [3][H W], a lamp's light in the texel that it is
+  // in.
+  std::vector<double> LogRadiance(const double* parameters,
+                                  const LightMode& mode) const;
 
  private:
-  using FloatMatrix =
-      Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using FloatMatrix = LampResponses::Matrix;
   // d log E / d parameters [3 * cells][num_parameters], the light held.
   RowMatrix LogRadianceJacobian(const double* parameters,
                                 const std::vector<float>& fields,
                                 const LightMode& mode) const;
+  LampResponses Lamps(const double* parameters) const;
+  // d Lamps().Of(field) by the lamps' offsets, [cells][2 lamps]: by central
+  // differences, as the fields are linear between their nodes.
+  std::vector<RowMatrix> LampSlopes(const double* parameters,
+                                    const std::vector<float>& fields,
+                                    int stride) const;
   // Of each lobe's shape, the first of its `stride` fields.
-  std::vector<FloatMatrix> ShapeMatrices(const std::vector<float>& fields,
+  std::vector<FloatMatrix> ShapeMatrices(const LampResponses& lamps,
+                                         const std::vector<float>& fields,
                                          int stride) const;
   // T_c of lobes of those shapes and the parameters' colours.
   std::array<RowMatrix, 3> Coloured(
       const double* parameters, const std::vector<FloatMatrix>& shapes) const;
-  // [cells][texels] of a scalar field, and its transpose.
-  FloatMatrix CellMatrix(const float* field) const;
-  void CellMatrixGradient(const FloatMatrix& adjoint, float* gradient) const;
+  // [cells][sources] of a scalar field, and its transpose.
+  FloatMatrix CellMatrix(const LampResponses& lamps, const float* field) const;
+  void CellMatrixGradient(const LampResponses& lamps,
+                          const FloatMatrix& adjoint, float* gradient) const;
 
   MarginalResolution resolution_;
   ImageCells cells_;
+  std::vector<Eigen::Vector3d> lamps_;
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<LobeModel> lobes_;
   std::unique_ptr<MarginalLikelihood> likelihood_;

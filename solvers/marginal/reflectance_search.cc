@@ -7,10 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <tuple>
 
 #include "ibrdf/base/parallel_for.h"
 #include "solvers/conditioning.h"
 #include "solvers/eigen_vectors.h"
+#include "solvers/marginal/light_lamps.h"
 #include "solvers/marginal/marginal_descent.h"
 #include "solvers/marginal/marginal_objective.h"
 
@@ -19,6 +21,8 @@ namespace {
 
 // Of a ranking's modes, nats: materials differ by tens.
 constexpr double kRankingTolerance = 0.5;
+// At the fine resolution, of every candidate.
+constexpr int kTrialIterations = 3;
 
 // A search at one resolution.
 class Level {
@@ -27,11 +31,12 @@ class Level {
         const std::vector<ShadingPoint>& points,
         const std::vector<double>& radiance,
         const MarginalResolution& resolution,
+        const std::vector<Eigen::Vector3d>& lamps,
         const ReflectanceSearchOptions& options)
       : prior_(prior),
         options_(options),
         reflectance_(model, prior.num_lobes(), points, radiance,
-                     options.process, resolution, options.num_threads) {}
+                     options.process, resolution, options.num_threads, lamps) {}
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
 
@@ -40,19 +45,29 @@ class Level {
     return MarginalObjective(&reflectance_, &prior_, noise, mode);
   }
 
-  // -log posterior at the mean scales of light; infinite where it has none.
-  double Rank(const Eigen::VectorXd& lobes, double* misfit) const {
+  // With the lamps where the highlights put them.
+  Eigen::VectorXd WithLamps(const Eigen::VectorXd& lobes) const {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(reflectance_.num_parameters());
+    all.head(lobes.size()) = lobes;
+    return all;
+  }
+
+  // -log posterior at these scales of light; infinite where it has none.
+  double Rank(const Eigen::VectorXd& lobes, const LightScales& scales,
+              double* misfit) const {
     LightMode mode;
     const std::array<RowMatrix, 3> matrices =
-        reflectance_.Matrices(lobes.data());
+        reflectance_.Matrices(WithLamps(lobes).data());
     const MarginalLikelihood& likelihood = reflectance_.likelihood();
     const Eigen::VectorXd noise = likelihood.FindNoise(
-        matrices, options_.sigma, {}, kRankingTolerance, &mode);
+        matrices, options_.sigma, scales, kRankingTolerance, &mode);
     const MarginalValue value = likelihood.Evaluate(
-        matrices, noise, {}, kRankingTolerance, &mode, nullptr);
+        matrices, noise, scales, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
     *misfit = value.misfit;
-    return value.cost + prior_.Cost(lobes, nullptr);
+    double of_scales = 0.0;
+    for (const double y : scales.Whitened()) of_scales += 0.5 * y * y;
+    return value.cost + prior_.Cost(lobes, nullptr) + of_scales;
   }
 
   struct End {
@@ -63,14 +78,14 @@ class Level {
     LightMode mode;
     Eigen::VectorXd noise;
   };
-  End Refine(const Eigen::VectorXd& lobes, const LightScales& scales,
+  End Refine(const Eigen::VectorXd& parameters, const LightScales& scales,
              int iterations) const {
     End end;
     end.noise = reflectance_.likelihood().FindNoise(
-        reflectance_.Matrices(lobes.data()), options_.sigma, scales,
+        reflectance_.Matrices(parameters.data()), options_.sigma, scales,
         MarginalObjective::kModeTolerance, &end.mode);
     const MarginalObjective objective = Objective(end.noise, &end.mode);
-    end.y = objective.Whitened(lobes, scales);
+    end.y = objective.Whitened(parameters, scales);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
     o.should_stop = options_.should_stop;
@@ -113,9 +128,10 @@ class Search {
       : options_(options),
         image_(radiance),
         radiance_(radiance),
+        lamps_(FindLamps(points, radiance, options.most_lamps)),
         level_at_([&](const MarginalResolution& resolution) {
           return std::make_unique<Level>(model, prior, points, radiance_,
-                                         resolution, options);
+                                         resolution, lamps_, options);
         }) {
     for (const MaterialPrior::Material& m : prior.materials) {
       tried_.push_back(
@@ -126,35 +142,57 @@ class Search {
   // Ranks the materials and refines the best; false where none explains the
   // image.
   bool Start() {
-    const auto count = static_cast<int64_t>(tried_.size());
-    const int64_t kept = std::min<int64_t>(options_.kept, count);
-    Rank(*level_at_(options_.screen), count);
-    coarse_ = level_at_(options_.coarse);
-    // Costs of the two resolutions do not compare.
-    for (int64_t i = kept; i < count; ++i) tried_[i].first_cost = kInfinity;
-    Rank(*coarse_, kept);
-    Report("rank " + std::to_string(count) + " materials",
-           tried_.front().first_cost, tried_.front().first_misfit);
-    for (int k = 0; k < std::min<int64_t>(options_.starts, kept); ++k) {
-      if (std::isfinite(tried_[k].first_cost)) {
-        from_.push_back({k, ToEigen(tried_[k].parameters), {}, 0.0});
+    std::vector<Ranking> rankings;
+    for (const LightScales& scales : {LightScales(), LightScales::Harsh()}) {
+      Ranking& ranking = rankings.emplace_back();
+      for (size_t i = 0; i < tried_.size(); ++i) {
+        ranking.push_back({static_cast<int>(i), scales});
       }
     }
-    return Refine("refine ", *coarse_, options_.coarse_iterations);
+    RankAll(*level_at_(options_.screen), &rankings);
+    for (Ranking& ranking : rankings) {
+      ranking.resize(std::min<size_t>(ranking.size(), options_.kept));
+    }
+    coarse_ = level_at_(options_.coarse);
+    RankAll(*coarse_, &rankings);
+    std::sort(rankings.begin(), rankings.end(),
+              [](const Ranking& a, const Ranking& b) {
+                return a.front().cost < b.front().cost;
+              });
+    Report("rank " + std::to_string(tried_.size()) + " materials",
+           rankings.front().front().cost, rankings.front().front().misfit);
+    for (int k = 0; k < options_.coarse_rounds.front().most; ++k) {
+      for (const Ranked& ranked : rankings[k % rankings.size()]) {
+        if (!std::isfinite(ranked.cost)) break;
+        const bool taken = std::any_of(
+            from_.begin(), from_.end(),
+            [&](const Candidate& c) { return c.tried == ranked.tried; });
+        if (taken) continue;
+        from_.push_back(
+            {ranked.tried,
+             coarse_->WithLamps(ToEigen(tried_[ranked.tried].parameters)),
+             ranked.scales, 0.0});
+        break;
+      }
+    }
+    for (const SearchRound& round : options_.coarse_rounds) {
+      from_.resize(std::min<size_t>(from_.size(), round.most));
+      if (from_.empty() || !Refine("", *coarse_, round.iterations)) {
+        return false;
+      }
+      Report("refine " + std::to_string(from_.size()), best_.cost,
+             best_.value.misfit);
+    }
+    return true;
   }
 
   // Compares the ends at the fine resolution and finishes the best.
   void Finish() {
     if (options_.fine_iterations == 0 || Stopped()) return;
     fine_ = level_at_(options_.fine);
-    if (!Refine("", *fine_, 0)) return;
-    from_.erase(std::find_if(from_.begin(), from_.end(),
-                             [&](const Candidate& c) {
-                               return c.cost >
-                                      from_.front().cost + options_.margin;
-                             }),
-                from_.end());
-    from_.resize(std::min<size_t>(from_.size(), options_.finalists));
+    DropBeyond(options_.coarse_margin);
+    if (!Refine("", *fine_, kTrialIterations)) return;
+    DropBeyond(options_.margin);
     Refine("finish ", *fine_, options_.fine_iterations);
   }
 
@@ -163,7 +201,7 @@ class Search {
     if (!options_.bounce_gain || options_.fine_iterations == 0) return;
     for (int round = 0; round < options_.bounce_rounds && !Stopped(); ++round) {
       const std::vector<double> gain =
-          options_.bounce_gain(ToVector(best_candidate_.lobes), LogRadiance());
+          options_.bounce_gain(Lobes(best_candidate_), LogRadiance());
       if (gain.empty()) return;
       for (size_t i = 0; i < gain.size(); ++i) {
         radiance_[i] = image_[i] / gain[i];
@@ -179,7 +217,7 @@ class Search {
 
   ReflectanceSearchResult Result() {
     ReflectanceSearchResult result;
-    result.parameters = ToVector(best_candidate_.lobes);
+    result.parameters = Lobes(best_candidate_);
     result.start = tried_[best_candidate_.tried].name;
     result.cost = best_.cost;
     result.misfit = best_.value.misfit;
@@ -190,15 +228,19 @@ class Search {
     const MarginalReflectance& reflectance = best_level_->reflectance();
     result.map_width = reflectance.resolution().map_width;
     result.map_height = reflectance.resolution().map_height;
+    result.lamps =
+        reflectance.LampDirections(best_candidate_.parameters.data());
     result.log_radiance = LogRadiance();
     result.log_radiance_std = ToVector(
         reflectance.likelihood()
-            .LightVariance(reflectance.Matrices(result.parameters.data()),
-                           best_.noise, best_candidate_.scales, best_.mode)
+            .LightVariance(
+                reflectance.Matrices(best_candidate_.parameters.data()),
+                best_.noise, best_candidate_.scales, best_.mode)
             .cwiseSqrt());
     std::stable_sort(tried_.begin(), tried_.end(),
                      [](const TriedMaterial& a, const TriedMaterial& b) {
-                       return a.cost < b.cost;
+                       return std::tie(a.cost, a.first_cost) <
+                              std::tie(b.cost, b.first_cost);
                      });
     result.tried = std::move(tried_);
     return result;
@@ -210,13 +252,28 @@ class Search {
   // Where a refinement of tried_[tried] ended and the next begins.
   struct Candidate {
     int tried = 0;
-    Eigen::VectorXd lobes;
+    Eigen::VectorXd parameters;
     LightScales scales;
     double cost = 0.0;
   };
 
+  // Of from_, all whose costs are not within the margin of the lowest.
+  void DropBeyond(double margin) {
+    from_.erase(std::find_if(from_.begin(), from_.end(),
+                             [&](const Candidate& c) {
+                               return c.cost > from_.front().cost + margin;
+                             }),
+                from_.end());
+  }
+
   std::vector<double> LogRadiance() const {
-    return ToVector((best_.mode.l.array() + best_.mode.level).matrix());
+    return best_level_->reflectance().LogRadiance(
+        best_candidate_.parameters.data(), best_.mode);
+  }
+  // Without the lamps.
+  std::vector<double> Lobes(const Candidate& candidate) const {
+    const double* all = candidate.parameters.data();
+    return {all, all + best_level_->reflectance().lobes().num_parameters()};
   }
   bool Stopped() const {
     return options_.should_stop && options_.should_stop();
@@ -225,18 +282,39 @@ class Search {
     if (options_.report) options_.report(stage, cost, misfit);
   }
 
+  // Materials under light of one kind.
+  struct Ranked {
+    int tried = 0;
+    LightScales scales;
+    double cost = kInfinity, misfit = 0.0;
+  };
+  using Ranking = std::vector<Ranked>;
+
   // Whole materials in parallel: what each does inside then runs in its thread.
-  void Rank(const Level& level, int64_t count) {
-    ParallelFor(count, options_.num_threads, [&](int64_t i, int) {
-      TriedMaterial& tried = tried_[i];
-      if (i > 0 && Stopped()) return;
-      tried.first_cost =
-          level.Rank(ToEigen(tried.parameters), &tried.first_misfit);
-    });
-    std::stable_sort(tried_.begin(), tried_.begin() + count,
-                     [](const TriedMaterial& a, const TriedMaterial& b) {
-                       return a.first_cost < b.first_cost;
-                     });
+  void RankAll(const Level& level, std::vector<Ranking>* rankings) {
+    // Costs of two resolutions do not compare.
+    for (TriedMaterial& tried : tried_) tried.first_cost = kInfinity;
+    for (Ranking& ranking : *rankings) {
+      ParallelFor(static_cast<int64_t>(ranking.size()), options_.num_threads,
+                  [&](int64_t i, int) {
+                    Ranked& ranked = ranking[i];
+                    ranked.cost = kInfinity;
+                    if (i > 0 && Stopped()) return;
+                    ranked.cost =
+                        level.Rank(ToEigen(tried_[ranked.tried].parameters),
+                                   ranked.scales, &ranked.misfit);
+                  });
+      for (const Ranked& ranked : ranking) {
+        TriedMaterial& tried = tried_[ranked.tried];
+        if (ranked.cost < tried.first_cost) {
+          tried.first_cost = ranked.cost;
+          tried.first_misfit = ranked.misfit;
+        }
+      }
+      std::stable_sort(
+          ranking.begin(), ranking.end(),
+          [](const Ranked& a, const Ranked& b) { return a.cost < b.cost; });
+    }
   }
 
   // Whole refinements of from_ in parallel, joined in order. The candidates
@@ -247,8 +325,8 @@ class Search {
     ParallelFor(static_cast<int64_t>(from_.size()), options_.num_threads,
                 [&](int64_t k, int) {
                   if (k > 0 && Stopped()) return;
-                  ends[k] =
-                      level.Refine(from_[k].lobes, from_[k].scales, iterations);
+                  ends[k] = level.Refine(from_[k].parameters, from_[k].scales,
+                                         iterations);
                 });
     std::vector<Candidate> reached;
     for (size_t k = 0; k < ends.size(); ++k) {
@@ -260,12 +338,13 @@ class Search {
       }
       TriedMaterial& tried = tried_[from_[k].tried];
       const MarginalObjective objective = level.Objective(end.noise, &end.mode);
-      reached.push_back({from_[k].tried, objective.LobesOf(end.y.data()),
+      reached.push_back({from_[k].tried, objective.ParametersOf(end.y.data()),
                          objective.ScalesOf(end.y.data()), end.cost});
       tried.cost = end.cost;
-      tried.parameters = ToVector(reached.back().lobes);
+      tried.parameters = ToVector(objective.LobesOf(end.y.data()));
       if (!what.empty()) Report(what + tried.name, end.cost, end.value.misfit);
-      if (best_level_ != &level || end.cost < best_.cost) {
+      // With the noise taken anew an end may cost more than it did before.
+      if (reached.size() == 1 || end.cost < best_.cost) {
         best_level_ = &level;
         best_ = std::move(end);
         best_candidate_ = reached.back();
@@ -282,6 +361,7 @@ class Search {
   const ReflectanceSearchOptions& options_;
   const std::vector<double>& image_;
   std::vector<double> radiance_;  // the image without bounces
+  const std::vector<Eigen::Vector3d> lamps_;
   const std::function<std::unique_ptr<Level>(const MarginalResolution&)>
       level_at_;
   std::unique_ptr<Level> coarse_, fine_;

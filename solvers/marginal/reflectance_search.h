@@ -14,6 +14,12 @@
 
 namespace ibrdf {
 
+// The best so far, at most so many, go on by so many steps of the descent.
+struct SearchRound {
+  int most = 0;
+  int iterations = 0;
+};
+
 struct ReflectanceSearchOptions {
   LightProcess process;
   // All materials are ranked at the first resolution, the best of them at the
@@ -21,15 +27,16 @@ struct ReflectanceSearchOptions {
   MarginalResolution screen = {{8, 4, 0.2}, 16, 8, {48, 20, 12}};
   MarginalResolution coarse = {{12, 4, 0.2}, 24, 12, {48, 20, 12}};
   MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}, 20, 56};
-  int kept = 20;
-  int starts = 4;              // that are refined at the coarse resolution
-  int coarse_iterations = 12;  // each start
-  // Of those, at most so many are finished at the fine resolution: the ones
-  // whose costs there come within the margin, nats, of the lowest. Costs of two
-  // ends differ by some ten nats from one resolution to the next.
-  int finalists = 3;
+  int kept = 10;  // of each ranking
+  // At the coarse resolution, the best of each going on to the next. The first
+  // takes the rankings' best in turns.
+  std::vector<SearchRound> coarse_rounds = {{10, 2}, {5, 4}, {2, 6}};
+  // Nats above the lowest cost: ends of the coarse resolution that go on to the
+  // fine one, and of those, after some steps there, the ones that are finished.
+  double coarse_margin = 40.0;
   double margin = 12.0;
   int fine_iterations = 20;
+  int most_lamps = 3;  // that the image's highlights make (FindLamps)
   // Standard deviation of log radiance between model and image, of a cell. Not
   // the pixels' noise, which a cell averages out, but what no lobes of the
   // model can render: were it free to fall to the noise, light and reflectance
@@ -67,11 +74,12 @@ struct TriedMaterial {
 };
 
 struct ReflectanceSearchResult {
-  std::vector<double> parameters;  // as LobeModel's
-  std::string start;               // the material that it began from
-  double cost = 0.0;               // -log posterior, nats, up to a constant
-  double misfit = 0.0;             // mean |log E - log I| over cells
-  LightScales scales;              // of the light's process
+  std::vector<double> parameters;      // as LobeModel's
+  std::string start;                   // the material that it began from
+  double cost = 0.0;                   // -log posterior, nats, up to a constant
+  double misfit = 0.0;                 // mean |log E - log I| over cells
+  LightScales scales;                  // of the light's process
+  std::vector<Eigen::Vector3d> lamps;  // their directions
   // By cost: the refined ones, then the others by their first cost.
   std::vector<TriedMaterial> tried;
   // Of the parameters (Laplace, by the Gauss-Newton Hessian); empty where it

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "ibrdf/light/environment_map.h"
 
@@ -15,14 +16,17 @@ constexpr int kHeight = 4, kWidth = 8, kTexels = kHeight * kWidth;
 constexpr int kPoints = 6;
 
 // Lobes of a width in radians about random directions, as matrices of three
-// like channels.
-std::array<RowMatrix, 3> Lobes(double width, int points = kPoints) {
+// like channels; lamps in random directions.
+std::array<RowMatrix, 3> Lobes(double width, int points = kPoints,
+                               int lamps = 0) {
   std::mt19937_64 rng(7);
   std::normal_distribution<double> g;
-  RowMatrix T(points, kTexels);
+  const auto direction = [&] {
+    return Eigen::Vector3d(g(rng), g(rng), g(rng)).normalized();
+  };
+  RowMatrix T(points, kTexels + lamps);
   for (int p = 0; p < points; ++p) {
-    const Eigen::Vector3d axis =
-        Eigen::Vector3d(g(rng), g(rng), g(rng)).normalized();
+    const Eigen::Vector3d axis = direction();
     for (int r = 0; r < kHeight; ++r) {
       for (int c = 0; c < kWidth; ++c) {
         const double x =
@@ -31,24 +35,31 @@ std::array<RowMatrix, 3> Lobes(double width, int points = kPoints) {
                                (std::exp((x - 1) / (width * width)) + 1e-4);
       }
     }
+    for (int k = 0; k < lamps; ++k) {
+      const double x = axis.dot(direction());
+      T(p, kTexels + k) = 0.3 * (std::exp((x - 1) / (width * width)) + 1e-4);
+    }
   }
   return {T, 0.7 * T, 1.3 * T};
 }
 
 Eigen::VectorXd DrawLight(const LightProcess& process, double amplitude,
-                          uint64_t seed) {
+                          uint64_t seed, int lamps = 0) {
   const RowMatrix C = LightCorrelation(kHeight, kWidth, process, LightScales());
-  Eigen::MatrixXd K(3 * kTexels, 3 * kTexels);
+  const int n = kTexels + lamps;
+  Eigen::MatrixXd K(3 * n, 3 * n);
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
-      K.block(c * kTexels, d * kTexels, kTexels, kTexels) =
-          (amplitude * process.Local()(c, d) * C).array() +
-          process.Level()(c, d);
+      Eigen::MatrixXd local = Eigen::MatrixXd::Zero(n, n);
+      local.topLeftCorner(kTexels, kTexels) =
+          amplitude * process.Local()(c, d) * C;
+      local.diagonal().tail(lamps).setConstant(process.Lamp()(c, d));
+      K.block(c * n, d * n, n, n) = local.array() + process.Level()(c, d);
     }
   }
   std::mt19937_64 rng(seed);
   std::normal_distribution<double> g;
-  Eigen::VectorXd white(3 * kTexels);
+  Eigen::VectorXd white(3 * n);
   for (double& w : white) w = g(rng);
   return K.llt().matrixL() * white;
 }
@@ -58,7 +69,7 @@ std::vector<double> LogRadiance(const std::array<RowMatrix, 3>& T,
   std::vector<double> y;
   for (int c = 0; c < 3; ++c) {
     const Eigen::VectorXd E =
-        T[c] * l.segment(c * kTexels, kTexels).array().exp().matrix();
+        T[c] * l.segment(c * T[c].cols(), T[c].cols()).array().exp().matrix();
     for (const double e : E) y.push_back(std::log(e));
   }
   return y;
@@ -85,8 +96,8 @@ LightScales Moved(LightScales scales, int k, double step) {
 }
 
 MarginalLikelihood Likelihood(std::vector<double> y,
-                              const LightProcess& process) {
-  return MarginalLikelihood(std::move(y), process, kHeight, kWidth, 1);
+                              const LightProcess& process, int lamps = 0) {
+  return MarginalLikelihood(std::move(y), process, kHeight, kWidth, lamps, 1);
 }
 
 // Nats, of the mode: its last steps shrink slowly, and the log determinant
@@ -94,17 +105,18 @@ MarginalLikelihood Likelihood(std::vector<double> y,
 constexpr double kTight = 1e-18;
 
 TEST(MarginalLikelihood, GradientMatchesDifferences) {
-  for (const double width : {0.3, 1.0}) {
-    std::array<RowMatrix, 3> T = Lobes(width);
-    std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 2));
+  for (const auto& [width, lamps] :
+       {std::pair(0.3, 0), std::pair(1.0, 0), std::pair(0.3, 2)}) {
+    std::array<RowMatrix, 3> T = Lobes(width, kPoints, lamps);
+    std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 2, lamps));
     // Not what the model can render: the mode keeps residuals.
     for (size_t i = 0; i < y.size(); ++i) y[i] += 0.2 * std::sin(5.0 * i);
-    const MarginalLikelihood likelihood = Likelihood(y, Proper());
+    const MarginalLikelihood likelihood = Likelihood(y, Proper(), lamps);
     const auto cost = [&](const std::array<RowMatrix, 3>& matrices,
                           const LightScales& scales,
                           MarginalGradient* gradient) {
       LightMode mode;
-      mode.l = mode.dual = Eigen::VectorXd::Zero(3 * kTexels);
+      mode.l = mode.dual = Eigen::VectorXd::Zero(3 * likelihood.num_sources());
       const MarginalValue value = likelihood.Evaluate(
           matrices, Noise(0.1), scales, kTight, &mode, gradient);
       EXPECT_TRUE(value.ok);
@@ -143,42 +155,45 @@ TEST(MarginalLikelihood, GradientMatchesDifferences) {
 }
 
 TEST(MarginalLikelihood, ModeIsWhereThePosteriorIsFlat) {
-  const std::array<RowMatrix, 3> T = Lobes(0.5);
-  const MarginalLikelihood likelihood =
-      Likelihood(LogRadiance(T, DrawLight(Proper(), 1.0, 3)), Proper());
+  constexpr int kLamps = 2, kSources = kTexels + kLamps;
+  const std::array<RowMatrix, 3> T = Lobes(0.5, kPoints, kLamps);
+  const std::vector<double> y =
+      LogRadiance(T, DrawLight(Proper(), 1.0, 3, kLamps));
+  const MarginalLikelihood likelihood = Likelihood(y, Proper(), kLamps);
   LightMode mode;
   ASSERT_TRUE(
       likelihood.Evaluate(T, Noise(0.05), {}, kTight, &mode, nullptr).ok);
   // g = J^T D^-1 (y - log E), at the point itself.
   const std::vector<double> at =
       LogRadiance(T, (mode.l.array() + mode.level).matrix());
-  const std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 3));
   for (int c = 0; c < 3; ++c) {
     const Eigen::VectorXd L =
-        (mode.l.segment(c * kTexels, kTexels).array() + mode.level).exp();
-    Eigen::VectorXd expected = Eigen::VectorXd::Zero(kTexels);
+        (mode.l.segment(c * kSources, kSources).array() + mode.level).exp();
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(kSources);
     for (int p = 0; p < kPoints; ++p) {
       const int i = c * kPoints + p;
       expected += (y[i] - at[i]) / (0.05 * 0.05 * std::exp(at[i])) *
                   T[c].row(p).transpose().cwiseProduct(L);
     }
-    EXPECT_LT((expected - mode.dual.segment(c * kTexels, kTexels)).norm(),
+    EXPECT_LT((expected - mode.dual.segment(c * kSources, kSources)).norm(),
               1e-4 * expected.norm());
   }
 }
 
 // The integral itself, by drawing light from the prior.
 TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
-  const int points = 2;
-  const std::array<RowMatrix, 3> T = Lobes(0.8, points);
+  const int points = 2, lamps = 1;
+  const std::array<RowMatrix, 3> T = Lobes(0.8, points, lamps);
   LightProcess process = Proper();
+  process.lamp_variance = 0.02;
+  process.lamp_chroma_variance = 0.005;
   process.level_variance = 0.01;
   process.level_chroma_variance = 0.002;
   const double log_amplitude = std::log(0.02), sigma = 0.15;
   const auto evidence = [&](const std::vector<double>& y) {
-    const MarginalLikelihood likelihood(y, process, kHeight, kWidth, 1);
+    const MarginalLikelihood likelihood(y, process, kHeight, kWidth, lamps, 1);
     LightMode mode;
-    mode.l = mode.dual = Eigen::VectorXd::Zero(3 * kTexels);
+    mode.l = mode.dual = Eigen::VectorXd::Zero(3 * likelihood.num_sources());
     return -likelihood
                 .Evaluate(T, Noise(sigma, points), {log_amplitude}, kTight,
                           &mode, nullptr)
@@ -189,7 +204,7 @@ TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
     const int count = 20000;
     for (int k = 0; k < count; ++k) {
       const std::vector<double> at =
-          LogRadiance(T, DrawLight(process, 0.02, 100 + k));
+          LogRadiance(T, DrawLight(process, 0.02, 100 + k, lamps));
       double square = 0.0;
       for (size_t i = 0; i < y.size(); ++i) {
         square += (y[i] - at[i]) * (y[i] - at[i]) / (sigma * sigma);
@@ -199,7 +214,7 @@ TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
     return std::log(sum) - y.size() * std::log(sigma);
   };
   const std::vector<double> likely =
-      LogRadiance(T, DrawLight(process, 0.02, 5));
+      LogRadiance(T, DrawLight(process, 0.02, 5, lamps));
   std::vector<double> unlikely = likely;
   unlikely[0] += 0.3;
   unlikely[3] -= 0.2;
@@ -219,8 +234,8 @@ TEST(MarginalLikelihood, TellsMatteFromMirror) {
     const Eigen::VectorXd light = DrawLight(LightProcess(), 1.0, seed);
     const auto cost = [&](const std::array<RowMatrix, 3>& truth,
                           const std::array<RowMatrix, 3>& guess) {
-      const MarginalLikelihood likelihood(LogRadiance(truth, light),
-                                          LightProcess(), kHeight, kWidth, 1);
+      const MarginalLikelihood likelihood(
+          LogRadiance(truth, light), LightProcess(), kHeight, kWidth, 0, 1);
       LightMode mode;
       const MarginalValue value =
           likelihood.Evaluate(guess, Noise(0.05, 24), {}, 1e-3, &mode, nullptr);
@@ -321,6 +336,12 @@ TEST(LightProcess, ScalesAreWhitened) {
     EXPECT_NEAR(scales.log_roughness[b], back.log_roughness[b], 1e-14);
   }
   for (const double mean : LightScales().Whitened()) EXPECT_EQ(0.0, mean);
+}
+
+TEST(LightProcess, HarshLightIsADeviationAboveTheMean) {
+  for (const double y : LightScales::Harsh().Whitened()) {
+    EXPECT_NEAR(1.0, y, 1e-12);
+  }
 }
 
 TEST(LightProcess, RoughnessIsLinearBetweenItsKnots) {

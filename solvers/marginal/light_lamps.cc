@@ -1,0 +1,77 @@
+#include "solvers/marginal/light_lamps.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ibrdf {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+// Seen at smaller cosines, mirrored light is Fresnel's as much as a lamp's.
+constexpr double kMinCosine = 0.25;
+// A highlight is the brightest within this angle of mirrored directions, and
+// brighter by this factor than the median at its rim.
+constexpr double kReach = 20.0;
+constexpr double kRim = 14.0;
+constexpr double kContrast = 1.1;
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
+                                       const std::vector<double>& radiance,
+                                       int most) {
+  std::vector<Eigen::Vector3d> mirrored;
+  std::vector<double> luminance;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d n = points[i].normal.cast<double>();
+    const Eigen::Vector3d wo = points[i].wo.cast<double>();
+    const double sum =
+        radiance[3 * i] + radiance[3 * i + 1] + radiance[3 * i + 2];
+    if (n.dot(wo) < kMinCosine || !std::isfinite(sum) || !(sum > 0.0)) continue;
+    mirrored.push_back((2.0 * n.dot(wo) * n - wo).normalized());
+    luminance.push_back(sum * n.dot(wo));
+  }
+  std::vector<size_t> order(luminance.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return luminance[a] > luminance[b];
+  });
+  const double reach = std::cos(kReach * kDegree);
+  const double rim = std::cos(kRim * kDegree);
+  std::vector<Eigen::Vector3d> lamps;
+  for (const size_t i : order) {
+    if (static_cast<int>(lamps.size()) >= most) break;
+    bool top = true;
+    std::vector<double> around;
+    for (size_t j = 0; j < mirrored.size() && top; ++j) {
+      const double cosine = mirrored[j].dot(mirrored[i]);
+      if (cosine < reach) continue;
+      top = luminance[j] <= luminance[i];
+      if (cosine < rim) around.push_back(luminance[j]);
+    }
+    if (!top) continue;
+    if (around.empty()) continue;
+    const auto middle = around.begin() + around.size() / 2;
+    std::nth_element(around.begin(), middle, around.end());
+    const double background = *middle;
+    if (luminance[i] < kContrast * background) continue;
+    const double half = 0.5 * (luminance[i] + background);
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (size_t j = 0; j < mirrored.size(); ++j) {
+      if (mirrored[j].dot(mirrored[i]) < rim) continue;
+      centre += std::max(luminance[j] - half, 0.0) * mirrored[j];
+    }
+    lamps.push_back(centre.normalized());
+  }
+  return lamps;
+}
+
+Eigen::Vector3d MovedLamp(const Eigen::Vector3d& lamp, const double* offsets) {
+  const Eigen::Vector3d axis = lamp.unitOrthogonal();
+  return (lamp + offsets[0] * axis + offsets[1] * lamp.cross(axis))
+      .normalized();
+}
+
+}  // namespace ibrdf
