@@ -30,7 +30,7 @@ struct ReflectanceSearchOptions {
   int kept = 10;  // of each ranking
   // At the coarse resolution, the best of each going on to the next. The first
   // takes the rankings' best in turns.
-  std::vector<SearchRound> coarse_rounds = {{10, 2}, {5, 4}, {2, 6}};
+  std::vector<SearchRound> coarse_rounds = {{10, 2}, {8, 4}, {3, 6}};
   // Nats above the lowest cost: ends of the coarse resolution that go on to the
   // fine one, and of those, after some steps there, the ones that are finished.
   double coarse_margin = 40.0;
