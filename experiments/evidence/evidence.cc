@@ -39,6 +39,7 @@ struct StudyOptions {
   bool texel_noise = false;
   bool found_alone = false;
   bool further = false;
+  int most_lamps = ReflectanceSearchOptions().most_lamps;
   int num_threads = 0;
 };
 
@@ -59,6 +60,7 @@ class EvidenceStudy {
         radiance_(RadianceOf(problem.image, problem.points)) {
     options_.num_threads = problem.num_threads;
     options_.covariance = false;
+    options_.most_lamps = study.most_lamps;
     options_.screen.visibility = options_.coarse.visibility =
         options_.fine.visibility = problem.transport.visibility;
     if (study.cells_across > 0) {
@@ -126,22 +128,16 @@ class EvidenceStudy {
     Eigen::VectorXd noise;  // taken at the start
     Point end;
   };
-  static Eigen::VectorXd WithLamps(const MarginalReflectance& fine,
-                                   const Eigen::VectorXd& lobes) {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(fine.num_parameters());
-    all.head(lobes.size()) = lobes;
-    return all;
-  }
   Descent DescendFrom(const MarginalReflectance& fine, const Point& start,
                       int iterations, double least_gain) const {
     Descent descent;
     LightMode mode;
     descent.noise = fine.likelihood().FindNoise(
-        fine.Matrices(WithLamps(fine, start.lobes).data()), options_.sigma,
+        fine.Matrices(fine.WithLamps(start.lobes).data()), options_.sigma,
         start.scales, MarginalObjective::kModeTolerance, &mode);
     const MarginalObjective objective(&fine, &prior_, descent.noise, &mode);
     std::vector<double> y =
-        objective.Whitened(WithLamps(fine, start.lobes), start.scales);
+        objective.Whitened(fine.WithLamps(start.lobes), start.scales);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
     o.least_gain = least_gain;
@@ -182,7 +178,7 @@ class EvidenceStudy {
   void SweepTexelNoise(const MarginalReflectance& fine, const Point& point,
                        const Eigen::VectorXd& noise) const {
     const std::array<RowMatrix, 3> matrices =
-        fine.Matrices(WithLamps(fine, point.lobes).data());
+        fine.Matrices(fine.WithLamps(point.lobes).data());
     const double own = options_.sigma * options_.sigma;
     std::printf("    texel noise times:");
     for (const double factor : kTexelNoise) {
@@ -240,6 +236,8 @@ int main(int argc, char** argv) {
                "the search alone, without the lobes nearest to the truth");
   app.add_flag("--further", options.further,
                "the search's last descent, far past its stop");
+  app.add_option("--lamps", options.most_lamps, "at most; the search's own: 3")
+      ->check(CLI::Range(0, 8));
   app.add_option("--threads", options.num_threads, "0: all");
   CLI11_PARSE(app, argc, argv);
   for (const std::string& path : problems) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "ibrdf/light/environment_map.h"
+
 namespace ibrdf {
 namespace {
 
@@ -16,6 +18,8 @@ constexpr double kMinCosine = 0.25;
 constexpr double kReach = 20.0;
 constexpr double kRim = 14.0;
 constexpr double kContrast = 1.1;
+// Rows of the bins of directions, of 5 degrees: far below the reach.
+constexpr int kBinRows = 36;
 
 }  // namespace
 
@@ -24,6 +28,10 @@ std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
                                        int most) {
   std::vector<Eigen::Vector3d> mirrored;
   std::vector<double> luminance;
+  // Only the brightest of a bin can be the brightest within reach, which spares
+  // most pixels the look at all others.
+  std::vector<int> bin;
+  std::vector<double> brightest(2 * kBinRows * kBinRows, 0.0);
   for (size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d n = points[i].normal.cast<double>();
     const Eigen::Vector3d wo = points[i].wo.cast<double>();
@@ -32,6 +40,11 @@ std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
     if (n.dot(wo) < kMinCosine || !std::isfinite(sum) || !(sum > 0.0)) continue;
     mirrored.push_back((2.0 * n.dot(wo) * n - wo).normalized());
     luminance.push_back(sum * n.dot(wo));
+    double row = 0.0, column = 0.0;
+    MapPosition(mirrored.back(), kBinRows, 2 * kBinRows, &row, &column);
+    bin.push_back(std::min(static_cast<int>(row), kBinRows - 1) * 2 * kBinRows +
+                  std::min(static_cast<int>(column), 2 * kBinRows - 1));
+    brightest[bin.back()] = std::max(brightest[bin.back()], luminance.back());
   }
   std::vector<size_t> order(luminance.size());
   std::iota(order.begin(), order.end(), size_t{0});
@@ -43,7 +56,7 @@ std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
   std::vector<Eigen::Vector3d> lamps;
   for (const size_t i : order) {
     if (static_cast<int>(lamps.size()) >= most) break;
-    bool top = true;
+    bool top = luminance[i] == brightest[bin[i]];
     std::vector<double> around;
     for (size_t j = 0; j < mirrored.size() && top; ++j) {
       const double cosine = mirrored[j].dot(mirrored[i]);
@@ -51,8 +64,7 @@ std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
       top = luminance[j] <= luminance[i];
       if (cosine < rim) around.push_back(luminance[j]);
     }
-    if (!top) continue;
-    if (around.empty()) continue;
+    if (!top || around.empty()) continue;
     const auto middle = around.begin() + around.size() / 2;
     std::nth_element(around.begin(), middle, around.end());
     const double background = *middle;

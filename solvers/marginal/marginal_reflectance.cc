@@ -60,6 +60,14 @@ MarginalReflectance::MarginalReflectance(
       static_cast<int>(lamps_.size()), num_threads);
 }
 
+Eigen::VectorXd MarginalReflectance::WithLamps(
+    const Eigen::VectorXd& lobes) const {
+  CHECK_EQ(lobes.size(), lobes_->num_parameters());
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(num_parameters());
+  all.head(lobes.size()) = lobes;
+  return all;
+}
+
 std::vector<Eigen::Vector3d> MarginalReflectance::LampDirections(
     const double* parameters) const {
   std::vector<Eigen::Vector3d> directions;
@@ -242,7 +250,7 @@ MarginalValue MarginalReflectance::Evaluate(
 
 RowMatrix MarginalReflectance::LogRadianceJacobian(
     const double* parameters, const std::vector<float>& fields,
-    const LightMode& mode) const {
+    const LampResponses& lamps, const LightMode& mode) const {
   const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
   const int num_fields = num_lobes * (1 + size);
   const Eigen::Index P = cells_.num_cells();
@@ -265,7 +273,6 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
   std::vector<float> by_point(size_t{3} * cells_.points.size() * num_fields);
   transport_->RenderLobes(field.data(), num_fields, map.data(),
                           by_point.data());
-  const LampResponses lamps = Lamps(parameters);
   std::vector<RowMatrix> under_lamps;  // of a field [cells][3]
   for (int f = 0; f < num_fields; ++f) {
     under_lamps.push_back(lamps.Of(field[f]) * of_lamps.transpose());
@@ -320,11 +327,12 @@ Eigen::MatrixXd MarginalReflectance::Information(const double* parameters,
                                                  const LightMode& mode) const {
   std::vector<float> fields;
   lobes_->Tabulate(parameters, true, &fields);
-  const RowMatrix G = LogRadianceJacobian(parameters, fields, mode);
+  const LampResponses lamps = Lamps(parameters);
+  const RowMatrix G = LogRadianceJacobian(parameters, fields, lamps, mode);
   if (!G.allFinite()) return {};
   return likelihood_->Information(
-      Coloured(parameters, ShapeMatrices(Lamps(parameters), fields,
-                                         1 + lobes_->code_size())),
+      Coloured(parameters,
+               ShapeMatrices(lamps, fields, 1 + lobes_->code_size())),
       noise, scales, mode, G);
 }
 

@@ -40,13 +40,15 @@ class MarginalReflectance {
 
   const LobeModel& lobes() const { return *lobes_; }
   const MarginalLikelihood& likelihood() const { return *likelihood_; }
-  std::vector<Eigen::Vector3d> LampDirections(const double* parameters) const;
   const ImageCells& cells() const { return cells_; }
   const MarginalResolution& resolution() const { return resolution_; }
 
   int num_parameters() const {
     return lobes_->num_parameters() + 2 * static_cast<int>(lamps_.size());
   }
+  // Of lobes, with all lamps where the constructor was told.
+  Eigen::VectorXd WithLamps(const Eigen::VectorXd& lobes) const;
+  std::vector<Eigen::Vector3d> LampDirections(const double* parameters) const;
 
   // As MarginalLikelihood::Evaluate. With gradient != nullptr it receives
   // [num_parameters + scales].
@@ -72,6 +74,7 @@ class MarginalReflectance {
   // d log E / d parameters [3 * cells][num_parameters], the light held.
   RowMatrix LogRadianceJacobian(const double* parameters,
                                 const std::vector<float>& fields,
+                                const LampResponses& lamps,
                                 const LightMode& mode) const;
   LampResponses Lamps(const double* parameters) const;
   // d Lamps().Of(field) by the lamps' offsets, [cells][2 lamps]: by central

@@ -45,19 +45,12 @@ class Level {
     return MarginalObjective(&reflectance_, &prior_, noise, mode);
   }
 
-  // With the lamps where the highlights put them.
-  Eigen::VectorXd WithLamps(const Eigen::VectorXd& lobes) const {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(reflectance_.num_parameters());
-    all.head(lobes.size()) = lobes;
-    return all;
-  }
-
   // -log posterior at these scales of light; infinite where it has none.
   double Rank(const Eigen::VectorXd& lobes, const LightScales& scales,
               double* misfit) const {
     LightMode mode;
     const std::array<RowMatrix, 3> matrices =
-        reflectance_.Matrices(WithLamps(lobes).data());
+        reflectance_.Matrices(reflectance_.WithLamps(lobes).data());
     const MarginalLikelihood& likelihood = reflectance_.likelihood();
     const Eigen::VectorXd noise = likelihood.FindNoise(
         matrices, options_.sigma, scales, kRankingTolerance, &mode);
@@ -168,10 +161,10 @@ class Search {
             from_.begin(), from_.end(),
             [&](const Candidate& c) { return c.tried == ranked.tried; });
         if (taken) continue;
-        from_.push_back(
-            {ranked.tried,
-             coarse_->WithLamps(ToEigen(tried_[ranked.tried].parameters)),
-             ranked.scales, 0.0});
+        from_.push_back({ranked.tried,
+                         coarse_->reflectance().WithLamps(
+                             ToEigen(tried_[ranked.tried].parameters)),
+                         ranked.scales, 0.0});
         break;
       }
     }

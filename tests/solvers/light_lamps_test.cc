@@ -182,18 +182,9 @@ TEST_F(LampResponsesTest, GradientIsTheTranspose) {
 // the more likely by far, and the map has the sun where it is.
 TEST(Lamps, ExplainASun) {
   const NeuralBrdfModel model = SmoothTinyModel(4);
-  const BrdfGridShape grid = {12, 8, 6};
   const std::vector<ShadingPoint> points = SpherePoints(24);
-  const LobeModel lobes(model, 2, grid, 1);
-  const std::vector<double> truth = {0.3,  -0.4, 0.2, 0.1,  4.0, 4.3, 3.8,
-                                     -0.5, 0.1,  0.3, -0.2, 3.0, 2.5, 3.3};
-  std::vector<float> fields;
-  lobes.Tabulate(truth.data(), false, &fields);
-  TransportOptions transport_options;
-  transport_options.grid = grid;
-  transport_options.num_threads = 1;
+  const std::vector<double> truth = TinyLobes();
   const int height = 64, width = 128, row = 20, column = 50;
-  const Transport transport(points, height, width, transport_options);
   Image map(width, height);
   std::fill(map.rgb.begin(), map.rgb.end(), 0.5f);
   const Eigen::Vector3d sun =
@@ -201,15 +192,13 @@ TEST(Lamps, ExplainASun) {
   for (int c = 0; c < 3; ++c) {
     map.rgb[3 * (row * width + column) + c] = 30000.0f;
   }
-  std::vector<double> radiance(3 * points.size());
-  transport.Render(lobes.Combine(truth.data(), fields, 1), map.rgb.data(),
-                   radiance.data());
+  const std::vector<double> radiance = RenderTinyLobes(model, points, map);
 
   MarginalResolution resolution;
   resolution.cells = {8, 3, 0.2};
   resolution.map_width = 16;
   resolution.map_height = 8;
-  resolution.grid = grid;
+  resolution.grid = TinyTransportOptions().grid;
   LightMode mode;
   const auto cost = [&](const MarginalReflectance& reflectance,
                         std::vector<double> x) {

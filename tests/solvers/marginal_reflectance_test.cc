@@ -18,7 +18,6 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-constexpr BrdfGridShape kGrid = {12, 8, 6};
 // One in front, one behind the sphere.
 const std::vector<Eigen::Vector3d> kLamps = {
     Eigen::Vector3d(0.6, 0.5, 0.6).normalized(),
@@ -30,19 +29,7 @@ class MarginalReflectanceTest : public ::testing::Test {
     resolution_.cells = {6, 3, 0.2};
     resolution_.map_width = 16;
     resolution_.map_height = 8;
-    resolution_.grid = kGrid;
-    const LobeModel lobes(model_, 2, kGrid, 1);
-    truth_ = {0.3,  -0.4, 0.2, 0.1,  4.0, 4.3, 3.8,
-              -0.5, 0.1,  0.3, -0.2, 3.0, 2.5, 3.3};
-    std::vector<float> fields;
-    lobes.Tabulate(truth_.data(), false, &fields);
-    TransportOptions options;
-    options.grid = kGrid;
-    options.num_threads = 1;
-    const Transport transport(points_, 8, 16, options);
-    radiance_.resize(3 * points_.size());
-    transport.Render(lobes.Combine(truth_.data(), fields, 1),
-                     SmoothMap(8, 16).rgb.data(), radiance_.data());
+    resolution_.grid = TinyTransportOptions().grid;
   }
 
   ReflectanceSearchOptions Options() const {
@@ -58,7 +45,9 @@ class MarginalReflectanceTest : public ::testing::Test {
   const NeuralBrdfModel model_ = SmoothTinyModel(4);
   const std::vector<ShadingPoint> points_ = SpherePoints(12);
   MarginalResolution resolution_;
-  std::vector<double> truth_, radiance_;
+  const std::vector<double> truth_ = TinyLobes();
+  const std::vector<double> radiance_ =
+      RenderTinyLobes(model_, points_, SmoothMap(8, 16));
 };
 
 TEST_F(MarginalReflectanceTest, GradientMatchesDifferences) {
@@ -551,9 +540,9 @@ TEST(MaterialLobes, AreSortedFiniteAndCloseToTheirMaterial) {
 
 TEST_F(MarginalReflectanceTest, KnownLightRanksTheMaterialThatMadeTheImage) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
-  const LobeModel lobes(model_, 2, kGrid, 1);
+  const LobeModel lobes(model_, 2, resolution_.grid, 1);
   TransportOptions options;
-  options.grid = kGrid;
+  options.grid = resolution_.grid;
   options.num_threads = 1;
   const Transport transport(points_, 8, 16, options);
   const std::vector<float> map = SmoothMap(8, 16).rgb;

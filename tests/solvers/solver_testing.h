@@ -38,6 +38,28 @@ inline IlluminationUnetOptions TinyUnetOptions() {
   return options;
 }
 
+// Two lobes of a tiny model: different codes inside the ball, colours of a
+// mid-grey surface.
+inline std::vector<double> TinyLobes() {
+  return {0.3,  -0.4, 0.2, 0.1,  4.0, 4.3, 3.8,
+          -0.5, 0.1,  0.3, -0.2, 3.0, 2.5, 3.3};
+}
+
+// E [points][3] of TinyLobes under a map, tables of TinyTransportOptions and
+// the default quadrature.
+inline std::vector<double> RenderTinyLobes(
+    const NeuralBrdfModel& model, const std::vector<ShadingPoint>& points,
+    const Image& map) {
+  TransportOptions options;
+  options.grid = TinyTransportOptions().grid;
+  options.num_threads = 1;
+  std::vector<double> E(3 * points.size());
+  Transport(points, map.height, map.width, options)
+      .Render(LobeModel(model, 2, options.grid, 1).Grid(TinyLobes().data()),
+              map.rgb.data(), E.data());
+  return E;
+}
+
 // A sphere of some 20 points under a map of 16x8, two lobes of a smooth random
 // model.
 struct TinyScene {
@@ -46,11 +68,7 @@ struct TinyScene {
   const NeuralBrdfModel model = SmoothTinyModel(2);
   const LobeModel lobes{model, 2, TinyTransportOptions().grid, 1};
 
-  // Different codes inside the ball, colours of a mid-grey surface.
-  std::vector<double> Parameters() const {
-    return {0.3,  -0.4, 0.2, 0.1,  4.0, 4.3, 3.8,
-            -0.5, 0.1,  0.3, -0.2, 3.0, 2.5, 3.3};
-  }
+  std::vector<double> Parameters() const { return TinyLobes(); }
   // E of the parameters under a map.
   std::vector<double> Render(const std::vector<double>& parameters,
                              const std::vector<float>& map) const {
