@@ -136,7 +136,7 @@ def main():
         draw_errors(rows, Path(options.out) / "errors.png")
         draw_worst(rows, cases, Path(options.out) / "worst.png")
     except (OSError, ValueError) as error:
-        sys.exit(f"error: {error}")
+        parser.exit(2, f"error: {error}\n")
 
 
 if __name__ == "__main__":

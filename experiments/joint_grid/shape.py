@@ -9,7 +9,6 @@ have in common, shape of single channels; then the common shape's mean in bands 
 line has the means of the squares. Needs Debian's python3-numpy.
 """
 import argparse
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -60,9 +59,9 @@ def main():
                 material = name.split("_", 1)[0]
                 cases.append((name, *parts(table(path), table(args.data / f"{material}.binary"))))
     except (OSError, ValueError) as error:
-        sys.exit(f"error: {error}")
+        parser.exit(2, f"error: {error}\n")
     if not cases:
-        sys.exit("error: no sweep holds a case with brdf.binary")
+        parser.exit(2, "error: no sweep holds a case with brdf.binary\n")
     cases.sort(key=lambda c: -sum(x * x for x in c[1]))
     print(f"{'':36} total   hue common single |" + "".join(f"{a:>4}-{b:<2}" for a, b in zip(BANDS, BANDS[1:])))
     for name, rms, profile in cases:

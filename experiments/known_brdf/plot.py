@@ -9,12 +9,11 @@ writes the means by map and says on how many maps the prior lowers them. Cases
 that not every prior has solved are left out. Needs Debian's python3-matplotlib
 (scripts/install_plots.sh); --table alone does not.
 """
-import argparse
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
-from results import numbers, open_pyplot, read_rows
+from results import numbers, open_pyplot, table_and_picture
 
 ERROR = "illumination_relative_log_rmse_aligned"
 CONSTANT = "constant_map_relative_log_rmse_aligned"
@@ -113,23 +112,8 @@ def draw(rows, out):
     pyplot.close(figure)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("results", help="results.csv of known-brdf")
-    parser.add_argument("--out", help="the picture")
-    parser.add_argument("--table", help="Markdown of means by map and prior")
-    options = parser.parse_args()
-    try:
-        rows = read_rows(options.results,
-                         ("material", "map", "geometry", "prior", CONSTANT) +
-                         tuple(column for column, _ in METRICS))
-        if options.table:
-            Path(options.table).write_text(table(rows))
-        if options.out or not options.table:
-            draw(rows, options.out or "known_brdf.png")
-    except (OSError, ValueError) as error:
-        sys.exit(f"error: {error}")
-
-
 if __name__ == "__main__":
-    main()
+    table_and_picture(__doc__, "known-brdf",
+                      ("material", "map", "geometry", "prior", CONSTANT) +
+                      tuple(c for c, _ in METRICS),
+                      table, draw)

@@ -7,12 +7,12 @@ Draws every material's error, a mark for each map, by the material's median;
 --table writes median and 90th percentile of each metric by map. Needs Debian's
 python3-matplotlib (scripts/install_plots.sh); --table alone does not.
 """
-import argparse
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
-from results import median, numbers, open_pyplot, percentile, read_rows
+from results import (median, numbers, open_pyplot, percentile,
+                     table_and_picture)
 
 ERROR = "brdf_log_rmse_aligned"
 METRICS = ((ERROR, "BRDF log-RMSE, aligned"),
@@ -84,22 +84,7 @@ def draw(rows, out):
     pyplot.close(figure)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("results", help="results.csv of known-light")
-    parser.add_argument("--out", help="the picture")
-    parser.add_argument("--table", help="Markdown of medians by map")
-    options = parser.parse_args()
-    try:
-        rows = read_rows(options.results, ("material", "map") +
-                         tuple(column for column, _ in METRICS))
-        if options.table:
-            Path(options.table).write_text(table(rows))
-        if options.out or not options.table:
-            draw(rows, options.out or "known_light.png")
-    except (OSError, ValueError) as error:
-        sys.exit(f"error: {error}")
-
-
 if __name__ == "__main__":
-    main()
+    table_and_picture(__doc__, "known-light",
+                      ("material", "map") + tuple(c for c, _ in METRICS),
+                      table, draw)

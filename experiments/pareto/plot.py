@@ -145,7 +145,7 @@ def main():
         if options.front:
             write_front(points, options.front)
     except (OSError, ValueError) as error:
-        sys.exit(f"error: {error}")
+        parser.exit(2, f"error: {error}\n")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 """Tables of results.csv for the plots: rows, numbers, fronts, labels."""
+import argparse
 import csv
 import math
+from pathlib import Path
 
 # What the sweeps write where the solver left an estimate.
 SOLVED = ("ok", "no_improvement")
@@ -100,6 +102,25 @@ def place_labels(axes, points, texts, avoid=(), size=7):
         else:  # no room: on the point's right, over what is there
             axes.annotate(text, point, (6, 0), textcoords="offset points",
                           fontsize=size, va="center", bbox=BACKGROUND)
+
+
+def table_and_picture(doc, sweep, columns, table, draw):
+    """A program of RESULTS.csv of a sweep: --table FILE.md receives
+    table(rows); --out FILE.png, or without both SWEEP.png, draw(rows, file).
+    """
+    parser = argparse.ArgumentParser(description=doc.split("\n")[0])
+    parser.add_argument("results", help=f"results.csv of {sweep}")
+    parser.add_argument("--out", help="the picture")
+    parser.add_argument("--table", help="Markdown, by map")
+    options = parser.parse_args()
+    try:
+        rows = read_rows(options.results, columns)
+        if options.table:
+            Path(options.table).write_text(table(rows))
+        if options.out or not options.table:
+            draw(rows, options.out or f"{sweep.replace('-', '_')}.png")
+    except (OSError, ValueError) as error:
+        parser.exit(2, f"error: {error}\n")
 
 
 def open_pyplot():

@@ -116,7 +116,7 @@ def main():
     try:
         series = read(options.results)
     except (OSError, KeyError, ValueError) as error:
-        sys.exit(f"error: {error}")
+        parser.exit(2, f"error: {error}\n")
     pyplot = open_pyplot()
     from matplotlib.lines import Line2D
     figure, grid = pyplot.subplots(2, 3, figsize=(12.5, 7.6))
