@@ -14,6 +14,9 @@ namespace {
 
 // Of the squared residual of a step's equations, in the prior's metric.
 constexpr double kForcing = 1e-3;
+// So many steps in a row without a gain are the end: far from its fit a network
+// may have one that gains nothing and then halve the cost with the next.
+constexpr int kIdleSteps = 2;
 
 class LogMapFit {
  public:
@@ -111,6 +114,7 @@ double FitLogMap(const std::vector<float>& target,
                  std::vector<float>* parameters) {
   LogMapFit fit(target, options.sigma, model, *parameters);
   double cost = fit.Cost(*parameters), damping = 1.0;
+  int idle = 0;
   for (int k = 0; k < options.max_iterations; ++k) {
     if (options.should_stop && options.should_stop()) break;
     const Eigen::VectorXd step =
@@ -134,7 +138,10 @@ double FitLogMap(const std::vector<float>& target,
     } else {
       damping *= length > 0.02 ? 2 : 16;
     }
-    if (cost < before && before - cost < options.tolerance * before) break;
+    if (cost < before) {
+      idle = before - cost < options.tolerance * before ? idle + 1 : 0;
+      if (idle == kIdleSteps) break;
+    }
     if (damping > 1e6) break;
   }
   return cost;

@@ -11,7 +11,7 @@ struct LogMapFitOptions {
   // Standard deviation of log radiance at the equator's texels that counts as a
   // fit; elsewhere in proportion to the root of the solid angle.
   double sigma = 0.2;
-  int max_iterations = 8;      // of Gauss-Newton
+  int max_iterations = 12;     // of Gauss-Newton
   int max_cg_iterations = 20;  // in each
   double tolerance = 1e-2;     // relative decrease of the cost to stop at
   std::function<bool()> should_stop;  // between iterations; may be empty

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "solvers/marginal/light_lamps.h"
 #include "solvers/marginal/light_spectrum.h"
 
 namespace ibrdf {
@@ -16,15 +17,18 @@ constexpr double kJitter = 1e-10;
 class ProcessIllumination final : public IlluminationModel {
  public:
   ProcessIllumination(int width, int height, const LightProcess& process,
-                      const LightScales& scales)
+                      const LightScales& scales,
+                      const std::vector<Eigen::Vector3d>& lamps)
       : IlluminationModel(width, height),
         spectrum_(ProcessSpectrum(height, width, process).At(scales)),
-        axes_(ColourAxes()) {
+        axes_(ColourAxes()),
+        lamp_texels_(NearLamps(lamps, height, width)) {
     const Eigen::Matrix3d local =
         std::exp(scales.log_amplitude) * process.Local();
     const Eigen::Matrix3d level = width * process.Level();
     for (int kind = 0; kind < 2; ++kind) {
       const Eigen::Vector3d axis = axes_.row(kind);
+      lamp_std_[kind] = std::sqrt(axis.dot(process.Lamp() * axis));
       for (int k = 0; k < spectrum_.num_frequencies(); ++k) {
         RowMatrix factor = axis.dot(local * axis) * spectrum_.block(k);
         if (k == 0) factor.array() += axis.dot(level * axis);
@@ -35,14 +39,16 @@ class ProcessIllumination final : public IlluminationModel {
     }
   }
 
-  int num_parameters() const override { return num_outputs(); }
+  int num_parameters() const override {
+    return num_outputs() + 3 * static_cast<int>(lamp_texels_.size());
+  }
   std::vector<float> ConstantMap(const double* log_radiance) const override {
-    std::vector<float> w(num_outputs(), 0.0f);
+    std::vector<float> w(num_parameters(), 0.0f);
     ShiftChannels(log_radiance, w.data());
     return w;
   }
   std::vector<float> PriorStd() const override {
-    return std::vector<float>(num_outputs(), 1.0f);
+    return std::vector<float>(num_parameters(), 1.0f);
   }
   void Forward(const float* parameters, float* log_radiance) override {
     const int H = height(), W = width();
@@ -56,6 +62,9 @@ class ProcessIllumination final : public IlluminationModel {
       }
     }
     MultiplyTransposed(coefficients, spectrum_.basis(), &axes);
+    ForLampTexels([&](int a, int texel, double std, int parameter) {
+      axes(a * H + texel / W, texel % W) += std * parameters[parameter];
+    });
     for (int c = 0; c < 3; ++c) {
       FloatMap(log_radiance + static_cast<size_t>(c) * H * W, H, W) =
           (axes_(0, c) * axes.middleRows(0, H) +
@@ -82,6 +91,10 @@ class ProcessIllumination final : public IlluminationModel {
                 .cast<double>();
       }
     }
+    ForLampTexels([&](int a, int texel, double std, int parameter) {
+      gradient[parameter] =
+          static_cast<float>(std * axes(a * H + texel / W, texel % W));
+    });
     Multiply(axes, spectrum_.basis(), &coefficients);
     for (int a = 0; a < 3; ++a) {
       for (int j = 0; j < W; ++j) {
@@ -111,7 +124,18 @@ class ProcessIllumination final : public IlluminationModel {
   using FloatMap = Eigen::Map<FloatMatrix>;
   using ConstFloatMap = Eigen::Map<const FloatMatrix>;
 
-  // Parameters: [axis][coefficient][row].
+  // of(axis, texel, standard deviation, parameter) of what the lamps add.
+  template <typename Of>
+  void ForLampTexels(const Of& of) const {
+    int parameter = num_outputs();
+    for (int a = 0; a < 3; ++a) {
+      for (const LampTexel& near : lamp_texels_) {
+        of(a, near.texel, lamp_std_[a == 0 ? 0 : 1] * near.weight, parameter++);
+      }
+    }
+  }
+
+  // Parameters: [axis][coefficient][row], then the lamps' [axis][texel].
   size_t Index(int axis, int j) const {
     return (static_cast<size_t>(axis) * width() + j) * height();
   }
@@ -123,14 +147,17 @@ class ProcessIllumination final : public IlluminationModel {
   const Eigen::Matrix3d axes_;
   // Of grey and of chroma, by frequency; lower triangular.
   std::vector<RowMatrix> factors_[2];
+  const std::vector<LampTexel> lamp_texels_;
+  double lamp_std_[2];
 };
 
 }  // namespace
 
 std::unique_ptr<IlluminationModel> MakeProcessIllumination(
     int width, int height, const LightProcess& process,
-    const LightScales& scales) {
-  return std::make_unique<ProcessIllumination>(width, height, process, scales);
+    const LightScales& scales, const std::vector<Eigen::Vector3d>& lamps) {
+  return std::make_unique<ProcessIllumination>(width, height, process, scales,
+                                               lamps);
 }
 
 }  // namespace ibrdf

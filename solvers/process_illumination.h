@@ -1,6 +1,8 @@
 // The unknown map as a draw of the light's Gaussian process.
 #pragma once
+#include <Eigen/Core>
 #include <memory>
+#include <vector>
 
 #include "solvers/illumination_model.h"
 #include "solvers/marginal/light_process.h"
@@ -10,7 +12,8 @@ namespace ibrdf {
 // log L = level + S w with S S^T the process's covariance between the texels'
 // centres: under a standard normal prior of w [3 H W] the map has the
 // process's, and a least-squares step from one has no steep directions but the
-// data's.
+// data's. Texels at the lamps (unit directions) vary besides, each by itself:
+// of the N texels of NearLamps another w [3 N].
 //
 // The covariance is the same at every longitude, so that a Fourier transform
 // along the rows leaves a Cholesky factor [H][H] for each frequency. Costs
@@ -18,6 +21,6 @@ namespace ibrdf {
 // width even.
 std::unique_ptr<IlluminationModel> MakeProcessIllumination(
     int width, int height, const LightProcess& process,
-    const LightScales& scales);
+    const LightScales& scales, const std::vector<Eigen::Vector3d>& lamps = {});
 
 }  // namespace ibrdf

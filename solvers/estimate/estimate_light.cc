@@ -80,7 +80,7 @@ Estimator::LightPriors Estimator::PriorsAt(const Eigen::Array3d& level) const {
   if (has_process_prior_) {
     priors.on_map.push_back(std::make_unique<ProcessPrior>(
         light_->height(), light_->width(), LightProcess(), light_scales_,
-        level.mean()));
+        level.mean(), lamps_));
   }
   return priors;
 }
@@ -139,9 +139,9 @@ Status Estimator::EstimateLight(JointState* state) {
 
 Status Estimator::EstimateDraw(int width, int height, JointMethod method,
                                double share, JointState* state) {
-  SetLight(
-      MakeProcessIllumination(width, height, LightProcess(), light_scales_),
-      false);
+  SetLight(MakeProcessIllumination(width, height, LightProcess(), light_scales_,
+                                   lamps_),
+           false);
   MatchLight(state);
   StartFirstLight();
   Report("constant map", cells_.get(), *state);

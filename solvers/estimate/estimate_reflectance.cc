@@ -99,6 +99,7 @@ Status Estimator::SearchMarginal(JointState* state) {
   const double level = gauge.Fix(state->lobes.data());
   start_name_ = found->start;
   light_scales_ = found->scales;
+  lamps_ = found->lamps;
   const auto& materials = materials_.materials;
   const auto start =
       std::find_if(materials.begin(), materials.end(),

@@ -196,6 +196,7 @@ class Estimator {
   // Centred at the image's level, whatever its unit; those of first_.
   LightPriors light_priors_, first_priors_;
   LightScales light_scales_ = LightScales::Average();
+  std::vector<Eigen::Vector3d> lamps_;  // that the search found
   // A known map, less the texels that are sampled by themselves, and those.
   std::vector<float> known_map_;
   std::vector<BrightSample> bright_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ibrdf/light/environment_map.h"
+#include "solvers/marginal/light_lamps.h"
 
 namespace ibrdf {
 namespace {
@@ -20,8 +21,11 @@ int BlockSide(int height, int width) {
   return block;
 }
 
-RowMatrix Precision(const RowMatrix& correlation, double local, double level) {
+// besides: variance of each block by itself.
+RowMatrix Precision(const RowMatrix& correlation, double local, double level,
+                    const Eigen::VectorXd& besides) {
   RowMatrix precision = (local * correlation).array() + level;
+  precision.diagonal() += besides;
   CHECK(Factorise(&precision));
   InvertFactored(&precision);
   return precision;
@@ -30,7 +34,8 @@ RowMatrix Precision(const RowMatrix& correlation, double local, double level) {
 }  // namespace
 
 ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
-                           const LightScales& scales, double level)
+                           const LightScales& scales, double level,
+                           const std::vector<Eigen::Vector3d>& lamps)
     : height_(height),
       width_(width),
       block_(BlockSide(height, width)),
@@ -45,11 +50,20 @@ ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
   const RowMatrix correlation =
       LightCorrelation(height / block_, width / block_, process, scales);
   const double amplitude = std::exp(scales.log_amplitude);
+  Eigen::VectorXd lamp_share = Eigen::VectorXd::Zero(correlation.rows());
+  for (const LampTexel& near : NearLamps(lamps, height, width)) {
+    const int row = near.texel / width, column = near.texel % width;
+    const double share = row_weight_[row] * near.weight;
+    lamp_share[row / block_ * (width / block_) + column / block_] +=
+        share * share;
+  }
   // Along grey the channels add up.
   grey_ = Precision(correlation, 3 * amplitude * process.luminance_variance,
-                    3 * process.level_variance);
+                    3 * process.level_variance,
+                    3 * process.lamp_variance * lamp_share);
   chroma_ = Precision(correlation, amplitude * process.chroma_variance,
-                      process.level_chroma_variance);
+                      process.level_chroma_variance,
+                      process.lamp_chroma_variance * lamp_share);
 }
 
 Eigen::MatrixXd ProcessPrior::Means(const float* log_map) const {

@@ -1,5 +1,6 @@
 // The Gaussian process of natural light as a prior on a map of any size.
 #pragma once
+#include <Eigen/Core>
 #include <vector>
 
 #include "solvers/joint/light_prior.h"
@@ -10,11 +11,14 @@ namespace ibrdf {
 
 // 1/2 (D l - m)^T K^-1 (D l - m): D means of log radiance over blocks that
 // leave some 32 columns, K the covariance of LightProcess between the blocks'
-// centres, m one level for all channels. Finer detail is left to others.
+// centres, m one level for all channels. Finer detail is left to others. Blocks
+// at the lamps (unit directions) vary besides by what their texels of NearLamps
+// do, each by itself.
 class ProcessPrior final : public LightPrior {
  public:
   ProcessPrior(int height, int width, const LightProcess& process,
-               const LightScales& scales, double level);
+               const LightScales& scales, double level,
+               const std::vector<Eigen::Vector3d>& lamps = {});
 
   double Evaluate(const float* log_map, float* gradient) override;
   void AddProduct(const float* v, float* out) const override;

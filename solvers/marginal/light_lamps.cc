@@ -20,6 +20,10 @@ constexpr double kRim = 14.0;
 constexpr double kContrast = 1.1;
 // Rows of the bins of directions, of 5 degrees: far below the reach.
 constexpr int kBinRows = 36;
+// Of NearLamps: how far a lamp's direction may be off, one deviation, and the
+// least weight that counts.
+constexpr double kSpread = 4.0;
+constexpr double kLeastWeight = 0.05;
 
 }  // namespace
 
@@ -84,6 +88,23 @@ Eigen::Vector3d MovedLamp(const Eigen::Vector3d& lamp, const double* offsets) {
   const Eigen::Vector3d axis = lamp.unitOrthogonal();
   return (lamp + offsets[0] * axis + offsets[1] * lamp.cross(axis))
       .normalized();
+}
+
+std::vector<LampTexel> NearLamps(const std::vector<Eigen::Vector3d>& lamps,
+                                 int height, int width) {
+  std::vector<LampTexel> near;
+  for (int t = 0; t < (lamps.empty() ? 0 : height * width); ++t) {
+    const Eigen::Vector3d direction =
+        MapDirection(t / width + 0.5, t % width + 0.5, height, width);
+    double weight = 0.0;
+    for (const Eigen::Vector3d& lamp : lamps) {
+      const double angle = std::acos(std::min(direction.dot(lamp), 1.0));
+      const double spreads = angle / (kDegree * kSpread);
+      weight = std::max(weight, std::exp(-0.5 * spreads * spreads));
+    }
+    if (weight >= kLeastWeight) near.push_back({t, weight});
+  }
+  return near;
 }
 
 }  // namespace ibrdf

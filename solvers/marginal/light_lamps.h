@@ -21,4 +21,15 @@ std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
 // A lamp at offsets [2], radians along two axes of its tangent plane.
 Eigen::Vector3d MovedLamp(const Eigen::Vector3d& lamp, const double* offsets);
 
+// A texel of a map [H, W] in which a lamp may be.
+struct LampTexel {
+  int texel = 0;        // row * W + column
+  double weight = 0.0;  // in (0, 1]: of LightProcess::Lamp's deviations
+};
+
+// Those around lamps whose directions are known to some degrees, in order;
+// where lamps meet, the larger weight.
+std::vector<LampTexel> NearLamps(const std::vector<Eigen::Vector3d>& lamps,
+                                 int height, int width);
+
 }  // namespace ibrdf

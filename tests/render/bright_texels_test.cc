@@ -135,17 +135,8 @@ TEST(BrightTexels, CoarseRingsShowASunToo) {
   const int height = 128, width = 256;
   Image map = SmoothMap(height, width);
   for (int c = 0; c < 3; ++c) map.At(30, 30)[c] = 1e4f;
-  const Eigen::Vector3d half =
-      (MapDirection(30.5, 30.5, height, width) + Eigen::Vector3d::UnitZ())
-          .normalized();
-  const Eigen::Vector3d aside = half.unitOrthogonal();
-  std::vector<ShadingPoint> points;
-  for (const double degrees : {0.0, 2.0, 5.0, 8.0, 11.0, 14.0, 20.0, 40.0}) {
-    const double theta = degrees * kPi / 180;
-    points.push_back(PointAt(0.0, 0.0));
-    points.back().normal =
-        (std::cos(theta) * half + std::sin(theta) * aside).cast<float>();
-  }
+  const std::vector<ShadingPoint> points = PointsAroundTheHighlight(
+      MapDirection(30.5, 30.5, height, width), {0, 2, 5, 8, 11, 14, 20, 40});
   for (const BrdfFunction& brdf :
        {Lambertian(0.7), Glossy(0.1, 0.5, 10), Glossy(0.02, 0.5, 3)}) {
     std::vector<double> E(3 * points.size());

@@ -25,20 +25,10 @@ Image SunnyMap(int row = kSunRow, int column = kSunColumn) {
 }
 
 // From the mirrored view of the sun to where no peak of a lobe is.
-std::vector<ShadingPoint> PointsAroundTheHighlight() {
-  const Eigen::Vector3d half =
-      (MapDirection(kSunRow + 0.5, kSunColumn + 0.5, kHeight, kWidth) +
-       Eigen::Vector3d::UnitZ())
-          .normalized();
-  const Eigen::Vector3d aside = half.unitOrthogonal();
-  std::vector<ShadingPoint> points;
-  for (const double degrees : {0.0, 1.0, 2.0, 5.0, 8.0, 11.0, 20.0, 40.0}) {
-    const double theta = degrees * kPi / 180;
-    points.push_back(PointAt(0.0, 0.0));
-    points.back().normal =
-        (std::cos(theta) * half + std::sin(theta) * aside).cast<float>();
-  }
-  return points;
+std::vector<ShadingPoint> SunnyPoints() {
+  return PointsAroundTheHighlight(
+      MapDirection(kSunRow + 0.5, kSunColumn + 0.5, kHeight, kWidth),
+      {0, 1, 2, 5, 8, 11, 20, 40});
 }
 
 TransportOptions WithBright(const BrightTexels& split,
@@ -58,7 +48,7 @@ TEST(BrightTransport, ShowsASunThatRingsMiss) {
   const Image map = SunnyMap();
   const BrightTexels split = SplitBrightTexels(map);
   ASSERT_EQ(1u, split.texels.size());
-  const std::vector<ShadingPoint> points = PointsAroundTheHighlight();
+  const std::vector<ShadingPoint> points = SunnyPoints();
   const Transport by_rings(points, kHeight, kWidth, {});
   const Transport by_samples(points, kHeight, kWidth, WithBright(split));
   for (const BrdfFunction& brdf :
@@ -88,7 +78,7 @@ TEST(BrightTransport, ShowsASunThatRingsMiss) {
 TEST(BrightTransport, ProductsAgree) {
   const Image map = SunnyMap();
   const BrightTexels split = SplitBrightTexels(map);
-  const std::vector<ShadingPoint> points = PointsAroundTheHighlight();
+  const std::vector<ShadingPoint> points = SunnyPoints();
   const Transport transport(points, kHeight, kWidth, WithBright(split));
   const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 4), {});
   const std::vector<double> E = Render(transport, grid, split.rest);

@@ -77,6 +77,22 @@ inline ShadingPoint PointAt(double theta, double azimuth) {
   return p;
 }
 
+// Seen from +z, normals at these angles (degrees) from where a surface mirrors
+// `light` (unit): the peak of a lobe and beside it.
+inline std::vector<ShadingPoint> PointsAroundTheHighlight(
+    const Eigen::Vector3d& light, const std::vector<double>& degrees) {
+  const Eigen::Vector3d half = (light + Eigen::Vector3d::UnitZ()).normalized();
+  const Eigen::Vector3d aside = half.unitOrthogonal();
+  std::vector<ShadingPoint> points;
+  for (const double angle : degrees) {
+    const double theta = angle * kPi / 180;
+    points.push_back(PointAt(0.0, 0.0));
+    points.back().normal =
+        (std::cos(theta) * half + std::sin(theta) * aside).cast<float>();
+  }
+  return points;
+}
+
 // Poles, the view's own direction, grazing views, several wo.
 inline std::vector<ShadingPoint> PolarAndGrazingPoints() {
   std::vector<ShadingPoint> points;

@@ -134,7 +134,8 @@ TEST_F(TransportTest, GridGradientIsTheTransposeOfRender) {
   for (float& v : tangent.values) v = static_cast<float>(gauss_(rng_));
   const std::vector<double> E = Render(tangent, map);
   std::vector<float> gradient(tangent.values.size());
-  transport_.GridGradient(glossy_, map.rgb.data(), adjoint.data(), gradient.data());
+  transport_.GridGradient(glossy_, map.rgb.data(), adjoint.data(),
+                          gradient.data());
   const std::vector<double> g(gradient.begin(), gradient.end());
   const std::vector<double> f(tangent.values.begin(), tangent.values.end());
   EXPECT_NEAR(Dot(adjoint, E), Dot(g, f),

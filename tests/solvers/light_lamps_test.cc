@@ -109,6 +109,35 @@ TEST(MovedLamp, OffsetsAreTangentsOfAngles) {
   }
 }
 
+TEST(NearLamps, TexelsWithinSomeDegreesTheNearestMost) {
+  const int H = 64, W = 128;
+  // At the pole, across the map's edge, and two that meet.
+  const std::vector<Eigen::Vector3d> lamps = {
+      Unit(0.01, 1.0, 0.0), MapDirection(30.5, 0.1, H, W),
+      MapDirection(40.5, 60.5, H, W), MapDirection(40.5, 62.5, H, W)};
+  const std::vector<LampTexel> near = NearLamps(lamps, H, W);
+  std::vector<double> weights(H * W, 0.0);
+  for (size_t i = 0; i < near.size(); ++i) {
+    if (i > 0) {
+      EXPECT_LT(near[i - 1].texel, near[i].texel);
+    }
+    weights[near[i].texel] = near[i].weight;
+  }
+  for (int r = 0; r < H; ++r) {
+    for (int x = 0; x < W; ++x) {
+      double nearest = 180.0;
+      for (const Eigen::Vector3d& lamp : lamps) {
+        nearest = std::min(
+            nearest,
+            DegreesBetween(lamp, MapDirection(r + 0.5, x + 0.5, H, W)));
+      }
+      const double weight = std::exp(-0.5 * nearest * nearest / 16.0);
+      EXPECT_NEAR(weight < 0.05 ? 0.0 : weight, weights[r * W + x], 1e-9);
+    }
+  }
+  EXPECT_TRUE(NearLamps({}, H, W).empty());
+}
+
 class LampResponsesTest : public ::testing::Test {
  protected:
   LampResponsesTest() {

@@ -8,6 +8,9 @@
 #include <memory>
 #include <random>
 
+#include "ibrdf/light/environment_map.h"
+#include "solvers/marginal/light_lamps.h"
+
 namespace ibrdf {
 namespace {
 
@@ -31,7 +34,8 @@ double Dot(const std::vector<float>& a, const std::vector<float>& b) {
   return sum;
 }
 
-class ProcessIlluminationTest : public ::testing::Test {
+// Without lamps and with them.
+class ProcessIlluminationTest : public ::testing::TestWithParam<bool> {
  protected:
   std::vector<float> Forward(const std::vector<float>& parameters) {
     std::vector<float> map(model_->num_outputs());
@@ -40,9 +44,10 @@ class ProcessIlluminationTest : public ::testing::Test {
   }
   // S, by unit vectors.
   Eigen::MatrixXd Jacobian() {
-    Eigen::MatrixXd S(kSize, kSize);
-    std::vector<float> unit(kSize, 0.0f), column(kSize);
-    for (int i = 0; i < kSize; ++i) {
+    const int n = model_->num_parameters();
+    Eigen::MatrixXd S(kSize, n);
+    std::vector<float> unit(n, 0.0f), column(kSize);
+    for (int i = 0; i < n; ++i) {
       unit[i] = 1.0f;
       model_->Jvp(unit.data(), column.data());
       unit[i] = 0.0f;
@@ -54,30 +59,44 @@ class ProcessIlluminationTest : public ::testing::Test {
   // What rounding of parameters and outputs to float leaves of each texel.
   Eigen::VectorXd Rounding(const std::vector<float>& parameters,
                            const std::vector<float>& map) {
-    const Eigen::Map<const Eigen::VectorXf> w(parameters.data(), kSize);
+    const Eigen::Map<const Eigen::VectorXf> w(
+        parameters.data(), static_cast<Eigen::Index>(parameters.size()));
     const Eigen::Map<const Eigen::VectorXf> l(map.data(), kSize);
     return kFloat * (Jacobian().cwiseAbs() * w.cwiseAbs().cast<double>() +
                      l.cwiseAbs().cast<double>());
   }
 
   const LightProcess process_;
+  // Beside the centres of two texels.
+  const std::vector<Eigen::Vector3d> lamps_ =
+      GetParam() ? std::vector<Eigen::Vector3d>{MapDirection(1.55, 2.52,
+                                                             kHeight, kWidth),
+                                                MapDirection(2.6, 6.45, kHeight,
+                                                             kWidth)}
+                 : std::vector<Eigen::Vector3d>();
   const std::unique_ptr<IlluminationModel> model_ =
-      MakeProcessIllumination(kWidth, kHeight, process_, kScales);
+      MakeProcessIllumination(kWidth, kHeight, process_, kScales, lamps_);
+  const int num_parameters_ = model_->num_parameters();
 };
 
-TEST_F(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
-  ASSERT_EQ(kSize, model_->num_parameters());
+TEST_P(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
   ASSERT_EQ(kSize, model_->num_outputs());
-  EXPECT_EQ(std::vector<float>(kSize, 1.0f), model_->PriorStd());
+  EXPECT_EQ(std::vector<float>(num_parameters_, 1.0f), model_->PriorStd());
+  const std::vector<LampTexel> near = NearLamps(lamps_, kHeight, kWidth);
+  ASSERT_EQ(lamps_.size(), near.size());
+  ASSERT_EQ(kSize + 3 * static_cast<int>(near.size()), num_parameters_);
+  Eigen::VectorXd of_lamps = Eigen::VectorXd::Zero(kTexels);
+  for (const LampTexel& t : near) of_lamps[t.texel] = t.weight * t.weight;
   const Eigen::MatrixXd S = Jacobian();
   const Eigen::MatrixXd covariance = S * S.transpose();
   const RowMatrix correlation =
       LightCorrelation(kHeight, kWidth, process_, kScales);
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
-      const Eigen::MatrixXd expected =
+      Eigen::MatrixXd expected =
           (kAmplitude * process_.Local()(c, d) * correlation).array() +
           process_.Level()(c, d);
+      expected.diagonal() += process_.Lamp()(c, d) * of_lamps;
       const Eigen::MatrixXd block =
           covariance.block(c * kTexels, d * kTexels, kTexels, kTexels);
       // |S_i| |S_j| times one rounding of each entry.
@@ -88,11 +107,11 @@ TEST_F(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
   }
 }
 
-TEST_F(ProcessIlluminationTest, TangentsAndAdjointsAreTransposes) {
+TEST_P(ProcessIlluminationTest, TangentsAndAdjointsAreTransposes) {
   for (const unsigned seed : {1u, 2u, 3u}) {
-    const std::vector<float> v = Random(kSize, seed);
+    const std::vector<float> v = Random(num_parameters_, seed);
     const std::vector<float> a = Random(kSize, seed + 10);
-    std::vector<float> Jv(kSize), Ja(kSize);
+    std::vector<float> Jv(kSize), Ja(num_parameters_);
     model_->Jvp(v.data(), Jv.data());
     model_->Vjp(a.data(), Ja.data());
     EXPECT_NEAR(Dot(a, Jv), Dot(Ja, v),
@@ -101,12 +120,13 @@ TEST_F(ProcessIlluminationTest, TangentsAndAdjointsAreTransposes) {
   }
 }
 
-TEST_F(ProcessIlluminationTest, ForwardIsLinearAndItsOwnTangent) {
+TEST_P(ProcessIlluminationTest, ForwardIsLinearAndItsOwnTangent) {
   EXPECT_EQ(std::vector<float>(kSize, 0.0f),
-            Forward(std::vector<float>(kSize, 0.0f)));
-  const std::vector<float> p = Random(kSize, 4), q = Random(kSize, 5);
-  std::vector<float> sum(kSize), tangent(kSize), map(kSize);
-  for (int i = 0; i < kSize; ++i) sum[i] = p[i] - 2 * q[i];
+            Forward(std::vector<float>(num_parameters_, 0.0f)));
+  const std::vector<float> p = Random(num_parameters_, 4),
+                           q = Random(num_parameters_, 5);
+  std::vector<float> sum(num_parameters_), tangent(kSize), map(kSize);
+  for (int i = 0; i < num_parameters_; ++i) sum[i] = p[i] - 2 * q[i];
   const std::vector<float> at_p = Forward(p), at_q = Forward(q);
   const std::vector<float> at_sum = Forward(sum);
   const Eigen::VectorXd rounding =
@@ -123,7 +143,7 @@ TEST_F(ProcessIlluminationTest, ForwardIsLinearAndItsOwnTangent) {
   }
 }
 
-TEST_F(ProcessIlluminationTest, ConstantMapIsConstantAtAnyLevel) {
+TEST_P(ProcessIlluminationTest, ConstantMapIsConstantAtAnyLevel) {
   for (const double level : {-30.0, -1.0, 0.0, 0.5, 30.0}) {
     for (const double cast : {0.0, 2.0}) {
       const double rgb[3] = {level + cast, level, level - cast};
@@ -137,8 +157,8 @@ TEST_F(ProcessIlluminationTest, ConstantMapIsConstantAtAnyLevel) {
   }
 }
 
-TEST_F(ProcessIlluminationTest, ShiftMovesEachChannelByItsOwnAmount) {
-  const std::vector<float> before = Random(kSize, 6);
+TEST_P(ProcessIlluminationTest, ShiftMovesEachChannelByItsOwnAmount) {
+  const std::vector<float> before = Random(num_parameters_, 6);
   std::vector<float> after = before;
   const double shift[3] = {0.5, -2.0, 7.25};
   model_->ShiftChannels(shift, after.data());
@@ -148,6 +168,8 @@ TEST_F(ProcessIlluminationTest, ShiftMovesEachChannelByItsOwnAmount) {
     EXPECT_NEAR(shift[i / kTexels], double{to[i]} - from[i], rounding[i]);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Lamps, ProcessIlluminationTest, ::testing::Bool());
 
 // At the size of an estimate, and far above it.
 TEST(ProcessIllumination, LargeMapsAreConstantToo) {

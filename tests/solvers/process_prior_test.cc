@@ -2,8 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
+
+#include "ibrdf/light/environment_map.h"
+#include "solvers/marginal/light_lamps.h"
+#include "solvers/process_illumination.h"
 
 namespace ibrdf {
 namespace {
@@ -20,7 +26,8 @@ TEST(ProcessPrior, GradientAndProductMatchDifferences) {
   // Blocks of one texel and of four.
   for (const int width : {16, 64}) {
     const int height = width / 2;
-    ProcessPrior prior(height, width, LightProcess(), {0.4}, 0.3);
+    ProcessPrior prior(height, width, LightProcess(), {0.4}, 0.3,
+                       {MapDirection(0.4 * height, 5.3, height, width)});
     const std::vector<float> map = RandomLogMap(height, width, 1);
     const std::vector<float> v = RandomLogMap(height, width, 2);
     std::vector<float> gradient(map.size(), 0.0f), product(map.size(), 0.0f);
@@ -43,6 +50,45 @@ TEST(ProcessPrior, GradientAndProductMatchDifferences) {
     EXPECT_NEAR(4 * (along(0.5f) - 2 * cost + along(-0.5f)), curvature,
                 1e-3 * (curvature + cost));
   }
+}
+
+// Of blocks of one texel the covariance is that of the maps that
+// ProcessIllumination draws: both by unit vectors.
+TEST(ProcessPrior, PrecisionIsOfTheMapsThatAreDrawn) {
+  const int height = 8, width = 16, n = 3 * height * width;
+  const LightScales scales = {0.4, {-1.0, 0.5, 0.2, -2.0}};
+  const std::vector<Eigen::Vector3d> lamps = {
+      MapDirection(3.4, 5.3, height, width)};
+  ASSERT_FALSE(NearLamps(lamps, height, width).empty());
+  const ProcessPrior prior(height, width, LightProcess(), scales, 0.0, lamps);
+  const std::unique_ptr<IlluminationModel> drawn =
+      MakeProcessIllumination(width, height, LightProcess(), scales, lamps);
+  std::vector<float> unit(drawn->num_parameters(), 0.0f), column(n);
+  Eigen::MatrixXd S(n, unit.size()), precision(n, n);
+  for (size_t i = 0; i < unit.size(); ++i) {
+    unit[i] = 1.0f;
+    drawn->Jvp(unit.data(), column.data());
+    unit[i] = 0.0f;
+    S.col(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Eigen::VectorXf>(column.data(), n).cast<double>();
+  }
+  unit.assign(n, 0.0f);
+  for (int i = 0; i < n; ++i) {
+    unit[i] = 1.0f;
+    std::fill(column.begin(), column.end(), 0.0f);
+    prior.AddProduct(unit.data(), column.data());
+    unit[i] = 0.0f;
+    precision.col(i) =
+        Eigen::Map<const Eigen::VectorXf>(column.data(), n).cast<double>();
+  }
+  // The process holds directions of small variance, in which the precision in
+  // float has an error of its largest entries.
+  const Eigen::MatrixXd identity = S.transpose() * precision * S;
+  const Eigen::MatrixXd projector = identity * identity;
+  const double rounding =
+      6e-8 * S.squaredNorm() * precision.cwiseAbs().maxCoeff();
+  EXPECT_LT((projector - identity).cwiseAbs().maxCoeff(), rounding);
+  EXPECT_NEAR(n, identity.trace(), n * rounding);
 }
 
 TEST(ProcessPrior, ConstantMapAtTheLevelCostsNothing) {

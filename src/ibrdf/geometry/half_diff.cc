@@ -1,14 +1,10 @@
 #include "ibrdf/geometry/half_diff.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 namespace ibrdf {
-namespace {
-constexpr double kPi = 3.14159265358979323846;
-}  // namespace
 
 HalfDiff ToHalfDiff(const Eigen::Vector3d& wi, const Eigen::Vector3d& wo) {
   Eigen::Vector3d h = wi + wo;
@@ -30,10 +26,7 @@ HalfDiff ToHalfDiff(const Eigen::Vector3d& wi, const Eigen::Vector3d& wo) {
   const double x = cos_p * wi.x() + sin_p * wi.y();
   const double y = -sin_p * wi.x() + cos_p * wi.y();
   const double dx = h.z() * x - sin_h * wi.z();
-  double phi = std::atan2(y, dx);
-  if (phi < 0.0) phi += kPi;
-  if (phi >= kPi) phi -= kPi;
-  a.phi_d = std::min(std::max(phi, 0.0), std::nextafter(kPi, 0.0));
+  a.phi_d = FoldPhi(std::atan2(y, dx));
   return a;
 }
 
