@@ -1,6 +1,6 @@
 // Adam, one block at a time on a fixed schedule (Chen et al. 2020): the
 // reference that the other methods are measured against.
-#include "solvers/trainer/adam.h"
+#include "solvers/adam.h"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/trainer/adam.h"
+#include "solvers/adam.h"
 
 namespace ibrdf {
 

@@ -10,7 +10,7 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/flow/brdf_flow.h"
-#include "solvers/trainer/adam.h"
+#include "solvers/adam.h"
 #include "solvers/trainer/checkpoint.h"
 
 namespace ibrdf {

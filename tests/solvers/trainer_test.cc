@@ -8,7 +8,7 @@
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "io/merl.h"
-#include "solvers/trainer/adam.h"
+#include "solvers/adam.h"
 #include "solvers/trainer/checkpoint.h"
 #include "solvers/trainer/flow_trainer.h"
 #include "solvers/trainer/training_data.h"
