@@ -1,15 +1,21 @@
 #!/usr/bin/env python3
-"""Two artificial light maps: lamps with edges in dim rooms, softa.hdr and softb.hdr, 512x256.
+"""Light maps of too much and too little contrast, 512x256: no photographs, and none that a test has.
 
-usage: softboxes.py OUT_DIR
+usage: softboxes.py OUT_DIR [--square-roots MAP.hdr ...]
 
-Walls have smooth and blocky variations of log radiance and a floor; lamps are rectangles of 12 to 60 degrees, 100 to
-1000 times brighter. No photograph, and no map of any test: what a search does under hard contrast. needs numpy
+softa.hdr and softb.hdr: lamps with edges in dim rooms. Walls have smooth and blocky variations of log radiance and a
+floor; lamps are rectangles of 12 to 60 degrees, 100 to 1000 times brighter. evena.hdr and evenb.hdr: the same with
+windows and lamps a few times brighter than the walls. --square-roots: OUT_DIR/MAP05.hdr, with the root of each texel's
+mean of the channels, and its hue. needs numpy
 """
 import argparse
 import pathlib
+import sys
 
 import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "light_statistics"))
+from light_statistics import read_rgbe
 
 HEIGHT, WIDTH = 256, 512
 
@@ -81,7 +87,9 @@ def write_hdr(path, radiance):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=pathlib.Path)
-    out = parser.parse_args().out
+    parser.add_argument("--square-roots", nargs="+", type=pathlib.Path, default=[])
+    args = parser.parse_args()
+    out = args.out
     out.mkdir(parents=True, exist_ok=True)
     rng = np.random.default_rng(5)
     d = directions()
@@ -94,6 +102,23 @@ def main():
     add_lamp(radiance, d, 100, 40, 12, 60, 25, [0.8, 0.9, 1])
     add_lamp(radiance, d, 200, 15, 30, 40, 5, [1, 1, 1])
     write_hdr(out / "softb.hdr", radiance)
+    rng = np.random.default_rng(11)
+    radiance = room(rng, d, 0.3, 0.7)
+    add_lamp(radiance, d, 20, 15, 50, 40, 0.9, [1, 1, 1.05])
+    add_lamp(radiance, d, 110, 10, 40, 50, 0.6, [1, 0.95, 0.9])
+    add_lamp(radiance, d, -90, 20, 60, 30, 0.8, [1, 1, 1])
+    add_lamp(radiance, d, 180, 70, 50, 50, 0.5, [1, 0.9, 0.8])
+    write_hdr(out / "evena.hdr", radiance)
+    radiance = room(rng, d, 0.4, 0.5) * np.array([1, 0.85, 0.7])
+    add_lamp(radiance, d, -40, 25, 30, 60, 1.5, [1, 1, 1.1])
+    add_lamp(radiance, d, 60, 60, 14, 14, 2.5, [1, 0.9, 0.7])
+    add_lamp(radiance, d, -120, 60, 14, 14, 2.5, [1, 0.9, 0.7])
+    add_lamp(radiance, d, 150, 20, 60, 40, 0.7, [0.9, 1, 1])
+    write_hdr(out / "evenb.hdr", radiance)
+    for path in args.square_roots:
+        radiance = read_rgbe(path)
+        mean = np.maximum(radiance.mean(-1, keepdims=True), 1e-6)
+        write_hdr(out / f"{path.stem}05.hdr", radiance / mean * np.sqrt(mean))
 
 
 if __name__ == "__main__":

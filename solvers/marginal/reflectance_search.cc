@@ -74,9 +74,10 @@ class Level {
   End Refine(const Eigen::VectorXd& parameters, const LightScales& scales,
              int iterations) const {
     End end;
-    end.noise = reflectance_.likelihood().FindNoise(
+    const CellNoise noise = reflectance_.likelihood().FindCellNoise(
         reflectance_.Matrices(parameters.data()), options_.sigma, scales,
         MarginalObjective::kModeTolerance, &end.mode);
+    end.noise = noise.variance;
     const MarginalObjective objective = Objective(end.noise, &end.mode);
     end.y = objective.Whitened(parameters, scales);
     MarginalDescentOptions o;
@@ -84,7 +85,7 @@ class Level {
     o.should_stop = options_.should_stop;
     const MarginalDescent descent = Descend(objective, o, &end.y);
     end.ok = descent.ok;
-    end.cost = descent.cost;
+    end.cost = descent.cost + noise.cost;
     end.value = objective.last_value();
     return end;
   }
