@@ -3,6 +3,7 @@
 tables. Exits with 77 without matplotlib, after the rest passed."""
 import csv
 import importlib.util
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -72,6 +73,14 @@ def brdf_row(material, name, prior, error):
 
 
 class Results(unittest.TestCase):
+    def test_no_table_exits_with_2(self):
+        for name in ("known_light", "known_brdf", "joint_grid", "pareto"):
+            program = HERE.parent / name / "plot.py"
+            done = subprocess.run([sys.executable, program, "no/such.csv"],
+                                  capture_output=True, text=True)
+            self.assertEqual(2, done.returncode, name)
+            self.assertIn("no/such.csv", done.stderr)
+
     def test_front(self):
         points = [(3, 1), (1, 5), (2, 6), (2, 3), (4, 1), (5, 0.5)]
         # (2, 6) and (4, 1) are beaten; by cost.

@@ -52,10 +52,9 @@ ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
   const double amplitude = std::exp(scales.log_amplitude);
   Eigen::VectorXd lamp_share = Eigen::VectorXd::Zero(correlation.rows());
   for (const LampTexel& near : NearLamps(lamps, height, width)) {
-    const int row = near.texel / width, column = near.texel % width;
+    const int row = near.texel / width;
     const double share = row_weight_[row] * near.weight;
-    lamp_share[row / block_ * (width / block_) + column / block_] +=
-        share * share;
+    lamp_share[BlockOf(row, near.texel % width)] += share * share;
   }
   // Along grey the channels add up.
   grey_ = Precision(correlation, 3 * amplitude * process.luminance_variance,
@@ -67,12 +66,11 @@ ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
 }
 
 Eigen::MatrixXd ProcessPrior::Means(const float* log_map) const {
-  const int columns = width_ / block_;
   Eigen::MatrixXd means = Eigen::MatrixXd::Zero(grey_.rows(), 3);
   for (int c = 0; c < 3; ++c) {
     for (int r = 0; r < height_; ++r) {
       for (int x = 0; x < width_; ++x) {
-        means(r / block_ * columns + x / block_, c) +=
+        means(BlockOf(r, x), c) +=
             row_weight_[r] *
             log_map[(static_cast<size_t>(c) * height_ + r) * width_ + x];
       }
@@ -89,15 +87,12 @@ Eigen::MatrixXd ProcessPrior::Weighted(const Eigen::MatrixXd& means) const {
 }
 
 void ProcessPrior::Spread(const Eigen::MatrixXd& by_mean, float* out) const {
-  const int columns = width_ / block_;
   const Eigen::MatrixXd by_channel = by_mean * ColourAxes();
   for (int c = 0; c < 3; ++c) {
     for (int r = 0; r < height_; ++r) {
       for (int x = 0; x < width_; ++x) {
         out[(static_cast<size_t>(c) * height_ + r) * width_ + x] +=
-            static_cast<float>(
-                row_weight_[r] *
-                by_channel(r / block_ * columns + x / block_, c));
+            static_cast<float>(row_weight_[r] * by_channel(BlockOf(r, x), c));
       }
     }
   }

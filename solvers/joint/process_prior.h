@@ -24,6 +24,9 @@ class ProcessPrior final : public LightPrior {
   void AddProduct(const float* v, float* out) const override;
 
  private:
+  int BlockOf(int row, int column) const {
+    return row / block_ * (width_ / block_) + column / block_;
+  }
   // Means over blocks as [blocks][3], in axes of grey and two of chroma.
   Eigen::MatrixXd Means(const float* log_map) const;
   // Precision times those.

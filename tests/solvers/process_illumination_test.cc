@@ -10,6 +10,7 @@
 
 #include "ibrdf/light/environment_map.h"
 #include "solvers/marginal/light_lamps.h"
+#include "tests/solvers/solver_testing.h"
 
 namespace ibrdf {
 namespace {
@@ -42,20 +43,8 @@ class ProcessIlluminationTest : public ::testing::TestWithParam<bool> {
     model_->Forward(parameters.data(), map.data());
     return map;
   }
-  // S, by unit vectors.
-  Eigen::MatrixXd Jacobian() {
-    const int n = model_->num_parameters();
-    Eigen::MatrixXd S(kSize, n);
-    std::vector<float> unit(n, 0.0f), column(kSize);
-    for (int i = 0; i < n; ++i) {
-      unit[i] = 1.0f;
-      model_->Jvp(unit.data(), column.data());
-      unit[i] = 0.0f;
-      S.col(i) = Eigen::Map<const Eigen::VectorXf>(column.data(), kSize)
-                     .cast<double>();
-    }
-    return S;
-  }
+  // S.
+  Eigen::MatrixXd Jacobian() { return testing::JacobianOf(model_.get()); }
   // What rounding of parameters and outputs to float leaves of each texel.
   Eigen::VectorXd Rounding(const std::vector<float>& parameters,
                            const std::vector<float>& map) {

@@ -9,6 +9,7 @@
 #include "ibrdf/brdf/lobe_model.h"
 #include "ibrdf/light/illumination_unet.h"
 #include "ibrdf/render/transport.h"
+#include "solvers/illumination_model.h"
 #include "tests/render/render_testing.h"
 #include "tests/support/tiny_model.h"
 
@@ -58,6 +59,22 @@ inline std::vector<double> RenderTinyLobes(
       .Render(LobeModel(model, 2, options.grid, 1).Grid(TinyLobes().data()),
               map.rgb.data(), E.data());
   return E;
+}
+
+// d log map / d parameters [outputs][parameters] of a linear model, by unit
+// vectors.
+inline Eigen::MatrixXd JacobianOf(IlluminationModel* model) {
+  const int n = model->num_parameters(), m = model->num_outputs();
+  Eigen::MatrixXd jacobian(m, n);
+  std::vector<float> unit(n, 0.0f), column(m);
+  for (int i = 0; i < n; ++i) {
+    unit[i] = 1.0f;
+    model->Jvp(unit.data(), column.data());
+    unit[i] = 0.0f;
+    jacobian.col(i) =
+        Eigen::Map<const Eigen::VectorXf>(column.data(), m).cast<double>();
+  }
+  return jacobian;
 }
 
 // A sphere of some 20 points under a map of 16x8, two lobes of a smooth random
