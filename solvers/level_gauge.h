@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 
-#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/material_prior.h"
 
 namespace ibrdf {
@@ -26,7 +26,7 @@ class LevelGauge {
  private:
   double MeanLog(const double* parameters) const;
 
-  const LobeModel lobes_;
+  const FlowLobes lobes_;
   double mean_ = 0.0;
 };
 

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solvers/embedding_prior.h"
 
@@ -142,6 +143,16 @@ MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
   const std::vector<MaterialPrior::Material> materials =
       FittedMaterials(model, lobes);
   if (materials.size() < 3) return prior;
+  const MaterialPrior own = GaussianPrior(materials, prior.code_size);
+  const Eigen::Index size = own.mean.size();
+  prior.mean.head(size) = own.mean;
+  prior.factor.topLeftCorner(size, size) = own.factor;
+  return prior;
+}
+
+MaterialPrior GaussianPrior(std::vector<MaterialPrior::Material> materials,
+                            int code_size) {
+  CHECK_GE(materials.size(), 3u);
   const Eigen::Index size = materials.front().parameters.size();
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
   for (const MaterialPrior::Material& m : materials) mean += m.parameters;
@@ -157,8 +168,11 @@ MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
   covariance.diagonal() = variance;
   const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
   CHECK(llt.info() == Eigen::Success);
-  prior.mean.head(size) = mean;
-  prior.factor.topLeftCorner(size, size) = llt.matrixL();
+  MaterialPrior prior;
+  prior.mean = mean;
+  prior.factor = llt.matrixL();
+  prior.materials = std::move(materials);
+  prior.code_size = code_size;
   return prior;
 }
 

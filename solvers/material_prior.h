@@ -38,9 +38,13 @@ struct MaterialPrior {
                           Eigen::MatrixXd* information) const;
 };
 
-// Mean and covariance of the materials' lobes (NeuralBrdfModel::lobe_fits): how
-// the codes of two lobes and the colours of both go together. A part of the
-// covariance's off-diagonal is given up, as materials are few. Lobes beyond
+// Mean and covariance of materials, at least three, of parameters of one size.
+// A part of the covariance's off-diagonal is given up, as materials are few.
+MaterialPrior GaussianPrior(std::vector<MaterialPrior::Material> materials,
+                            int code_size);
+
+// GaussianPrior of the materials' lobes (NeuralBrdfModel::lobe_fits): how
+// the codes of two lobes and the colours of both go together. Lobes beyond
 // those of the fits, and all of a model without fits, are independent: codes
 // N(0, code_sigma^2 I), colours as the embedding's.
 MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,

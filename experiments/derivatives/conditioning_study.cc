@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/conditioning.h"
 #include "solvers/costs/log_radiance_cost.h"
 #include "solvers/costs/material_prior_cost.h"
@@ -55,9 +56,9 @@ void StudyMarginalHessian(const NeuralBrdfModel& model,
   resolution.cells = {8, 4, 0.2};
   resolution.map_width = 16;
   resolution.map_height = 8;
-  const MarginalReflectance reflectance(model, prior.num_lobes(), points,
-                                        radiance, LightProcess(), resolution,
-                                        0);
+  const MarginalReflectance reflectance(
+      FlowLobes::Factory(model, prior.num_lobes(), 1), points, radiance,
+      LightProcess(), resolution, 0);
   const Eigen::VectorXd noise =
       Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
   LightMode mode;
@@ -124,7 +125,7 @@ std::vector<ConditioningRow> StudyConditioning(const NeuralBrdfModel& model,
                  {"2", &two, both},
                  {"2 that coincide", &two, same}};
     for (const auto& c : cases) {
-      const LobeModel lobes(model, c.prior->num_lobes(), options.grid, 0);
+      const FlowLobes lobes(model, c.prior->num_lobes(), options.grid, 0);
       std::vector<double> E;
       CHECK(RenderLobeModel(transport, lobes, c.x.data(), map.rgb.data(), &E,
                             nullptr));

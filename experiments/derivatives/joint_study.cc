@@ -9,6 +9,7 @@
 #include "experiments/derivatives/reference_flows.h"
 #include "experiments/derivatives/reference_scene.h"
 #include "experiments/derivatives/studies.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/illumination_unet_reference.h"
 #include "solvers/eigen_vectors.h"
 #include "solvers/joint/joint_objective.h"
@@ -203,7 +204,7 @@ class JointStudy {
   std::string name_;
   const NeuralBrdfModel& model_;
   ReferenceScene scene_;
-  LobeModel lobes_;
+  FlowLobes lobes_;
   IlluminationUnet unet_;
   std::unique_ptr<IlluminationModel> light_;
   UnetReference<Real> reference_;

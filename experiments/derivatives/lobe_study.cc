@@ -8,6 +8,7 @@
 #include "experiments/derivatives/reference_flows.h"
 #include "experiments/derivatives/reference_scene.h"
 #include "experiments/derivatives/studies.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/costs/log_radiance_cost.h"
 #include "tests/render/render_testing.h"
 #include "tests/support/tiny_model.h"
@@ -157,7 +158,7 @@ class LobeStudy {
   std::string name_;
   const NeuralBrdfModel& model_;
   ReferenceScene scene_;
-  LobeModel lobes_;
+  FlowLobes lobes_;
   ErrorTable* table_;
   std::vector<double> codes_;  // of fields_
   std::vector<Real> fields_;

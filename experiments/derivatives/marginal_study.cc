@@ -15,6 +15,7 @@
 #include "experiments/derivatives/reference_flows.h"
 #include "experiments/derivatives/reference_transport.h"
 #include "experiments/derivatives/studies.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/marginal/light_process.h"
 #include "solvers/marginal/marginal_objective.h"
 #include "tests/render/render_testing.h"
@@ -139,12 +140,13 @@ class MarginalStudy {
     TransportOptions options;
     options.grid = resolution_.grid;
     const Transport transport(points_, 8, 16, options);
-    const LobeModel lobes(model_, 2, resolution_.grid, 0);
+    const FlowLobes lobes(model_, 2, resolution_.grid, 0);
     std::vector<double> radiance(3 * points_.size());
     transport.Render(lobes.Grid(truth.data()),
                      testing::SmoothMap(8, 16).rgb.data(), radiance.data());
-    const MarginalReflectance reflectance(model_, 2, points_, radiance,
-                                          LightProcess(), resolution_, 0);
+    const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
+                                          points_, radiance, LightProcess(),
+                                          resolution_, 0);
     const Eigen::Index cells = reflectance.cells().num_cells();
     const Eigen::VectorXd noise = Eigen::VectorXd::Constant(3 * cells, 0.0025);
 

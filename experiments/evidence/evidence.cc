@@ -9,12 +9,17 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ibrdf/brdf/cook_torrance_lobes.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "io/problem_file.h"
+#include "solvers/baselines/cook_torrance_prior.h"
 #include "solvers/eigen_vectors.h"
 #include "solvers/estimate/image_levels.h"
 #include "solvers/level_gauge.h"
@@ -39,6 +44,7 @@ struct StudyOptions {
   bool texel_noise = false;
   bool found_alone = false;
   bool further = false;
+  bool cook_torrance = false;
   int most_lamps = ReflectanceSearchOptions().most_lamps;
   int num_threads = 0;
 };
@@ -47,15 +53,17 @@ struct StudyOptions {
 class EvidenceStudy {
  public:
   EvidenceStudy(std::string name, const InverseProblem& problem,
-                const Truth& truth, const StudyOptions& study)
+                const Truth& truth, MaterialPrior prior,
+                const StudyOptions& study)
       : name_(std::move(name)),
         problem_(problem),
         truth_(truth),
-        prior_(JointMaterialPrior(problem.model, problem.lobes,
-                                  problem.prior_sigma)),
-        lobes_(problem.model, problem.lobes, problem.transport.grid,
-               problem.num_threads),
-        gauge_(problem.model, prior_, problem.num_threads),
+        prior_(std::move(prior)),
+        factory_(study.cook_torrance
+                     ? CookTorranceLobes::Factory(problem.num_threads)
+                     : FlowLobes::Factory(problem.model, problem.lobes,
+                                          problem.num_threads)),
+        lobes_(factory_(problem.transport.grid)),
         study_(study),
         radiance_(RadianceOf(problem.image, problem.points)) {
     options_.num_threads = problem.num_threads;
@@ -74,13 +82,13 @@ class EvidenceStudy {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-        problem_.model, prior_, problem_.points, radiance_, options_);
+        factory_, prior_, problem_.points, radiance_, options_);
     if (!found.ok()) return found.status();
     const double seconds =
         std::chrono::duration<double>(Clock::now() - start).count();
-    const MarginalReflectance fine(
-        problem_.model, problem_.lobes, problem_.points, radiance_,
-        options_.process, options_.fine, problem_.num_threads, found->lamps);
+    const MarginalReflectance fine(factory_, problem_.points, radiance_,
+                                   options_.process, options_.fine,
+                                   problem_.num_threads, found->lamps);
     std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
                 found->start.c_str());
     const Point end = {ToEigen(found->parameters), found->scales};
@@ -100,9 +108,10 @@ class EvidenceStudy {
     if (!fit.ok()) return fit.status();
     // The prior tells lobes apart: the order that it prefers.
     std::vector<double> nearest = fit->parameters;
-    gauge_.Fix(nearest.data());
+    LevelGauge(problem_.model, prior_, problem_.num_threads)
+        .Fix(nearest.data());
     std::vector<double> turned = nearest;
-    std::rotate(turned.begin(), turned.end() - lobes_.lobe_size(),
+    std::rotate(turned.begin(), turned.end() - lobes_->lobe_size(),
                 turned.end());
     if (prior_.Cost(ToEigen(turned), nullptr) <
         prior_.Cost(ToEigen(nearest), nullptr)) {
@@ -157,10 +166,8 @@ class EvidenceStudy {
       std::printf("  %-10s no cost\n", what);
       return;
     }
-    std::vector<double> parameters = ToVector(point.lobes);
-    gauge_.Fix(parameters.data());
     const StatusOr<BrdfMetrics> metrics =
-        CompareBrdfs(lobes_.ToMerl(parameters.data()), truth_.brdf);
+        CompareBrdfs(lobes_->ToMerl(point.lobes.data()), truth_.brdf);
     std::printf(
         "  %-10s cost %8.1f = likelihood %8.1f + prior %5.1f  misfit %.4f  "
         "noise %.4f  BRDF aligned %.3f\n",
@@ -197,14 +204,16 @@ class EvidenceStudy {
   const InverseProblem& problem_;
   const Truth& truth_;
   const MaterialPrior prior_;
-  const LobeModel lobes_;
-  const LevelGauge gauge_;
+  const LobeFactory factory_;
+  const std::unique_ptr<const LobeModel> lobes_;
   const StudyOptions study_;
   const std::vector<double> radiance_;
   ReflectanceSearchOptions options_;
 };
 
-Status Study(const std::string& path, const StudyOptions& options) {
+// cook_torrance: priors by the model's path, which take a while to fit.
+Status Study(const std::string& path, const StudyOptions& options,
+             std::map<std::string, MaterialPrior>* cook_torrance) {
   const StatusOr<Problem> problem = ReadProblem(path, {});
   if (!problem.ok()) return problem.status();
   const StatusOr<InverseProblem> inverse =
@@ -216,7 +225,20 @@ Status Study(const std::string& path, const StudyOptions& options) {
   if (truth->brdf.raw.empty()) {
     return InvalidInput(path, "truth.brdf is needed here");
   }
-  return EvidenceStudy(path, *inverse, *truth, options).Run();
+  MaterialPrior prior =
+      JointMaterialPrior(inverse->model, inverse->lobes, inverse->prior_sigma);
+  if (options.cook_torrance) {
+    const auto [known, is_new] =
+        cook_torrance->try_emplace(problem->reflectance.model, MaterialPrior());
+    if (is_new) {
+      StatusOr<MaterialPrior> fitted =
+          CookTorrancePrior(inverse->model, options.num_threads);
+      if (!fitted.ok()) return fitted.status();
+      known->second = std::move(*fitted);
+    }
+    prior = known->second;
+  }
+  return EvidenceStudy(path, *inverse, *truth, std::move(prior), options).Run();
 }
 
 }  // namespace
@@ -234,16 +256,21 @@ int main(int argc, char** argv) {
                  "cells across and rows of the map, finest resolution");
   app.add_flag("--texel-noise", options.texel_noise,
                "the likelihood at several strengths of light inside texels");
-  app.add_flag("--found", options.found_alone,
-               "the search alone, without the lobes nearest to the truth");
+  CLI::Option* const found =
+      app.add_flag("--found", options.found_alone,
+                   "the search alone, without the lobes nearest to the truth");
+  app.add_flag("--cook-torrance", options.cook_torrance,
+               "search among Lambertian plus Cook-Torrance, not the flow")
+      ->needs(found);
   app.add_flag("--further", options.further,
                "the search's last descent, far past its stop");
   app.add_option("--lamps", options.most_lamps, "at most; the search's own: 3")
       ->check(CLI::Range(0, 8));
   app.add_option("--threads", options.num_threads, "0: all");
   CLI11_PARSE(app, argc, argv);
+  std::map<std::string, ibrdf::MaterialPrior> cook_torrance;
   for (const std::string& path : problems) {
-    const ibrdf::Status status = ibrdf::Study(path, options);
+    const ibrdf::Status status = ibrdf::Study(path, options, &cook_torrance);
     if (status.ok()) continue;
     std::fprintf(stderr, "%s\n", status.message().c_str());
     return status.ExitCode();

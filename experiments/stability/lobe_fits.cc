@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "experiments/stability/naive_flow.h"
-#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/flow/triangular_reference.h"
 #include "solvers/exposure.h"
 #include "solvers/reflectance_solver.h"
@@ -220,7 +220,7 @@ std::vector<double> FitLibrary(const NeuralBrdfModel& model,
   o.likelihood.scale = kFirstScale;
   o.prior = prior;
   o.max_iterations = kRoundSteps;
-  const LobeModel lobes(model, 1, scene.options.grid, 1);
+  const FlowLobes lobes(model, 1, scene.options.grid, 1);
   std::vector<double> parameters = StartLobe(model);
   for (int round = 0; round < kRounds; ++round) {
     SolveReflectance(scene.transport, lobes, problem.known_map->rgb, observed,

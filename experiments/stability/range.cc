@@ -7,7 +7,7 @@
 
 #include "experiments/stability/lobe_fits.h"
 #include "experiments/stability/sweeps.h"
-#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/costs/log_radiance_cost.h"
 #include "solvers/exposure.h"
 #include "tests/render/render_testing.h"
@@ -110,7 +110,7 @@ Likelihood<double> LibraryLikelihood(const Problem& p, const Image& map,
     likelihood.epsilon += 1e-5 * v / static_cast<double>(radiance.size());
   }
   *epsilon = likelihood.epsilon * exposure;
-  const LobeModel lobes(p.model, 1, p.scene.options.grid, 1);
+  const FlowLobes lobes(p.model, 1, p.scene.options.grid, 1);
   Likelihood<double> out;
   RenderLobeModel(p.scene.transport, lobes, p.lobe.data(), L.data(), &out.E,
                   nullptr);

@@ -5,14 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "ibrdf/base/parallel_for.h"
-
 namespace ibrdf {
-namespace {
-constexpr double kPi = 3.14159265358979323846;
-// exp(it) is 0: no diffuse part.
-constexpr double kLogZero = -1000.0;
-}  // namespace
 
 CookTorrance FromCookTorranceVector(const CookTorranceVector& parameters) {
   CookTorrance brdf;
@@ -31,43 +24,30 @@ CookTorranceCost::CookTorranceCost(const Transport& transport, const Image& map,
       map_(map),
       observed_(observed),
       smoothing_(smoothing),
-      num_threads_(num_threads) {
+      lobes_(transport.grid_shape(), num_threads) {
   CHECK_EQ(map.width, transport.map_width());
   CHECK_EQ(map.height, transport.map_height());
   CHECK_EQ(observed.values.size(), size_t{3} * transport.num_points());
   CHECK_GT(observed.floor, 0.0);
   CHECK_GT(smoothing, 0.0);
-  const BrdfGridShape& shape = transport.grid_shape();
-  for (int i = 0; i < shape.num_nodes(); ++i) {
-    node_angles_.push_back(shape.NodeAngles(i));
-  }
   set_num_residuals(static_cast<int>(observed.values.size()));
   mutable_parameter_block_sizes()->push_back(kCookTorranceParameters);
 }
 
 std::vector<float> CookTorranceCost::RenderFields(double log_roughness,
                                                   double logit_f0) const {
-  const size_t nodes = node_angles_.size();
-  std::array<std::vector<float>, kFields> fields;
+  std::vector<double> parameters(lobes_.num_parameters(), 0.0);
+  parameters[lobes_.lobe_size()] = log_roughness;
+  parameters[lobes_.lobe_size() + 1] = logit_f0;
+  std::vector<float> fields;
+  lobes_.Tabulate(parameters.data(), true, &fields);
+  // The first lobe's derivatives, which are 0, are left out.
+  const size_t nodes = lobes_.grid_shape().num_nodes();
   std::array<const float*, kFields> pointers{};
   for (int k = 0; k < kFields; ++k) {
-    fields[k].assign(nodes, static_cast<float>(1.0 / kPi));
-    pointers[k] = fields[k].data();
+    const int field = k == 0 ? 0 : CookTorranceLobes::kCode + k;
+    pointers[k] = &fields[field * nodes];
   }
-  const CookTorranceLog lobe(kLogZero, 0.0, log_roughness, logit_f0);
-  const int rows = transport_.grid_shape().h;
-  const size_t row = nodes / rows;
-  ParallelFor(rows, num_threads_, [&](int64_t h, int) {
-    for (size_t i = h * row; i < (h + 1) * row; ++i) {
-      const Eigen::Vector3d& a = node_angles_[i];
-      Eigen::Vector4d gradient;
-      fields[1][i] = static_cast<float>(
-          EvaluateCookTorrance(lobe, a[0], a[1], a[2], &gradient));
-      for (int k = 2; k < kFields; ++k) {
-        fields[k][i] = static_cast<float>(gradient[k]);
-      }
-    }
-  });
   std::vector<float> radiance(size_t{3} * kFields * transport_.num_points());
   transport_.RenderLobes(pointers.data(), kFields, map_.rgb.data(),
                          radiance.data());

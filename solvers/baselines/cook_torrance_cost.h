@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/cook_torrance_lobes.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/render/transport.h"
 
@@ -60,8 +61,7 @@ class CookTorranceCost final : public ceres::CostFunction {
   const Image& map_;
   const LogObservations& observed_;
   double smoothing_;
-  int num_threads_;
-  std::vector<Eigen::Vector3d> node_angles_;
+  CookTorranceLobes lobes_;
   // The last render: steps of the colours alone need no other.
   mutable double last_roughness_ = 0.0, last_f0_ = 0.0;
   mutable std::vector<float> last_radiance_;  // empty: none

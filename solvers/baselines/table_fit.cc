@@ -21,6 +21,10 @@ constexpr ParameterBounds kLogSlope = {-6.5, 1.5};  // 0.0015 to 4.5
 constexpr ParameterBounds kLogit = {-9.0, 9.0};
 constexpr ParameterBounds kLogitRoughness = {-4.0, 9.0};  // from 0.018
 
+// Of Cook-Torrance.
+constexpr double kStartSlopes[] = {0.03, 0.1, 0.3, 0.8};
+constexpr double kStartLogitF0[] = {-2.5, 1.0};
+
 // log(pi f) of the Lambertian that is best without anything else; for tables on
 // the floor the nearest within the bounds.
 double LogAlbedo(const std::vector<TableSample>& samples, int channel) {
@@ -82,8 +86,8 @@ StatusOr<CookTorrance> FitCookTorranceToTable(const MerlTable& table,
                    });
     const double diffuse = LogAlbedo(*samples, c);
     std::vector<std::vector<double>> starts;
-    for (const double slope : {0.03, 0.1, 0.3, 0.8}) {
-      for (const double logit_f0 : {-2.5, 1.0}) {
+    for (const double slope : kStartSlopes) {
+      for (const double logit_f0 : kStartLogitF0) {
         starts.push_back({diffuse - 1.0, diffuse, std::log(slope), logit_f0});
       }
     }
@@ -91,6 +95,57 @@ StatusOr<CookTorrance> FitCookTorranceToTable(const MerlTable& table,
         BestOf(starts, {kLogColour, kLogColour, kLogSlope, kLogit},
                options.solver, &cost);
     FromLogParameters(Eigen::Map<const CookTorranceLog>(best.data()), c, &brdf);
+  }
+  return brdf;
+}
+
+StatusOr<CookTorrance> FitColouredCookTorranceToTable(
+    const MerlTable& table, const TableFitOptions& options) {
+  const StatusOr<std::vector<TableSample>> samples =
+      SampleBins(table, options.seed);
+  if (!samples.ok()) return samples.status();
+  // Log diffuse and log specular of the channels, log roughness, logit f0.
+  constexpr int kParameters = 8;
+  const auto channel = [](const double* p, int c) {
+    return CookTorranceLog(p[c], p[3 + c], p[6], p[7]);
+  };
+  TableCost cost(*samples, {0, 3}, kParameters,
+                 [&](const double* p, size_t i, int c, double* gradient) {
+                   const TableSample& s = (*samples)[i];
+                   Eigen::Vector4d slope;
+                   const double f = EvaluateCookTorrance(
+                       channel(p, c), s.theta_h, s.theta_d, s.phi_d,
+                       gradient != nullptr ? &slope : nullptr);
+                   if (gradient != nullptr) {
+                     std::fill_n(gradient, kParameters, 0.0);
+                     gradient[c] = slope[0];
+                     gradient[3 + c] = slope[1];
+                     gradient[6] = slope[2];
+                     gradient[7] = slope[3];
+                   }
+                   return f;
+                 });
+  std::vector<std::vector<double>> starts;
+  for (const double slope : kStartSlopes) {
+    for (const double logit_f0 : kStartLogitF0) {
+      std::vector<double> start(kParameters);
+      for (int c = 0; c < 3; ++c) {
+        start[3 + c] = LogAlbedo(*samples, c);
+        start[c] = start[3 + c] - 1.0;
+      }
+      start[6] = std::log(slope);
+      start[7] = logit_f0;
+      starts.push_back(start);
+    }
+  }
+  const std::vector<double> best =
+      BestOf(starts,
+             {kLogColour, kLogColour, kLogColour, kLogColour, kLogColour,
+              kLogColour, kLogSlope, kLogit},
+             options.solver, &cost);
+  CookTorrance brdf;
+  for (int c = 0; c < 3; ++c) {
+    FromLogParameters(channel(best.data(), c), c, &brdf);
   }
   return brdf;
 }

@@ -29,6 +29,10 @@ StatusOr<Lambertian> FitLambertian(const MerlTable& table);
 StatusOr<CookTorrance> FitCookTorranceToTable(const MerlTable& table,
                                               const TableFitOptions& options);
 
+// The channels share roughness and f0.
+StatusOr<CookTorrance> FitColouredCookTorranceToTable(
+    const MerlTable& table, const TableFitOptions& options);
+
 // The channels share all but the base colour.
 StatusOr<Disney> FitDisney(const MerlTable& table,
                            const TableFitOptions& options);

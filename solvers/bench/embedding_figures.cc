@@ -8,7 +8,7 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/brdf/flow_brdf.h"
-#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "io/atomic_file.h"
 #include "io/merl.h"
 #include "io/png.h"
@@ -181,7 +181,7 @@ class Figures {
   const NeuralBrdfModel model_;
   const std::vector<ModelMaterial> materials_;
   const BrdfGridShape grid_;
-  const LobeModel lobes_;
+  const FlowLobes lobes_;
   const SphereStudio studio_;
   std::vector<NamedSphere> spheres_;
 };

@@ -1,7 +1,7 @@
 #include "solvers/bench/neural_fitters.h"
 
 #include "ibrdf/brdf/flow_brdf.h"
-#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/bench/stopwatch.h"
 #include "solvers/trainer/flow_trainer.h"
 
@@ -33,7 +33,7 @@ class FlowTableFitter final : public TableFitter {
     if (!fit.ok()) return fit.status();
     FittedTable result;
     result.seconds = watch.Seconds();
-    const LobeModel lobes(fitter_->model(), options.lobes, kNoGrid,
+    const FlowLobes lobes(fitter_->model(), options.lobes, kNoGrid,
                           context.num_threads);
     result.table = lobes.ToMerl(fit->parameters.data());
     return result;
@@ -74,7 +74,7 @@ class FreeFlowTableFitter final : public TableFitter {
     FittedTable result;
     result.seconds = watch.Seconds();
     // Each channel is a lobe of its own colour.
-    const LobeModel lobes(*model, 3, kNoGrid, context.num_threads);
+    const FlowLobes lobes(*model, 3, kNoGrid, context.num_threads);
     result.table = lobes.ToMerl(MaterialLobes(*model, 0).data());
     return result;
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/eigen_vectors.h"
 #include "solvers/embedding_prior.h"
 #include "solvers/estimate/estimator.h"
@@ -90,9 +91,10 @@ Status Estimator::SearchMarginal(JointState* state) {
       return BounceGain(*transport, lobes_->Grid(lobes.data()), log_radiance);
     };
   }
-  const StatusOr<ReflectanceSearchResult> found =
-      SearchReflectance(problem_.model, materials_, problem_.points,
-                        RadianceOf(problem_.image, problem_.points), o);
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      FlowLobes::Factory(problem_.model, problem_.lobes, problem_.num_threads),
+      materials_, problem_.points, RadianceOf(problem_.image, problem_.points),
+      o);
   if (!found.ok()) return found.status();
   state->lobes = found->parameters;
   const LevelGauge gauge(problem_.model, materials_, problem_.num_threads);

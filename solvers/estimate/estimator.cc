@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/render/bright_texels.h"
 #include "solvers/eigen_vectors.h"
 #include "solvers/embedding_prior.h"
@@ -90,7 +91,7 @@ Status Estimator::Prepare() {
                                  BrightSamplesPerSide(map.height));
   }
   if (lobes_unknown()) {
-    lobes_ = std::make_unique<LobeModel>(problem_.model, problem_.lobes,
+    lobes_ = std::make_unique<FlowLobes>(problem_.model, problem_.lobes,
                                          problem_.transport.grid,
                                          problem_.num_threads);
     lobe_prior_ = EmbeddingPrior(problem_.model, problem_.prior_sigma);

@@ -36,8 +36,7 @@ std::vector<float> RelativeMap(const double* log_radiance, int num_texels) {
 }
 
 MarginalReflectance::MarginalReflectance(
-    const NeuralBrdfModel& model, int num_lobes,
-    const std::vector<ShadingPoint>& points,
+    const LobeFactory& lobes, const std::vector<ShadingPoint>& points,
     const std::vector<double>& radiance, const LightProcess& process,
     const MarginalResolution& resolution, int num_threads,
     std::vector<Eigen::Vector3d> lamps)
@@ -53,8 +52,7 @@ MarginalReflectance::MarginalReflectance(
   options.visibility = resolution.visibility;
   transport_ = std::make_unique<Transport>(cells_.points, resolution.map_height,
                                            resolution.map_width, options);
-  lobes_ = std::make_unique<LobeModel>(model, num_lobes, resolution.grid,
-                                       num_threads);
+  lobes_ = lobes(resolution.grid);
   likelihood_ = std::make_unique<MarginalLikelihood>(
       cells_.log_radiance, process, resolution.map_height, resolution.map_width,
       static_cast<int>(lamps_.size()), num_threads);

@@ -31,7 +31,7 @@ std::vector<float> RelativeMap(const double* log_radiance, int num_texels);
 class MarginalReflectance {
  public:
   // radiance [points][3]. CHECKs that at least one point can be used.
-  MarginalReflectance(const NeuralBrdfModel& model, int num_lobes,
+  MarginalReflectance(const LobeFactory& lobes,
                       const std::vector<ShadingPoint>& points,
                       const std::vector<double>& radiance,
                       const LightProcess& process,
@@ -98,7 +98,7 @@ class MarginalReflectance {
   ImageCells cells_;
   std::vector<Eigen::Vector3d> lamps_;
   std::unique_ptr<Transport> transport_;
-  std::unique_ptr<LobeModel> lobes_;
+  std::unique_ptr<const LobeModel> lobes_;
   std::unique_ptr<MarginalLikelihood> likelihood_;
 };
 

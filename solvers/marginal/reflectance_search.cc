@@ -27,7 +27,7 @@ constexpr int kTrialIterations = 3;
 // A search at one resolution.
 class Level {
  public:
-  Level(const NeuralBrdfModel& model, const MaterialPrior& prior,
+  Level(const LobeFactory& lobes, const MaterialPrior& prior,
         const std::vector<ShadingPoint>& points,
         const std::vector<double>& radiance,
         const MarginalResolution& resolution,
@@ -35,8 +35,8 @@ class Level {
         const ReflectanceSearchOptions& options)
       : prior_(prior),
         options_(options),
-        reflectance_(model, prior.num_lobes(), points, radiance,
-                     options.process, resolution, options.num_threads, lamps) {}
+        reflectance_(lobes, points, radiance, options.process, resolution,
+                     options.num_threads, lamps) {}
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
 
@@ -115,7 +115,7 @@ class Level {
 // The search from stage to stage: what was tried, and the best end so far.
 class Search {
  public:
-  Search(const NeuralBrdfModel& model, const MaterialPrior& prior,
+  Search(const LobeFactory& lobes, const MaterialPrior& prior,
          const std::vector<ShadingPoint>& points,
          const std::vector<double>& radiance,
          const ReflectanceSearchOptions& options)
@@ -124,7 +124,7 @@ class Search {
         radiance_(radiance),
         lamps_(FindLamps(points, radiance, options.most_lamps)),
         level_at_([&](const MarginalResolution& resolution) {
-          return std::make_unique<Level>(model, prior, points, radiance_,
+          return std::make_unique<Level>(lobes, prior, points, radiance_,
                                          resolution, lamps_, options);
         }) {
     for (const MaterialPrior::Material& m : prior.materials) {
@@ -369,7 +369,7 @@ class Search {
 }  // namespace
 
 StatusOr<ReflectanceSearchResult> SearchReflectance(
-    const NeuralBrdfModel& model, const MaterialPrior& prior,
+    const LobeFactory& lobes, const MaterialPrior& prior,
     const std::vector<ShadingPoint>& points,
     const std::vector<double>& radiance,
     const ReflectanceSearchOptions& options) {
@@ -379,7 +379,7 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
                         "no pixel of the object, limb aside, is finite and "
                         "positive in all three channels");
   }
-  Search search(model, prior, points, radiance, options);
+  Search search(lobes, prior, points, radiance, options);
   if (!search.Start()) {
     return Status(StatusCode::kNoImprovement,
                   "no training material explains the image at all");

@@ -91,9 +91,10 @@ struct ReflectanceSearchResult {
   std::vector<double> log_radiance, log_radiance_std;
 };
 
-// kInvalidInput where no point can be used. radiance [points][3].
+// kInvalidInput where no point can be used. prior: of these lobes. radiance
+// [points][3].
 StatusOr<ReflectanceSearchResult> SearchReflectance(
-    const NeuralBrdfModel& model, const MaterialPrior& prior,
+    const LobeFactory& lobes, const MaterialPrior& prior,
     const std::vector<ShadingPoint>& points,
     const std::vector<double>& radiance,
     const ReflectanceSearchOptions& options);

@@ -6,7 +6,7 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/brdf/flow_brdf.h"
-#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/lobe_table_fit.h"
 
 namespace ibrdf {
@@ -31,7 +31,7 @@ Status FitMaterialLobes(int lobes, int num_threads,
   const std::unique_ptr<BrdfFlow> flow =
       BrdfFlow::Create(model->shape, model->weights);
   // Its grid plays no part.
-  const LobeModel by_channel(*model, 3, {2, 2, 1}, 1);
+  const FlowLobes by_channel(*model, 3, {2, 2, 1}, 1);
   LobeTableFitOptions options;
   options.lobes = lobes;
   options.num_threads = 1;

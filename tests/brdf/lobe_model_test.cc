@@ -1,5 +1,3 @@
-#include "ibrdf/brdf/lobe_model.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "ibrdf/brdf/flow_lobes.h"
 #include "tests/support/tiny_model.h"
 
 namespace ibrdf {
@@ -20,7 +19,7 @@ constexpr double kFloatLogDensity = 1e-4;
 class LobeModelTest : public ::testing::Test {
  protected:
   const NeuralBrdfModel model_ = TinyModel(2);
-  const LobeModel lobes_{model_, 2, kGrid, 1};
+  const FlowLobes lobes_{model_, 2, kGrid, 1};
   const std::vector<double> parameters_ = {
       0.3, -0.4, 0.2, 0.1, 4.0, 4.3, 3.8, -0.5, 0.1, 0.3, -0.2, 3.0, 2.5, 3.3};
 
@@ -196,7 +195,7 @@ TEST_F(LobeModelTest, ColoursBeyondTheLargestAreClamped) {
 TEST_F(LobeModelTest, ShapesBeyondTheLargestHaveNoDerivative) {
   NeuralBrdfModel model = TinyModel(1, 3, 4.0f);
   model.exponent = 200.0;
-  const LobeModel lobes(model, 1, kGrid, 1);
+  const FlowLobes lobes(model, 1, kGrid, 1);
   const std::vector<double> p = {0.3, -0.4, 0.2, 0.1, 4.0, 4.0, 4.0};
   std::vector<float> fields, exact;
   lobes.Tabulate(p.data(), true, &fields);
@@ -223,8 +222,8 @@ TEST_F(LobeModelTest, ShapesBeyondTheLargestHaveNoDerivative) {
 
 TEST_F(LobeModelTest, IsFiniteForExtremeCodesColoursAndWeights) {
   // Weights 50 times the trainer's start drive the splines to their limits.
-  const LobeModel wild(TinyModel(1, 3, 50.0f), 2, kGrid, 1);
-  for (const LobeModel* lobes : {&lobes_, &wild}) {
+  const FlowLobes wild(TinyModel(1, 3, 50.0f), 2, kGrid, 1);
+  for (const FlowLobes* lobes : {&lobes_, &wild}) {
     for (const double code : {0.0, 0.5, 1.0, -30.0, 1e4}) {
       for (const double colour : {-1e3, -30.0, 0.0, 40.0, 1e3}) {
         std::vector<double> p(14, code);
@@ -243,7 +242,7 @@ TEST_F(LobeModelTest, IsFiniteForExtremeCodesColoursAndWeights) {
 }
 
 TEST_F(LobeModelTest, ThreadsDoNotChangeBits) {
-  const LobeModel many(model_, 2, kGrid, 2);
+  const FlowLobes many(model_, 2, kGrid, 2);
   std::vector<float> a, b;
   lobes_.Tabulate(parameters_.data(), true, &a);
   many.Tabulate(parameters_.data(), true, &b);

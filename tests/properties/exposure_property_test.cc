@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/render/transport.h"
 #include "solvers/inverse_rendering.h"
 #include "tests/properties/generators.h"
@@ -68,7 +69,7 @@ InverseProblem SmallProblem(ProblemKind kind, int materials, int iterations) {
     for (int c = 0; c < 3; ++c) lobes.push_back(*Between(3.0, 5.0));
   }
   const BrdfGrid truth =
-      LobeModel(p.model, 2, p.transport.grid, 1).Grid(lobes.data());
+      FlowLobes(p.model, 2, p.transport.grid, 1).Grid(lobes.data());
   Image map = testing::SmoothMap(8, 16);
   const Transport transport(p.points, 8, 16, p.transport);
   std::vector<double> E(3 * p.points.size());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/render/reference_renderer.h"
 #include "tests/solvers/solver_testing.h"
 
@@ -35,7 +36,7 @@ class InverseRenderingTest : public ::testing::TestWithParam<ProblemKind> {
     // Not a code of the embedding, so that there is something to find.
     parameters_ = {0.3,  -0.4, 0.2, 0.1,  5.0, 4.6, 4.2,
                    -0.5, 0.1,  0.3, -0.2, 3.0, 3.5, 3.3};
-    const LobeModel lobes(problem_.model, 2, problem_.transport.grid, 1);
+    const FlowLobes lobes(problem_.model, 2, problem_.transport.grid, 1);
     truth_ = lobes.Grid(parameters_.data());
     const Transport transport(problem_.points, 8, 16, problem_.transport);
     std::vector<double> E(3 * problem_.points.size());
@@ -210,7 +211,7 @@ TEST_P(InverseRenderingTest, EveryPixelOfALargeImageIsRendered) {
   std::fill(problem_.image.rgb.begin(), problem_.image.rgb.end(), 1.0f);
   const Estimate e = Solve();
   ASSERT_EQ(problem_.image.rgb.size(), e.render.rgb.size());
-  const LobeModel lobes(problem_.model, 2, problem_.transport.grid, 1);
+  const FlowLobes lobes(problem_.model, 2, problem_.transport.grid, 1);
   const BrdfGrid grid =
       e.lobe_parameters.empty() ? truth_ : lobes.Grid(e.lobe_parameters.data());
   std::vector<double> E(3 * problem_.points.size());

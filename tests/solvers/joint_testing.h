@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/joint/joint_objective.h"
 #include "solvers/joint/process_prior.h"
 #include "tests/solvers/solver_testing.h"
@@ -82,7 +83,7 @@ struct JointScene {
   const std::vector<ShadingPoint> points;
   const Transport transport;
   const NeuralBrdfModel model = SmoothTinyModel(2);
-  const LobeModel lobes{model, 2, TinyTransportOptions().grid, 1};
+  const FlowLobes lobes{model, 2, TinyTransportOptions().grid, 1};
   const std::unique_ptr<IlluminationModel> light;
   ProcessPrior process{8, 16, LightProcess(), LightScales::Average(), 0.0};
   std::vector<double> truth;

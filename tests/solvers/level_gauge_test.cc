@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "ibrdf/brdf/flow_lobes.h"
 #include "tests/solvers/solver_testing.h"
 
 namespace ibrdf {
@@ -49,7 +50,7 @@ TEST_F(LevelGaugeTest, ShiftsAllLobesAndChannelsAlike) {
   std::vector<double> after = before;
   const double shift = gauge_.Fix(after.data());
   EXPECT_GT(std::abs(shift), 100 * kRounding);
-  const LobeModel lobes(model_, 2, {4, 4, 2}, 1);
+  const FlowLobes lobes(model_, 2, {4, 4, 2}, 1);
   const size_t size = lobes.lobe_size(), codes = lobes.code_size();
   for (size_t i = 0; i < before.size(); ++i) {
     EXPECT_EQ(before[i] + (i % size < codes ? 0.0 : shift), after[i]) << i;
@@ -63,7 +64,7 @@ TEST_F(LevelGaugeTest, AnyLevelEndsAtTheSameOne) {
   // Not darker: the floor of the logarithm would then show.
   for (const double level : {-4.0, 0.5, 8.0}) {
     std::vector<double> x = Parameters();
-    const LobeModel lobes(model_, 2, {4, 4, 2}, 1);
+    const FlowLobes lobes(model_, 2, {4, 4, 2}, 1);
     const double shift[3] = {level, level, level};
     lobes.ShiftColours(shift, x.data());
     gauge_.Fix(x.data());

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 #include "solvers/marginal/lamp_responses.h"
@@ -238,10 +239,11 @@ TEST(Lamps, ExplainASun) {
         reflectance.Matrices(x.data()), 0.03, {}, 1e-6, &mode);
     return reflectance.Evaluate(x.data(), noise, {}, 1e-6, &mode, nullptr).cost;
   };
-  const MarginalReflectance without(model, 2, points, radiance, LightProcess(),
-                                    resolution, 1);
-  const MarginalReflectance with(model, 2, points, radiance, LightProcess(),
-                                 resolution, 1, {sun});
+  const MarginalReflectance without(FlowLobes::Factory(model, 2, 1), points,
+                                    radiance, LightProcess(), resolution, 1);
+  const MarginalReflectance with(FlowLobes::Factory(model, 2, 1), points,
+                                 radiance, LightProcess(), resolution, 1,
+                                 {sun});
   const double cost_without = cost(without, truth);
   EXPECT_LT(cost(with, truth), cost_without - 20.0);
   std::vector<double> x_with = truth;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "solvers/bench/neural_fitters.h"
 #include "solvers/costs/log_table_cost.h"
@@ -21,7 +21,7 @@ constexpr BrdfGridShape kNoGrid{2, 2, 1};
 MerlTable TableOf(const NeuralBrdfModel& model,
                   const std::vector<double>& parameters) {
   const int lobe = model.shape.code_size() + 3;
-  return LobeModel(model, static_cast<int>(parameters.size()) / lobe, kNoGrid,
+  return FlowLobes(model, static_cast<int>(parameters.size()) / lobe, kNoGrid,
                    1)
       .ToMerl(parameters.data());
 }

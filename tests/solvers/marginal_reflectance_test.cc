@@ -2,11 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/brdf/cook_torrance_lobes.h"
+#include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/metrics/brdf_metrics.h"
 #include "solvers/costs/material_prior_cost.h"
+#include "solvers/eigen_vectors.h"
 #include "solvers/known_light_search.h"
 #include "solvers/marginal/marginal_descent.h"
 #include "solvers/marginal/marginal_objective.h"
@@ -50,51 +55,83 @@ class MarginalReflectanceTest : public ::testing::Test {
       RenderTinyLobes(model_, points_, SmoothMap(8, 16));
 };
 
-TEST_F(MarginalReflectanceTest, GradientMatchesDifferences) {
-  const MarginalReflectance reflectance(model_, 2, points_, radiance_,
-                                        LightProcess(), resolution_, 1, kLamps);
-  ASSERT_EQ(18, reflectance.num_parameters());
+// Gradient at x against differences, of these parameters and all scales.
+void ExpectGradient(const MarginalReflectance& reflectance,
+                    const std::vector<double>& x,
+                    const std::vector<int>& parameters) {
+  const int n = reflectance.num_parameters();
+  ASSERT_EQ(n, static_cast<int>(x.size()));
   const Eigen::VectorXd noise =
       Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
+  const auto evaluate = [&](const std::vector<double>& at,
+                            const LightScales& scales,
+                            std::vector<double>* gradient) {
+    LightMode mode;
+    mode.l = mode.dual =
+        Eigen::VectorXd::Zero(3 * reflectance.likelihood().num_sources());
+    const MarginalValue value =
+        reflectance.Evaluate(at.data(), noise, scales, 1e-12, &mode, gradient);
+    EXPECT_TRUE(value.ok);
+    return std::vector<double>{value.cost};
+  };
+  std::vector<double> gradient;
+  evaluate(x, {0.2}, &gradient);
+  ASSERT_EQ(n + 5, static_cast<int>(gradient.size()));
+  const double scale = Norm(gradient);
+  std::vector<int> all = parameters;
+  for (int k = 0; k < 5; ++k) all.push_back(n + k);
+  for (const int i : all) {
+    const double numeric = Differentiate(
+        [&](double t) {
+          std::vector<double> at = x;
+          if (i < n) at[i] += t;
+          LightScales scales = {0.2};
+          if (i == n) scales.log_amplitude += t;
+          if (i > n) scales.log_roughness[i - n - 1] += t;
+          return evaluate(at, scales, nullptr);
+        },
+        0.05)[0];
+    // The lobes' tables are float.
+    EXPECT_NEAR(numeric, gradient[i], 5e-3 * scale) << i;
+  }
+}
+
+TEST_F(MarginalReflectanceTest, GradientMatchesDifferences) {
+  const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
+                                        points_, radiance_, LightProcess(),
+                                        resolution_, 1, kLamps);
+  ASSERT_EQ(18, reflectance.num_parameters());
   // Away from the truth, and at it.
   for (const double away : {0.2, 0.0}) {
     std::vector<double> x = truth_;
     for (size_t i = 0; i < x.size(); ++i) x[i] += away * std::cos(3.0 * i);
     x.insert(x.end(), {0.02, -0.03, 0.0, 0.04});
-    const auto evaluate = [&](const std::vector<double>& at,
-                              const LightScales& scales,
-                              std::vector<double>* gradient) {
-      LightMode mode;
-      mode.l = mode.dual = Eigen::VectorXd::Zero(3 * (128 + 2));
-      const MarginalValue value = reflectance.Evaluate(at.data(), noise, scales,
-                                                       1e-12, &mode, gradient);
-      EXPECT_TRUE(value.ok);
-      return std::vector<double>{value.cost};
-    };
-    std::vector<double> gradient;
-    evaluate(x, {0.2}, &gradient);
-    ASSERT_EQ(23u, gradient.size());
-    const double scale = Norm(gradient);
-    for (const size_t i : {0, 3, 4, 6, 8, 11, 14, 15, 16, 17, 18, 19, 20, 22}) {
-      const double numeric = Differentiate(
-          [&](double t) {
-            std::vector<double> at = x;
-            if (i < 18) at[i] += t;
-            LightScales scales = {0.2};
-            if (i == 18) scales.log_amplitude += t;
-            if (i > 18) scales.log_roughness[i - 19] += t;
-            return evaluate(at, scales, nullptr);
-          },
-          0.05)[0];
-      // The lobes' tables are float.
-      EXPECT_NEAR(numeric, gradient[i], 5e-3 * scale) << i << " " << away;
-    }
+    ExpectGradient(reflectance, x, {0, 3, 4, 6, 8, 11, 14, 15, 16, 17});
+  }
+}
+
+// Any lobes will do.
+TEST_F(MarginalReflectanceTest, GradientOfCookTorranceMatchesDifferences) {
+  const MarginalReflectance reflectance(CookTorranceLobes::Factory(1), points_,
+                                        radiance_, LightProcess(), resolution_,
+                                        1, kLamps);
+  ASSERT_EQ(14, reflectance.num_parameters());
+  // A glossy paint, and a rough metal.
+  for (const double roughness : {0.15, 0.6}) {
+    CookTorrance brdf;
+    brdf.diffuse = {0.3, 0.2, 0.02};
+    brdf.roughness.setConstant(roughness);
+    brdf.f0.setConstant(roughness);
+    std::vector<double> x = CookTorranceLobes::ToParameters(brdf);
+    x.insert(x.end(), {0.02, -0.03, 0.0, 0.04});
+    ExpectGradient(reflectance, x, {0, 2, 4, 5, 6, 7, 9, 10, 11, 12, 13});
   }
 }
 
 TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
-  const MarginalReflectance reflectance(model_, 2, points_, radiance_,
-                                        LightProcess(), resolution_, 1, kLamps);
+  const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
+                                        points_, radiance_, LightProcess(),
+                                        resolution_, 1, kLamps);
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   LightMode mode;
   const MarginalObjective objective(
@@ -128,8 +165,9 @@ TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
 // G^T A^-1 G with G by differences of log E under the mode's light and A put
 // together densely. A clamped colour and a code beyond the ball among them.
 TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
-  const MarginalReflectance reflectance(model_, 2, points_, radiance_,
-                                        LightProcess(), resolution_, 1, kLamps);
+  const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
+                                        points_, radiance_, LightProcess(),
+                                        resolution_, 1, kLamps);
   const int P = reflectance.cells().num_cells(), t = 128, s = t + 2;
   const int n = 18, all = n + LightScales::kCount;
   Eigen::VectorXd noise(3 * P);
@@ -259,8 +297,9 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
 // Where it ends, a step of Newton's along the information gains next to
 // nothing, and no start, however far out, raises the cost.
 TEST_F(MarginalReflectanceTest, DescentEndsWhereNewtonGainsNothing) {
-  const MarginalReflectance reflectance(model_, 2, points_, radiance_,
-                                        LightProcess(), resolution_, 1);
+  const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
+                                        points_, radiance_, LightProcess(),
+                                        resolution_, 1);
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   const Eigen::VectorXd noise =
       Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
@@ -306,11 +345,55 @@ TEST_F(MarginalReflectanceTest, DescentEndsWhereNewtonGainsNothing) {
   EXPECT_EQ(std::vector<double>(19, 0.1), y);
 }
 
+// What Cook-Torrance rendered, from other materials.
+TEST_F(MarginalReflectanceTest, SearchAmongCookTorranceComesNearItsOwn) {
+  const auto paint = [](double roughness, double diffuse) {
+    CookTorrance brdf;
+    brdf.diffuse = diffuse * Eigen::Array3d(1.0, 0.7, 0.4);
+    brdf.specular.setConstant(1.0);
+    brdf.roughness.setConstant(roughness);
+    brdf.f0.setConstant(0.2);
+    return CookTorranceLobes::ToParameters(brdf);
+  };
+  TransportOptions transport;
+  transport.grid = resolution_.grid;
+  transport.num_threads = 1;
+  const CookTorranceLobes lobes(resolution_.grid, 1);
+  const std::vector<double> truth = paint(0.25, 0.1);
+  std::vector<double> image(3 * points_.size());
+  Transport(points_, 8, 16, transport)
+      .Render(lobes.Grid(truth.data()), SmoothMap(8, 16).rgb.data(),
+              image.data());
+  std::vector<MaterialPrior::Material> materials;
+  for (const double roughness : {0.1, 0.4, 0.8}) {
+    for (const double diffuse : {0.03, 0.3}) {
+      materials.push_back(
+          {std::to_string(roughness), ToEigen(paint(roughness, diffuse))});
+    }
+  }
+  MaterialPrior prior = GaussianPrior(materials, CookTorranceLobes::kCode);
+  prior.wall = 0.0;
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      CookTorranceLobes::Factory(1), prior, points_, image, Options());
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  EXPECT_LT(found->misfit, 0.05);
+  const auto error = [&](const double* parameters) {
+    return CompareBrdfs(lobes.ToMerl(parameters), lobes.ToMerl(truth.data()))
+        .value()
+        .log_rmse_aligned;
+  };
+  double nearest = error(materials.front().parameters.data());
+  for (const MaterialPrior::Material& m : materials) {
+    nearest = std::min(nearest, error(m.parameters.data()));
+  }
+  EXPECT_LT(error(found->parameters.data()), nearest);
+}
+
 TEST_F(MarginalReflectanceTest, SearchLowersTheCostWhateverTheThreads) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   ReflectanceSearchOptions options = Options();
-  const StatusOr<ReflectanceSearchResult> one =
-      SearchReflectance(model_, prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> one = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
   ASSERT_TRUE(one.ok()) << one.status().message();
   ASSERT_EQ(14u, one->parameters.size());
   ASSERT_EQ(4u, one->tried.size());
@@ -334,8 +417,8 @@ TEST_F(MarginalReflectanceTest, SearchLowersTheCostWhateverTheThreads) {
       (prior.factor * prior.factor.transpose()).diagonal();
   EXPECT_LT(one->covariance.trace(), prior_variance.sum());
   options.num_threads = 2;
-  const StatusOr<ReflectanceSearchResult> two =
-      SearchReflectance(model_, prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> two = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
   ASSERT_TRUE(two.ok());
   EXPECT_EQ(one->parameters, two->parameters);
   EXPECT_EQ(one->log_radiance, two->log_radiance);
@@ -351,9 +434,13 @@ TEST_F(MarginalReflectanceTest, BouncesAreTakenOutOfTheImage) {
   }
   ReflectanceSearchOptions options = Options();
   const ReflectanceSearchResult clean =
-      SearchReflectance(model_, prior, points_, radiance_, options).value();
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        radiance_, options)
+          .value();
   const ReflectanceSearchResult left =
-      SearchReflectance(model_, prior, points_, brighter, options).value();
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        brighter, options)
+          .value();
   int calls = 0;
   options.bounce_gain = [&](const std::vector<double>& lobes,
                             const std::vector<double>& log_radiance) {
@@ -364,7 +451,9 @@ TEST_F(MarginalReflectanceTest, BouncesAreTakenOutOfTheImage) {
     return gain;
   };
   const ReflectanceSearchResult taken =
-      SearchReflectance(model_, prior, points_, brighter, options).value();
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        brighter, options)
+          .value();
   EXPECT_EQ(options.bounce_rounds, calls);
   EXPECT_GT(left.cost, clean.cost + 5.0);
   EXPECT_LT(taken.misfit, 1.2 * clean.misfit);
@@ -375,7 +464,8 @@ TEST_F(MarginalReflectanceTest, BouncesAreTakenOutOfTheImage) {
     return std::vector<double>();
   };
   EXPECT_EQ(left.parameters,
-            SearchReflectance(model_, prior, points_, brighter, options)
+            SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                              brighter, options)
                 .value()
                 .parameters);
 }
@@ -386,11 +476,11 @@ TEST_F(MarginalReflectanceTest, WiderMarginsNeverEndAtAHigherCost) {
   options.covariance = false;
   options.coarse_margin = 1e9;
   options.margin = 0.0;
-  const StatusOr<ReflectanceSearchResult> one =
-      SearchReflectance(model_, prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> one = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
   options.margin = 1e9;
-  const StatusOr<ReflectanceSearchResult> all =
-      SearchReflectance(model_, prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> all = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
   ASSERT_TRUE(one.ok() && all.ok());
   EXPECT_LE(all->cost, one->cost);
   // What the narrow ones left where it was is refined now.
@@ -407,8 +497,8 @@ TEST_F(MarginalReflectanceTest, StoppedSearchIsWhole) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   ReflectanceSearchOptions options = Options();
   options.should_stop = [] { return true; };
-  const StatusOr<ReflectanceSearchResult> found =
-      SearchReflectance(model_, prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_EQ(14u, found->parameters.size());
   EXPECT_EQ(14, found->covariance.rows());
@@ -420,8 +510,9 @@ TEST_F(MarginalReflectanceTest, ImageWithoutAUsablePixelIsNamed) {
   for (size_t i = 0; i < bad.size(); i += 3) {
     bad[i] = i % 2 == 0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
   }
-  const Status status =
-      SearchReflectance(model_, prior, points_, bad, Options()).status();
+  const Status status = SearchReflectance(FlowLobes::Factory(model_, 2, 1),
+                                          prior, points_, bad, Options())
+                            .status();
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
   EXPECT_EQ(0u, status.message().find("image"));
 }
@@ -540,7 +631,7 @@ TEST(MaterialLobes, AreSortedFiniteAndCloseToTheirMaterial) {
 
 TEST_F(MarginalReflectanceTest, KnownLightRanksTheMaterialThatMadeTheImage) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
-  const LobeModel lobes(model_, 2, resolution_.grid, 1);
+  const FlowLobes lobes(model_, 2, resolution_.grid, 1);
   TransportOptions options;
   options.grid = resolution_.grid;
   options.num_threads = 1;

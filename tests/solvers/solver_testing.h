@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/illumination_unet.h"
 #include "ibrdf/render/transport.h"
 #include "solvers/illumination_model.h"
@@ -56,7 +56,7 @@ inline std::vector<double> RenderTinyLobes(
   options.num_threads = 1;
   std::vector<double> E(3 * points.size());
   Transport(points, map.height, map.width, options)
-      .Render(LobeModel(model, 2, options.grid, 1).Grid(TinyLobes().data()),
+      .Render(FlowLobes(model, 2, options.grid, 1).Grid(TinyLobes().data()),
               map.rgb.data(), E.data());
   return E;
 }
@@ -83,7 +83,7 @@ struct TinyScene {
   const std::vector<ShadingPoint> points = SpherePoints(5);
   const Transport transport{points, 8, 16, TinyTransportOptions()};
   const NeuralBrdfModel model = SmoothTinyModel(2);
-  const LobeModel lobes{model, 2, TinyTransportOptions().grid, 1};
+  const FlowLobes lobes{model, 2, TinyTransportOptions().grid, 1};
 
   std::vector<double> Parameters() const { return TinyLobes(); }
   // E of the parameters under a map.

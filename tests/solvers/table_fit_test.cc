@@ -191,6 +191,26 @@ TEST(FitCookTorranceToTable, RecoversItsOwnModel) {
   }
 }
 
+TEST(FitColouredCookTorranceToTable, RecoversItsOwnModel) {
+  CookTorrance paint = Paint();
+  paint.roughness.setConstant(0.2);
+  paint.f0.setConstant(0.3);
+  const MerlTable table = SampleMerl(paint.Function());
+  const CookTorrance fit = FitColouredCookTorranceToTable(table, {}).value();
+  EXPECT_LT(LogRmse(fit.Function(), true, table), kRecovered);
+  EXPECT_TRUE((fit.roughness == fit.roughness[0]).all());
+  EXPECT_TRUE((fit.f0 == fit.f0[0]).all());
+  // Of other data it is no better than with lobes of the channels' own.
+  const MerlTable other = SampleMerl(Paint().Function());
+  const double shared =
+      LogRmse(FitColouredCookTorranceToTable(other, {}).value().Function(),
+              true, other);
+  EXPECT_GT(shared, 0.1);
+  EXPECT_LT(LogRmse(FitCookTorranceToTable(other, {}).value().Function(), true,
+                    other),
+            kRecovered);
+}
+
 TEST(FitDisney, RecoversItsOwnModel) {
   Disney truth;
   truth.base = {0.6, 0.2, 0.05};
@@ -276,6 +296,7 @@ TEST_P(DirtyTable, GivesFiniteModels) {
   const MerlTable table = Make(GetParam());
   ExpectFinite(FitLambertian(table)->Function(), table);
   ExpectFinite(FitCookTorranceToTable(table, {})->Function(), table);
+  ExpectFinite(FitColouredCookTorranceToTable(table, {})->Function(), table);
   ExpectFinite(FitDisney(table, {})->Function(), table);
   const BrdfFunction dsbrdf = FitDsbrdf(table, {})->Function();
   ExpectFinite(dsbrdf, table);
@@ -294,6 +315,8 @@ TEST(TableFits, RefuseTablesWithoutValuesAndNonFiniteOnes) {
       "table: red: expected a bin with a positive value";
   EXPECT_EQ(expected, FitLambertian(table).status().message());
   EXPECT_EQ(expected, FitCookTorranceToTable(table, {}).status().message());
+  EXPECT_EQ(expected,
+            FitColouredCookTorranceToTable(table, {}).status().message());
   EXPECT_EQ(expected, FitDisney(table, {}).status().message());
   EXPECT_EQ(expected, FitDsbrdf(table, {}).status().message());
   table = Textured();

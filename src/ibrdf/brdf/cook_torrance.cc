@@ -69,7 +69,8 @@ void FromLogParameters(const CookTorranceLog& parameters, int channel,
                        CookTorrance* brdf) {
   brdf->diffuse[channel] = std::exp(parameters[0]);
   brdf->specular[channel] = std::exp(parameters[1]);
-  brdf->roughness[channel] = std::exp(parameters[2]);
+  brdf->roughness[channel] =
+      std::exp(std::clamp(parameters[2], -kMaxLogRoughness, kMaxLogRoughness));
   brdf->f0[channel] = 1.0 / (1.0 + std::exp(-parameters[3]));
 }
 

@@ -1,0 +1,95 @@
+#include "ibrdf/brdf/cook_torrance_lobes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "ibrdf/base/parallel_for.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+// exp(it) is 0: no diffuse part.
+constexpr double kLogZero = -1000.0;
+// A shape beyond it, 1/sr, is no reflectance: products with it stay floats.
+constexpr double kLargest = 1e30;
+constexpr int kLobe = CookTorranceLobes::kCode + 3;  // parameters
+
+}  // namespace
+
+CookTorranceLobes::CookTorranceLobes(const BrdfGridShape& grid, int num_threads)
+    : LobeModel(kLobes, kCode, grid), num_threads_(num_threads) {
+  for (int i = 0; i < grid.num_nodes(); ++i) {
+    node_angles_.push_back(grid.NodeAngles(i));
+  }
+}
+
+LobeFactory CookTorranceLobes::Factory(int num_threads) {
+  return [num_threads](const BrdfGridShape& grid) {
+    return std::make_unique<CookTorranceLobes>(grid, num_threads);
+  };
+}
+
+void CookTorranceLobes::Tabulate(const double* parameters, bool derivatives,
+                                 std::vector<float>* fields) const {
+  const size_t nodes = node_angles_.size();
+  const int stride = derivatives ? 1 + kCode : 1;
+  fields->assign(nodes * stride * kLobes, 0.0f);
+  std::fill_n(fields->begin(), nodes, static_cast<float>(1.0 / kPi));
+  float* const lobe = fields->data() + nodes * stride;
+  const CookTorranceLog at(kLogZero, 0.0, parameters[kLobe],
+                           parameters[kLobe + 1]);
+  const int rows = grid_shape().h;
+  const size_t row = nodes / rows;
+  ParallelFor(rows, num_threads_, [&](int64_t h, int) {
+    for (size_t i = h * row; i < (h + 1) * row; ++i) {
+      const Eigen::Vector3d& a = node_angles_[i];
+      Eigen::Vector4d gradient;
+      const double value = EvaluateCookTorrance(
+          at, a[0], a[1], a[2], derivatives ? &gradient : nullptr);
+      lobe[i] = static_cast<float>(std::min(value, kLargest));
+      for (int d = 1; d < stride; ++d) {
+        lobe[d * nodes + i] =
+            value < kLargest ? static_cast<float>(gradient[1 + d]) : 0.0f;
+      }
+    }
+  });
+}
+
+MerlTable CookTorranceLobes::ToMerl(const double* parameters) const {
+  return SampleMerl(FromParameters(parameters).Function());
+}
+
+CookTorrance CookTorranceLobes::FromParameters(const double* parameters) {
+  CookTorrance brdf;
+  for (int c = 0; c < 3; ++c) {
+    const double* lobe = parameters + kLobe;
+    FromLogParameters(
+        {std::min(parameters[kCode + c], kMaxLogColour),
+         std::min(lobe[kCode + c], kMaxLogColour), lobe[0], lobe[1]},
+        c, &brdf);
+    brdf.diffuse[c] *= kMerlScale[c];
+    brdf.specular[c] *= kMerlScale[c];
+  }
+  return brdf;
+}
+
+std::vector<double> CookTorranceLobes::ToParameters(const CookTorrance& brdf) {
+  std::vector<double> parameters(kLobes * kLobe, 0.0);
+  for (int c = 0; c < 3; ++c) {
+    CookTorrance raw = brdf;
+    raw.diffuse[c] /= kMerlScale[c];
+    raw.specular[c] /= kMerlScale[c];
+    const CookTorranceLog log = ToLogParameters(raw, c);
+    parameters[kCode + c] = log[0];
+    parameters[kLobe + kCode + c] = log[1];
+    if (c == 0) {
+      parameters[kLobe] = log[2];
+      parameters[kLobe + 1] = log[3];
+    }
+  }
+  return parameters;
+}
+
+}  // namespace ibrdf
