@@ -44,6 +44,7 @@ struct StudyOptions {
   bool texel_noise = false;
   bool found_alone = false;
   bool further = false;
+  bool ball_prior = false;
   bool cook_torrance = false;
   int most_lamps = ReflectanceSearchOptions().most_lamps;
   int num_threads = 0;
@@ -225,8 +226,8 @@ Status Study(const std::string& path, const StudyOptions& options,
   if (truth->brdf.raw.empty()) {
     return InvalidInput(path, "truth.brdf is needed here");
   }
-  MaterialPrior prior =
-      JointMaterialPrior(inverse->model, inverse->lobes, inverse->prior_sigma);
+  MaterialPrior prior = (options.ball_prior ? BallPrior : JointMaterialPrior)(
+      inverse->model, inverse->lobes, inverse->prior_sigma);
   if (options.cook_torrance) {
     const auto [known, is_new] =
         cook_torrance->try_emplace(problem->reflectance.model, MaterialPrior());
@@ -259,9 +260,14 @@ int main(int argc, char** argv) {
   CLI::Option* const found =
       app.add_flag("--found", options.found_alone,
                    "the search alone, without the lobes nearest to the truth");
+  app.add_flag(
+      "--ball-prior", options.ball_prior,
+      "codes N(0, prior_sigma^2), colours as the embedding's, in place "
+      "of the materials' joint Gaussian");
   app.add_flag("--cook-torrance", options.cook_torrance,
                "search among Lambertian plus Cook-Torrance, not the flow")
-      ->needs(found);
+      ->needs(found)
+      ->excludes("--ball-prior");
   app.add_flag("--further", options.further,
                "the search's last descent, far past its stop");
   app.add_option("--lamps", options.most_lamps, "at most; the search's own: 3")
