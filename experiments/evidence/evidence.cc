@@ -142,10 +142,9 @@ class EvidenceStudy {
                       int iterations, double least_gain) const {
     Descent descent;
     LightMode mode;
-    const CellNoise noise = fine.likelihood().FindCellNoise(
+    descent.noise = fine.likelihood().FindNoise(
         fine.Matrices(fine.WithLamps(start.lobes).data()), options_.sigma,
         start.scales, MarginalObjective::kModeTolerance, &mode);
-    descent.noise = noise.variance;
     const MarginalObjective objective(&fine, &prior_, descent.noise, &mode);
     std::vector<double> y =
         objective.Whitened(fine.WithLamps(start.lobes), start.scales);
@@ -153,7 +152,6 @@ class EvidenceStudy {
     o.max_iterations = iterations;
     o.least_gain = least_gain;
     descent.summary = Descend(objective, o, &y);
-    descent.summary.cost += noise.cost;
     descent.value = objective.last_value();
     descent.end = {objective.LobesOf(y.data()), objective.ScalesOf(y.data())};
     return descent;

@@ -61,9 +61,6 @@ struct LightProcess {
   // Of a lamp's log radiance besides (light_lamps.h); no amplitude scales it.
   double lamp_variance = 6.25;
   double lamp_chroma_variance = 0.25;
-  // Of the logarithm of how strong light inside a texel is, to roughness 1:
-  // half of the texels hold a quarter of it, a tenth several times as much.
-  double strength_mean = -1.4, strength_std = 1.8;
 
   // Variance of one channel's log radiance inside a square of that side, at
   // amplitude 1 and roughness 1.

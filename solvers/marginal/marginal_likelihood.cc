@@ -25,7 +25,8 @@ constexpr double kSmallestRadiance = 1e-200;
 constexpr int kMaxHessianSteps = 30;
 constexpr double kNewtonTolerance = 1e-3;
 constexpr double kMotionTolerance = 1e-10;
-
+// Of FindNoise, log radiance.
+constexpr double kFirstSigma = 0.15;
 }  // namespace
 
 MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
@@ -43,7 +44,8 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
       map_height_(map_height),
       map_width_(map_width),
       num_lamps_(num_lamps),
-      process_(process),
+      smooth_share_(process.smooth_share),
+      rough_share_(process.rough_share),
       texel_variance_(process.VarianceWithin(180.0 / map_height)),
       num_threads_(num_threads) {
   CHECK_GT(num_points_, 0);
@@ -65,6 +67,45 @@ double MarginalLikelihood::LevelFor(
     }
   }
   return sum / static_cast<double>(y_.size());
+}
+
+Eigen::VectorXd MarginalLikelihood::NoiseVariance(
+    const std::array<RowMatrix, 3>& matrices, double sigma,
+    const LightMode& mode) const {
+  const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
+  const Point point = At(matrices, mode.level, mode.l);
+  Eigen::VectorXd noise(3 * P);
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd power =
+        texel_variance_ * point.L.segment(c * n, t).cwiseAbs2();
+    for (Eigen::Index p = 0; p < P; ++p) {
+      const double* T = matrices[c].row(p).data();
+      double sum = 0.0;
+      const auto add = [&](int a, int b) {
+        const double difference = T[a] - T[b];
+        sum += difference * difference * (power[a] + power[b]);
+      };
+      for (int r = 0; r < map_height_; ++r) {
+        const int row = r * map_width_;
+        for (int x = 0; x < map_width_; ++x) {
+          add(row + x, row + (x + 1) % map_width_);
+          if (r + 1 < map_height_) add(row + x, row + map_width_ + x);
+        }
+      }
+      const double E = point.E[c * P + p];
+      noise[c * P + p] = sigma * sigma + 0.125 * sum / (E * E);
+    }
+  }
+  return noise;
+}
+
+Eigen::VectorXd MarginalLikelihood::FindNoise(
+    const std::array<RowMatrix, 3>& matrices, double sigma,
+    const LightScales& scales, double tolerance, LightMode* mode) const {
+  const Eigen::VectorXd first =
+      Eigen::VectorXd::Constant(y_.size(), kFirstSigma * kFirstSigma);
+  Evaluate(matrices, first, scales, tolerance, mode, nullptr);
+  return NoiseVariance(matrices, sigma, *mode);
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Light& light,

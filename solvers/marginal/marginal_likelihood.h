@@ -13,7 +13,6 @@
 #include <memory>
 #include <vector>
 
-#include "solvers/marginal/cell_noise.h"
 #include "solvers/marginal/dense_algebra.h"
 #include "solvers/marginal/light_process.h"
 #include "solvers/marginal/light_spectrum.h"
@@ -85,13 +84,13 @@ class MarginalLikelihood {
 
   // sigma^2 and what the map's coarse texels cannot hold: light inside a texel
   // shows where a lobe changes within it,
-  //   sigma^2 + s_p / E_p^2 sum_t v_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,
+  //   sigma^2 + 1 / E_p^2 sum_t v_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,
   // n the four neighbours of t, v the process' variance inside a texel at its
   // average scales, L and E those of `mode`. Small for a matte surface under
   // soft light, v for a ray. A mirror is then not blamed for what the map
   // lacks, nor preferred for it. Were v to follow the estimated scales, what
   // they are taken for would be the noise that suits a reflectance
-  // (experiments/evidence). Here the strengths s_p are 1.
+  // (experiments/evidence).
   Eigen::VectorXd NoiseVariance(const std::array<RowMatrix, 3>& matrices,
                                 double sigma, const LightMode& mode) const;
 
@@ -100,14 +99,6 @@ class MarginalLikelihood {
   Eigen::VectorXd FindNoise(const std::array<RowMatrix, 3>& matrices,
                             double sigma, const LightScales& scales,
                             double tolerance, LightMode* mode) const;
-
-  // FindNoise with strengths that differ from cell to cell, as light does: most
-  // of a sky is smoother than the process, and a lamp's edge is far rougher.
-  // Their most probable values given the residuals at the mode, and what these
-  // cost under their prior (FitStrength).
-  CellNoise FindCellNoise(const std::array<RowMatrix, 3>& matrices,
-                          double sigma, const LightScales& scales,
-                          double tolerance, LightMode* mode) const;
 
   // The level at which constant light gives the image's mean log radiance.
   double LevelFor(const std::array<RowMatrix, 3>& matrices) const;
@@ -187,7 +178,7 @@ class MarginalLikelihood {
   ProcessSpectrum spectrum_;
   RowMatrix roughness_weights_;  // [bands][rows]
   int map_height_, map_width_, num_lamps_;
-  LightProcess process_;
+  double smooth_share_, rough_share_;
   double texel_variance_;  // at amplitude and roughness 1
   int num_threads_;
 };

@@ -92,8 +92,7 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
   Eigen::ArrayXd correlation(t);  // of a texel with itself
   for (int r = 0; r < map_height_; ++r) {
     correlation.segment(r * map_width_, map_width_) =
-        process_.smooth_share +
-        process_.rough_share * roughness[r] * roughness[r];
+        smooth_share_ + rough_share_ * roughness[r] * roughness[r];
   }
   // diag(K - K J^T A^-1 J K), row by row of J K.
   Eigen::VectorXd variance(3 * t);

@@ -74,10 +74,9 @@ class Level {
   End Refine(const Eigen::VectorXd& parameters, const LightScales& scales,
              int iterations) const {
     End end;
-    const CellNoise noise = reflectance_.likelihood().FindCellNoise(
+    end.noise = reflectance_.likelihood().FindNoise(
         reflectance_.Matrices(parameters.data()), options_.sigma, scales,
         MarginalObjective::kModeTolerance, &end.mode);
-    end.noise = noise.variance;
     const MarginalObjective objective = Objective(end.noise, &end.mode);
     end.y = objective.Whitened(parameters, scales);
     MarginalDescentOptions o;
@@ -85,7 +84,7 @@ class Level {
     o.should_stop = options_.should_stop;
     const MarginalDescent descent = Descend(objective, o, &end.y);
     end.ok = descent.ok;
-    end.cost = descent.cost + noise.cost;
+    end.cost = descent.cost;
     end.value = objective.last_value();
     return end;
   }

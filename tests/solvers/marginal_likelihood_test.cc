@@ -327,48 +327,6 @@ TEST(MarginalLikelihood, NoiseGrowsAsLobesShrink) {
   EXPECT_LT(last, LightProcess().VarianceWithin(180.0 / kHeight) + 1e-3);
 }
 
-// A cell that no light of the process makes: its noise is taken for strong,
-// the others' is not, and all in all that is the more probable.
-TEST(MarginalLikelihood, CellNoiseIsStrongWhereTheProcessFails) {
-  const int points = 20, odd = 7;
-  const std::array<RowMatrix, 3> T = Lobes(0.3, points);
-  std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 5));
-  for (int c = 0; c < 3; ++c) y[c * points + odd] += 1.5 - c;
-  const MarginalLikelihood likelihood = Likelihood(y, Proper());
-  const double sigma = 0.03;
-  LightMode mode, plain_mode;
-  const CellNoise noise = likelihood.FindCellNoise(T, sigma, {}, 1e-8, &mode);
-  const Eigen::VectorXd plain =
-      likelihood.FindNoise(T, sigma, {}, 1e-8, &plain_mode);
-  ASSERT_EQ(plain.size(), noise.variance.size());
-  const Eigen::ArrayXd strength = (noise.variance.array() - sigma * sigma) /
-                                  (plain.array() - sigma * sigma);
-  for (int p = 0; p < points; ++p) {
-    for (int c = 1; c < 3; ++c) {
-      EXPECT_NEAR(1.0, strength[c * points + p] / strength[p], 1e-9);
-    }
-    if (p != odd) {
-      EXPECT_LT(3.0 * strength[p], strength[odd]) << p;
-    }
-  }
-  double prior = 0.0;
-  for (int p = 0; p < points; ++p) {
-    const double x = (std::log(strength[p]) - LightProcess().strength_mean) /
-                     LightProcess().strength_std;
-    prior += 0.5 * x * x;
-  }
-  EXPECT_NEAR(prior, noise.cost, 1e-6 * prior);
-  // All as strong as the prior's mean, which costs nothing.
-  const Eigen::VectorXd even =
-      sigma * sigma +
-      std::exp(LightProcess().strength_mean) * (plain.array() - sigma * sigma);
-  const double of_even =
-      likelihood.Evaluate(T, even, {}, 1e-8, &plain_mode, nullptr).cost;
-  const double of_cells =
-      likelihood.Evaluate(T, noise.variance, {}, 1e-8, &mode, nullptr).cost;
-  EXPECT_LT(of_cells + noise.cost, of_even - 1.0);
-}
-
 TEST(LightProcess, ScalesAreWhitened) {
   const LightScales scales = Rough();
   const auto y = scales.Whitened();
