@@ -53,6 +53,9 @@ std::vector<MaterialPrior::Material> FittedMaterials(
   return materials;
 }
 
+// Of a known material's parameters: no step or derivative tells it from 0.
+constexpr double kKnownStd = 1e-9;
+
 }  // namespace
 
 double MaterialPrior::WallCost(const Eigen::VectorXd& x,
@@ -101,6 +104,16 @@ double MaterialPrior::CostAtBestLevel(const Eigen::VectorXd& x) const {
   }
   const Eigen::VectorXd along = lower.solve(level).normalized();
   return 0.5 * (y - y.dot(along) * along).squaredNorm() + WallCost(x, nullptr);
+}
+
+MaterialPrior KnownMaterial(MaterialPrior::Material material, int code_size) {
+  const Eigen::Index n = material.parameters.size();
+  MaterialPrior prior;
+  prior.code_size = code_size;
+  prior.mean = material.parameters;
+  prior.factor = kKnownStd * Eigen::MatrixXd::Identity(n, n);
+  prior.materials.push_back(std::move(material));
+  return prior;
 }
 
 MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,

@@ -50,6 +50,9 @@ MaterialPrior GaussianPrior(std::vector<MaterialPrior::Material> materials,
 MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
                                  double code_sigma);
 
+// A material that is known, from which no step moves the lobes.
+MaterialPrior KnownMaterial(MaterialPrior::Material material, int code_size);
+
 // The paper's: codes N(0, code_sigma^2 I), colours as the embedding's
 // (Chen et al. 2020, Sec. 4.3).
 MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,

@@ -17,7 +17,9 @@ namespace {
 constexpr double kProcessShare = 0.5;
 constexpr double kMapShare = 0.9;
 // Of the draw's misfit: a network beyond it is not finished.
-constexpr double kWorseMisfit = 1.5;
+constexpr double kWorseMisfit = 1.2;
+// Of the misfit of an image of joined pixels, what joining them leaves out.
+constexpr double kBlurredShare = 0.2;
 // Maps are first found at this size or below.
 constexpr int kProcessWidth = 128;
 
@@ -121,8 +123,9 @@ Status Estimator::EstimateLight(JointState* state) {
     MatchLight(state);
     StartFirstLight();
     Report("constant map", cells_.get(), *state);
-    return Rounds("map", method, JointBlocks::kLight, kMapShare, state);
+    return MapRounds(method, kMapShare, state);
   }
+  if (!lobes_unknown()) SearchLight();
   int width = problem_.map_width, height = problem_.map_height;
   if (problem_.illumination_prior == IlluminationPrior::kProcess) {
     return EstimateDraw(width, height, method, kMapShare, state);
@@ -150,7 +153,32 @@ Status Estimator::EstimateDraw(int width, int height, JointMethod method,
     o.should_stop = StopAfter(kProcessShare / 2);
     FitLogMap(Resampled(mode_, height, width), o, light_.get(), &state->light);
   }
-  return Rounds("map", method, JointBlocks::kLight, share, state);
+  return MapRounds(method, share, state);
+}
+
+Status Estimator::MapRounds(JointMethod method, double share,
+                            JointState* state) {
+  IBRDF_RETURN_IF_ERROR(
+      Rounds("map", method, JointBlocks::kLight, share, state));
+  if (!CellsBlur(*state)) return OkStatus();
+  cells_ = MakeCellLevel(problem_, kFineMapCells);
+  return Rounds("fine map", method, JointBlocks::kLight, share, state);
+}
+
+bool Estimator::CellsBlur(const JointState& state) {
+  // Points in shadow are not joined. And what pixels tell beyond cells of an
+  // estimated reflectance is as much its errors as the map.
+  if (problem_.transport.visibility != nullptr || lobes_unknown()) return false;
+  LevelPair pair = MakeLevelPair(problem_, kMapCells);
+  if (pair.cells->observed.num_valid == 0) return false;
+  const auto radiance = [&](Level* level) {
+    const LevelObjective on = ObjectiveOn(level);
+    on.objective->Evaluate(state);
+    return on.objective->radiance();
+  };
+  const double error = JoiningError(*pair.pixels, radiance(pair.pixels.get()),
+                                    radiance(pair.cells.get()), kMapCells);
+  return error > kBlurredShare * Evaluate("map", cells_.get(), state).misfit;
 }
 
 Status Estimator::EstimateNetwork(JointState* state) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/brdf/table_lobes.h"
 #include "solvers/eigen_vectors.h"
 #include "solvers/embedding_prior.h"
 #include "solvers/estimate/estimator.h"
@@ -17,6 +18,8 @@ namespace {
 
 // Of the time left, at most: the search for the reflectance.
 constexpr double kSearchShare = 0.55;
+// And for the scales of the light under a known one.
+constexpr double kLightSearchShare = 0.25;
 // Of the disc of normals: what a few dozen parameters under known light can
 // learn from.
 constexpr int kKnownLightCells = 26;
@@ -25,6 +28,9 @@ constexpr int kKnownLightFinalists = 3;
 // Of the trust region: of every start, and of a round.
 constexpr int kStartSteps = 3;
 constexpr int kRoundSteps = 6;
+// Of the median radiance: no camera sees less, and its logarithm is far from
+// all others.
+constexpr double kDarkest = 1e-8;
 // Where nearly all of a point's light comes from the object the map's says
 // little of it.
 constexpr double kMostBounceGain = 10.0;
@@ -54,12 +60,12 @@ std::vector<double> BounceGain(const Transport& transport, const BrdfGrid& grid,
 
 }  // namespace
 
-Status Estimator::SearchMarginal(JointState* state) {
+ReflectanceSearchOptions Estimator::SearchOptions(double share) {
   ReflectanceSearchOptions o;
   o.num_threads = problem_.num_threads;
   o.screen.visibility = o.coarse.visibility = o.fine.visibility =
       problem_.transport.visibility;
-  o.should_stop = StopAfter(kSearchShare);
+  o.should_stop = StopAfter(share);
   // The first stages of a small budget of iterations are cut short alike.
   const int iterations = problem_.solver.max_iterations;
   if (iterations == 0) o.coarse_rounds = {{1, 0}};
@@ -67,7 +73,6 @@ Status Estimator::SearchMarginal(JointState* state) {
     round.iterations = std::min(round.iterations, 5 * iterations);
   }
   o.fine_iterations = std::min(o.fine_iterations, 5 * iterations);
-  o.covariance = iterations > 0;
   o.report = [this](const std::string& stage, double cost, double misfit) {
     TraceEntry entry;
     entry.stage = stage;
@@ -77,31 +82,64 @@ Status Estimator::SearchMarginal(JointState* state) {
     entry.seconds = Elapsed();
     Report(entry);
   };
-  // Of all points, made when it is first asked for.
-  std::unique_ptr<Transport> transport;
   if (problem_.transport.emitters != nullptr) {
-    o.bounce_gain = [&](const std::vector<double>& lobes,
+    // Of all points, made when it is first asked for.
+    auto transport = std::make_shared<std::unique_ptr<Transport>>();
+    o.bounce_gain = [this, transport, shape = o.fine](
+                        const std::vector<double>& lobes,
                         const std::vector<double>& log_radiance) {
-      if (transport == nullptr) {
+      if (*transport == nullptr) {
         TransportOptions options = problem_.transport;
         options.num_threads = problem_.num_threads;
-        transport = std::make_unique<Transport>(
-            problem_.points, o.fine.map_height, o.fine.map_width, options);
+        *transport = std::make_unique<Transport>(
+            problem_.points, shape.map_height, shape.map_width, options);
       }
-      return BounceGain(*transport, lobes_->Grid(lobes.data()), log_radiance);
+      return BounceGain(
+          **transport,
+          lobes_unknown() ? lobes_->Grid(lobes.data()) : *problem_.known_brdf,
+          log_radiance);
     };
   }
+  return o;
+}
+
+std::vector<double> Estimator::SearchRadiance() const {
+  std::vector<double> radiance = RadianceOf(problem_.image, problem_.points);
+  std::vector<double> lit;
+  for (const double e : radiance) {
+    if (std::isfinite(e) && e > 0.0) lit.push_back(e);
+  }
+  if (lit.empty()) return radiance;
+  const auto middle = lit.begin() + lit.size() / 2;
+  std::nth_element(lit.begin(), middle, lit.end());
+  const double darkest = kDarkest * *middle;
+  for (double& e : radiance) {
+    if (e < darkest) e = 0.0;
+  }
+  return radiance;
+}
+
+void Estimator::KeepLight(const ReflectanceSearchResult& found, double level) {
+  light_scales_ = found.scales;
+  lamps_ = found.lamps;
+  std::vector<double> log_radiance = found.log_radiance;
+  for (double& v : log_radiance) v -= level;
+  mode_ = FromPlanes(log_radiance, found.map_width, found.map_height);
+  map_std_ =
+      FromPlanes(found.log_radiance_std, found.map_width, found.map_height);
+}
+
+Status Estimator::SearchMarginal(JointState* state) {
+  ReflectanceSearchOptions o = SearchOptions(kSearchShare);
+  o.covariance = problem_.solver.max_iterations > 0;
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       FlowLobes::Factory(problem_.model, problem_.lobes, problem_.num_threads),
-      materials_, problem_.points, RadianceOf(problem_.image, problem_.points),
-      o);
+      materials_, problem_.points, SearchRadiance(), o);
   if (!found.ok()) return found.status();
   state->lobes = found->parameters;
   const LevelGauge gauge(problem_.model, materials_, problem_.num_threads);
-  const double level = gauge.Fix(state->lobes.data());
+  KeepLight(*found, gauge.Fix(state->lobes.data()));
   start_name_ = found->start;
-  light_scales_ = found->scales;
-  lamps_ = found->lamps;
   const auto& materials = materials_.materials;
   const auto start =
       std::find_if(materials.begin(), materials.end(),
@@ -109,15 +147,20 @@ Status Estimator::SearchMarginal(JointState* state) {
   first_.lobes = ToVector(start->parameters);
   gauge.Fix(first_.lobes.data());
   covariance_ = found->covariance;
-  std::vector<double> log_radiance = found->log_radiance;
-  for (double& v : log_radiance) v -= level;
-  mode_ = FromPlanes(log_radiance, found->map_width, found->map_height);
-  map_std_ =
-      FromPlanes(found->log_radiance_std, found->map_width, found->map_height);
   for (const TriedMaterial& tried : found->tried) {
     if (std::isfinite(tried.cost)) tried_.push_back(tried);
   }
   return OkStatus();
+}
+
+void Estimator::SearchLight() {
+  ReflectanceSearchOptions o = SearchOptions(kLightSearchShare);
+  o.covariance = false;
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      TableLobes::Factory(*problem_.known_brdf),
+      KnownMaterial({"known", ToEigen(TableLobes::KnownParameters())}, 0),
+      problem_.points, SearchRadiance(), o);
+  if (found.ok()) KeepLight(*found, 0.0);
 }
 
 void Estimator::StartAtMeanMaterial(JointState* state) {

@@ -17,8 +17,6 @@ namespace {
 
 constexpr double kFirstScale = 0.1;     // b at first: tolerant
 constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
-// Of the disc of normals: what a map's estimate is made from.
-constexpr int kMapCells = 64;
 // Time of Finish over that of a transport of all pixels, which it builds: the
 // render, the alternatives and the tables are the rest.
 constexpr double kFinishPerTransport = 2.5;

@@ -41,6 +41,11 @@ class Estimator {
   StatusOr<Estimate> Run();
 
  private:
+  // Across the disc of normals: what a map's estimate is made from, at first
+  // and where the image is as sharp as the map's texels.
+  static constexpr int kMapCells = 64;
+  static constexpr int kFineMapCells = 128;
+
   // estimator.cc: clock, objective and trace.
   double Elapsed() const;
   double Budget() const { return problem_.solver.seconds; }
@@ -77,6 +82,17 @@ class Estimator {
   void Report(const std::string& stage, Level* level, const JointState& state);
 
   // estimate_reflectance.cc
+  // That spends at most a share of the time left.
+  ReflectanceSearchOptions SearchOptions(double share);
+  // The image's, [points * 3]; 0, which a search leaves out, where it is far
+  // below any measurement.
+  std::vector<double> SearchRadiance() const;
+  // What a search says of the light, whose log radiance is to fall by `level`.
+  void KeepLight(const ReflectanceSearchResult& found, double level);
+  // Lamps and scales of the light of highest posterior probability with its map
+  // integrated out, under the known reflectance; left at the average where the
+  // image does not tell.
+  void SearchLight();
   // The reflectance whose posterior is highest with the light integrated out.
   Status SearchMarginal(JointState* state);
   // The first of the spread materials.
@@ -136,6 +152,11 @@ class Estimator {
   // and take a tenth of the time of a network's.
   Status EstimateDraw(int width, int height, JointMethod method, double share,
                       JointState* state);
+  // The map on joined pixels, and on those of a finer joining where that tells
+  // more.
+  Status MapRounds(JointMethod method, double share, JointState* state);
+  // Whether the map at hand makes light that joined pixels cannot show.
+  bool CellsBlur(const JointState& state);
   // As the network's output, from its fit to the draw at hand, which is kept
   // where the network does not come near it in time.
   Status EstimateNetwork(JointState* state);

@@ -1,5 +1,6 @@
 #include "solvers/estimate/image_levels.h"
 
+#include <cmath>
 #include <utility>
 
 #include "solvers/marginal/image_cells.h"
@@ -11,6 +12,9 @@ namespace {
 // Points nearer the limb are left out.
 constexpr double kMinCosine = 0.1;
 constexpr size_t kThinPoints = 4000;  // about as many are left
+// Of MakeLevelPair: squares of so many pixels a side, one of so many each way.
+constexpr int kBlock = 8;
+constexpr int kOfBlocks = 3;
 
 std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points,
                                  const std::vector<double>& radiance) {
@@ -63,6 +67,39 @@ std::unique_ptr<Level> MakeCellLevel(const InverseProblem& problem,
       JoinLikePoints(problem.points, radiance, cells_across, kMinCosine);
   if (cells.points.empty()) return MakeLevel(problem.points, radiance);
   return MakeLevel(std::move(cells.points), cells.radiance);
+}
+
+LevelPair MakeLevelPair(const InverseProblem& problem, int cells_across) {
+  std::vector<ShadingPoint> some;
+  for (const ShadingPoint& p : problem.points) {
+    const int x = p.pixel % problem.image.width;
+    const int y = p.pixel / problem.image.width;
+    if (x / kBlock % kOfBlocks == 0 && y / kBlock % kOfBlocks == 0) {
+      some.push_back(p);
+    }
+  }
+  const std::vector<double> radiance = RadianceOf(problem.image, some);
+  MeanCells cells = JoinLikePoints(some, radiance, cells_across, kMinCosine);
+  return {MakeLevel(std::move(cells.points), cells.radiance),
+          MakeLevel(std::move(some), radiance)};
+}
+
+double JoiningError(const Level& pixels, const std::vector<double>& of_pixels,
+                    const std::vector<double>& of_cells, int cells_across) {
+  // Pixels that are in no cell of the image are in none here.
+  std::vector<double> radiance = of_pixels;
+  for (size_t i = 0; i < radiance.size(); ++i) {
+    if (!pixels.observed.valid[i / 3]) radiance[i] = 0.0;
+  }
+  const std::vector<double> joined =
+      JoinLikePoints(pixels.points, radiance, cells_across, kMinCosine)
+          .radiance;
+  if (joined.empty() || joined.size() != of_cells.size()) return 0.0;
+  double sum = 0.0;
+  for (size_t i = 0; i < joined.size(); ++i) {
+    sum += std::abs(std::log(of_cells[i] / joined[i]));
+  }
+  return std::isfinite(sum) ? sum / static_cast<double>(joined.size()) : 0.0;
 }
 
 std::unique_ptr<Level> MakeSampleLevel(const InverseProblem& problem,

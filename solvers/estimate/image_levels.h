@@ -29,6 +29,18 @@ std::unique_ptr<Level> MakeFullLevel(const InverseProblem& problem);
 std::unique_ptr<Level> MakeCellLevel(const InverseProblem& problem,
                                      int cells_across);
 
+// A ninth of the image, as MakeCellLevel's and pixel by pixel.
+struct LevelPair {
+  std::unique_ptr<Level> cells, pixels;
+};
+LevelPair MakeLevelPair(const InverseProblem& problem, int cells_across);
+
+// What joining leaves out of an image: mean |log cell - mean log of its pixels|
+// of the radiance [points * 3] that a model gives a pair's points. 0 where it
+// gives a pixel none.
+double JoiningError(const Level& pixels, const std::vector<double>& of_pixels,
+                    const std::vector<double>& of_cells, int cells_across);
+
 // One pixel, as it is, of each cell of like normals; all where there is none
 // away from the limb.
 std::unique_ptr<Level> MakeSampleLevel(const InverseProblem& problem,

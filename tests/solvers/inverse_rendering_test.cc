@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/render/reference_renderer.h"
 #include "tests/solvers/solver_testing.h"
@@ -310,6 +311,43 @@ TEST_F(InverseRenderingTest, UNetPriorRunsEndToEnd) {
       [](const TraceEntry& t) { return t.stage == "constant map"; });
   ASSERT_NE(e.trace.end(), constant);
   EXPECT_LT(e.misfit, constant->misfit);
+}
+
+// What joined pixels leave out is asked for where there is any: under the same
+// light a mirror's image has edges, a matte one's none.
+TEST_F(InverseRenderingTest, MirrorsMapsAreFoundFromFinerPixels) {
+  SetKind(ProblemKind::kIllumination);
+  problem_.illumination_prior = IlluminationPrior::kProcess;
+  problem_.points = SpherePoints(96);
+  problem_.image = Image(96, 96);
+  problem_.solver.max_iterations = 12;
+  problem_.solver.tolerance = 3e-3;
+  problem_.transport.grid.h = 24;
+  Image map = map_;
+  for (int t = 0; t < 128; t += 5) map.rgb[3 * t + 1] *= 20.0f;
+  for (const bool mirror : {true, false}) {
+    CookTorrance brdf;
+    brdf.diffuse.setConstant(mirror ? 0.05 : 0.5);
+    brdf.specular.setConstant(mirror ? 1.0 : 0.0);
+    brdf.roughness.setConstant(0.05);
+    brdf.f0.setConstant(0.5);
+    problem_.known_brdf =
+        BrdfGrid::FromFunction(brdf.Function(), problem_.transport.grid);
+    std::vector<double> E(3 * problem_.points.size());
+    Transport(problem_.points, 8, 16, problem_.transport)
+        .Render(*problem_.known_brdf, map.rgb.data(), E.data());
+    for (size_t i = 0; i < E.size(); ++i) {
+      problem_.image.rgb[3 * problem_.points[i / 3].pixel + i % 3] =
+          static_cast<float>(E[i] * std::exp(0.02 * std::sin(11.0 * i)));
+    }
+    const Estimate e = Solve();
+    const bool fine =
+        std::any_of(e.trace.begin(), e.trace.end(), [](const TraceEntry& t) {
+          return t.stage.compare(0, 8, "fine map") == 0;
+        });
+    EXPECT_EQ(mirror, fine);
+    EXPECT_LT(e.misfit, 0.05);
+  }
 }
 
 TEST_F(InverseRenderingTest, GivenScaleAndEpsilonAreUsed) {

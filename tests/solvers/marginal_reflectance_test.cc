@@ -8,6 +8,8 @@
 
 #include "ibrdf/brdf/cook_torrance_lobes.h"
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/brdf/table_lobes.h"
+#include "ibrdf/light/environment_map.h"
 #include "solvers/costs/material_prior_cost.h"
 #include "solvers/eigen_vectors.h"
 #include "solvers/known_light_search.h"
@@ -380,6 +382,52 @@ TEST_F(MarginalReflectanceTest, SearchAmongCookTorranceExplainsItsOwn) {
   for (const TriedMaterial& tried : found->tried) {
     EXPECT_LT(found->cost, tried.first_cost - 5.0) << tried.name;
   }
+}
+
+// The reflectance does not move, and the light of a lamp in dim surroundings
+// is found with it.
+TEST_F(MarginalReflectanceTest, SearchUnderAKnownReflectanceFindsTheLight) {
+  CookTorrance paint;
+  paint.diffuse = {0.1, 0.07, 0.04};
+  paint.specular.setConstant(1.0);
+  paint.roughness.setConstant(0.2);
+  paint.f0.setConstant(0.2);
+  const BrdfGrid known =
+      BrdfGrid::FromFunction(paint.Function(), resolution_.grid);
+  const std::vector<ShadingPoint> points = SpherePoints(24);
+  Image map = SmoothMap(16, 32);
+  double row = 0.0, column = 0.0;
+  MapPosition(kLamps[0], 16, 32, &row, &column);
+  row = std::floor(row);
+  column = std::floor(column);
+  const Eigen::Vector3d lamp = MapDirection(row + 0.5, column + 0.5, 16, 32);
+  for (int c = 0; c < 3; ++c) {
+    map.rgb[3 * static_cast<size_t>(row * 32 + column) + c] *= 200.0f;
+  }
+  TransportOptions transport;
+  transport.grid = resolution_.grid;
+  transport.num_threads = 1;
+  std::vector<double> image(3 * points.size());
+  Transport(points, 16, 32, transport)
+      .Render(known, map.rgb.data(), image.data());
+  ReflectanceSearchOptions options = Options();
+  options.covariance = false;
+  const std::vector<double> parameters = TableLobes::KnownParameters();
+  const MaterialPrior prior = KnownMaterial({"known", ToEigen(parameters)}, 0);
+  EXPECT_EQ(0.0, prior.Cost(ToEigen(parameters), nullptr));
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      TableLobes::Factory(known), prior, points, image, options);
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  EXPECT_EQ("known", found->start);
+  ASSERT_EQ(parameters.size(), found->parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    EXPECT_NEAR(parameters[i], found->parameters[i], 1e-6);
+  }
+  ASSERT_FALSE(found->lamps.empty());
+  EXPECT_GT(found->lamps[0].dot(lamp), std::cos(5.0 * M_PI / 180.0));
+  // All resolutions are one: costs compare.
+  EXPECT_LT(found->cost, found->tried[0].first_cost);
+  EXPECT_LT(found->misfit, 0.05);
 }
 
 TEST_F(MarginalReflectanceTest, SearchLowersTheCostWhateverTheThreads) {
