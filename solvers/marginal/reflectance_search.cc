@@ -152,6 +152,7 @@ class Search {
               [](const Ranking& a, const Ranking& b) {
                 return a.front().cost < b.front().cost;
               });
+    if (!std::isfinite(rankings.front().front().cost)) return false;
     Report("rank " + std::to_string(tried_.size()) + " materials",
            rankings.front().front().cost, rankings.front().front().misfit);
     for (int k = 0; k < options_.coarse_rounds.front().most; ++k) {

@@ -430,6 +430,23 @@ TEST_F(MarginalReflectanceTest, SearchUnderAKnownReflectanceFindsTheLight) {
   EXPECT_LT(found->misfit, 0.05);
 }
 
+// No infinite cost gets into a trace either.
+TEST_F(MarginalReflectanceTest, SearchUnderABlackReflectanceSaysSo) {
+  const BrdfGrid black = BrdfGrid::FromFunction(
+      [](double, double, double) { return Eigen::Array3d::Zero().eval(); },
+      resolution_.grid);
+  const MaterialPrior prior =
+      KnownMaterial({"known", ToEigen(TableLobes::KnownParameters())}, 0);
+  ReflectanceSearchOptions options = Options();
+  int reports = 0;
+  options.report = [&](const std::string&, double, double) { ++reports; };
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      TableLobes::Factory(black), prior, points_, radiance_, options);
+  ASSERT_FALSE(found.ok());
+  EXPECT_EQ(StatusCode::kNoImprovement, found.status().code());
+  EXPECT_EQ(0, reports);
+}
+
 TEST_F(MarginalReflectanceTest, SearchLowersTheCostWhateverTheThreads) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   ReflectanceSearchOptions options = Options();
