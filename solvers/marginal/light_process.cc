@@ -108,10 +108,21 @@ Eigen::VectorXd Roughness(int map_height, const LightScales& scales) {
       .exp();
 }
 
+Eigen::VectorXd HorizonStep(int map_height) {
+  Eigen::VectorXd step(map_height);
+  for (int r = 0; r < map_height; ++r) {
+    step[r] = 0.5 * ((2 * r + 1 < map_height) - (2 * r + 1 > map_height));
+  }
+  return step;
+}
+
 RowMatrix LightCorrelation(int map_height, int map_width,
                            const LightProcess& process,
                            const LightScales& scales) {
   const Eigen::VectorXd roughness = Roughness(map_height, scales);
+  const Eigen::VectorXd step = HorizonStep(map_height);
+  const double horizon =
+      process.horizon_share * std::exp(-scales.log_amplitude);
   std::vector<Eigen::Vector3d> directions;
   for (int r = 0; r < map_height; ++r) {
     for (int c = 0; c < map_width; ++c) {
@@ -129,9 +140,10 @@ RowMatrix LightCorrelation(int map_height, int map_width,
       const double rough =
           i == j ? 1.0 : process.Rough(directions[i], directions[j]);
       correlation(i, j) = correlation(j, i) =
-          process.smooth_share * smooth + process.rough_share *
-                                              roughness[i / map_width] *
-                                              roughness[j / map_width] * rough;
+          process.smooth_share * smooth +
+          process.rough_share * roughness[i / map_width] *
+              roughness[j / map_width] * rough +
+          horizon * step[i / map_width] * step[j / map_width];
     }
   }
   return correlation;

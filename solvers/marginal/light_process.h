@@ -45,8 +45,11 @@ struct LightScales {
 // log L_c(w) = m + l_c(w), with
 //   cov(l_c(w), l_d(w')) = amplitude M_cd C(w, w') + B_cd,
 //   C = smooth_share (1 + x) exp(-x)
-//       + rough_share S(w) S(w') exp(-angle(w, w') / rough_degrees),
+//       + rough_share S(w) S(w') exp(-angle(w, w') / rough_degrees)
+//       + horizon_share h(w) h(w') / amplitude,
 //   x = |w - w'| / smooth_degrees, S the roughness,
+//   h = 1/2 above the horizon, -1/2 below: the ground is darker or brighter
+//   than the sky by a step, however little the light varies otherwise,
 //   M = luminance_variance 11^T + chroma_variance (I - 11^T / 3),
 //   B = level_variance 11^T + level_chroma_variance (I - 11^T / 3).
 // The exponential's paths are rough. Defaults: semivariograms of maps at 32x16,
@@ -54,6 +57,7 @@ struct LightScales {
 struct LightProcess {
   double smooth_share = 0.75, smooth_degrees = 40.0;
   double rough_share = 0.375, rough_degrees = 20.0;
+  double horizon_share = 0.6;
   double luminance_variance = 1.6;
   double chroma_variance = 0.12;
   double level_variance = 4.0;
@@ -70,7 +74,8 @@ struct LightProcess {
   Eigen::Matrix3d Level() const;  // B
   Eigen::Matrix3d Lamp() const;   // of a lamp, besides B
 
-  // The two parts of C between unit directions, without shares and roughness.
+  // The first two parts of C between unit directions, without shares and
+  // roughness.
   double Smooth(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
   double Rough(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 };
@@ -83,6 +88,8 @@ Eigen::Matrix3d ColourAxes();
 RowMatrix RoughnessWeights(int map_height);
 // S [rows].
 Eigen::VectorXd Roughness(int map_height, const LightScales& scales);
+// h [rows]; 0 in a row that the horizon halves.
+Eigen::VectorXd HorizonStep(int map_height);
 
 // C between the texels of a map, [H W][H W].
 RowMatrix LightCorrelation(int map_height, int map_width,

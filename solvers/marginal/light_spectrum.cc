@@ -88,6 +88,13 @@ LightSpectrum LightSpectrum::Scaled(double share,
   return out;
 }
 
+LightSpectrum LightSpectrum::PlusRows(const Eigen::VectorXd& value) const {
+  CHECK_EQ(value.size(), height_);
+  LightSpectrum out = *this;
+  out.blocks_[0] += width_ * value * value.transpose();
+  return out;
+}
+
 LightSpectrum LightSpectrum::Plus(const LightSpectrum& other) const {
   CHECK(other.height_ == height_ && other.width_ == width_);
   LightSpectrum out = *this;
@@ -109,7 +116,10 @@ ProcessSpectrum::ProcessSpectrum(int height, int width,
       }) {}
 
 LightSpectrum ProcessSpectrum::At(const LightScales& scales) const {
-  return smooth_.Plus(RoughAt(scales));
+  return smooth_.Plus(RoughAt(scales))
+      .PlusRows(
+          std::sqrt(process_.horizon_share * std::exp(-scales.log_amplitude)) *
+          HorizonStep(smooth_.height()));
 }
 
 LightSpectrum ProcessSpectrum::RoughAt(const LightScales& scales) const {

@@ -36,6 +36,8 @@ class LightSpectrum {
 
   // share diag(by_row) C diag(by_row), by_row [H].
   LightSpectrum Scaled(double share, const Eigen::VectorXd& by_row) const;
+  // C + value[r] value[r'] between texels of rows r and r', value [H].
+  LightSpectrum PlusRows(const Eigen::VectorXd& value) const;
   // Of the same size.
   LightSpectrum Plus(const LightSpectrum& other) const;
 

@@ -41,6 +41,11 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
       lamp_(process.Lamp()),
       spectrum_(map_height, map_width, process),
       roughness_weights_(RoughnessWeights(map_height)),
+      horizon_(std::sqrt(process.horizon_share) *
+               HorizonStep(map_height)
+                   .transpose()
+                   .replicate(map_width, 1)
+                   .reshaped()),
       map_height_(map_height),
       map_width_(map_width),
       num_lamps_(num_lamps),
@@ -116,14 +121,25 @@ Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Light& light,
       Eigen::Map<const RowMatrix>(g.data(), 3, n).leftCols(t), &correlated);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(g.size());
   Eigen::Map<RowMatrix>(out.data(), 3, n).leftCols(t).noalias() =
-      local_ * correlated;
+      light.amplitude * local_ * correlated;
+  return out;
+}
+
+Eigen::VectorXd MarginalLikelihood::ApplyHorizon(
+    const Eigen::VectorXd& g) const {
+  const Eigen::Index t = num_texels(), n = num_sources();
+  const Eigen::Vector3d steps =
+      Eigen::Map<const RowMatrix>(g.data(), 3, n).leftCols(t) * horizon_;
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(g.size());
+  Eigen::Map<RowMatrix>(out.data(), 3, n).leftCols(t).noalias() =
+      local_ * steps * horizon_.transpose();
   return out;
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyCovariance(
     const Light& light, const Eigen::VectorXd& g) const {
   const Eigen::Index n = num_sources();
-  Eigen::VectorXd out = light.amplitude * ApplyLocal(light, g);
+  Eigen::VectorXd out = ApplyLocal(light, g);
   const Eigen::Map<const RowMatrix> in(g.data(), 3, n);
   Eigen::Map<RowMatrix> by_channel(out.data(), 3, n);
   by_channel.rightCols(num_lamps_) += lamp_ * in.rightCols(num_lamps_);
@@ -181,6 +197,17 @@ RowMatrix MarginalLikelihood::LampBlock(const Linearisation& linear, int c,
                                         int d) const {
   return lamp_(c, d) * linear.jacobian[c].rightCols(num_lamps_) *
          linear.jacobian[d].rightCols(num_lamps_).transpose();
+}
+
+RowMatrix MarginalLikelihood::UnscaledBlock(const Linearisation& linear, int c,
+                                            int d) const {
+  const auto step = [&](int channel) -> Eigen::VectorXd {
+    return linear.jacobian[channel].leftCols(num_texels()) * horizon_;
+  };
+  RowMatrix block = LampBlock(linear, c, d);
+  block.noalias() += local_(c, d) * step(c) * step(d).transpose();
+  // The rows of a Jacobian sum to 1: a level moves log radiance as it is.
+  return block.array() + level_(c, d);
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyJacobian(
@@ -440,22 +467,21 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
     out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
   }
 
-  const Eigen::VectorXd local = ApplyLocal(light, mode.dual);
-  // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D, the level and
-  // the lamps.
+  // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the rest.
   double trace = 3.0 * static_cast<double>(P) -
                  inverse.diagonal().dot(weight.cwiseInverse());
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
-      const auto block = inverse.block(c * P, d * P, P, P);
-      trace -= level_(c, d) * block.sum() +
-               LampBlock(linear, c, d).cwiseProduct(block).sum();
+      trace -= UnscaledBlock(linear, c, d)
+                   .cwiseProduct(inverse.block(c * P, d * P, P, P))
+                   .sum();
     }
   }
   const auto by_scale = [&](const Eigen::VectorXd& K_dual, double its_trace) {
     return -0.5 * mode.dual.dot(K_dual) + w.dot(K_dual) + 0.5 * its_trace;
   };
-  gradient->scales[0] = by_scale(light.amplitude * local, trace);
+  gradient->scales[0] = by_scale(
+      ApplyLocal(light, mode.dual) - ApplyHorizon(mode.dual), trace);
   // Of C, by the log roughness of a band with weights h along the texels:
   // diag(h) R + R diag(h), R the rough part.
   const Eigen::Map<const RowMatrix> dual(mode.dual.data(), 3, n);

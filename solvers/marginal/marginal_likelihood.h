@@ -140,11 +140,15 @@ class MarginalLikelihood {
   // K g.
   Eigen::VectorXd ApplyCovariance(const Light& light,
                                   const Eigen::VectorXd& g) const;
-  // K1 g, the part that the amplitude scales, at amplitude 1.
+  // Of the texels' covariance, amplitude M C.
   Eigen::VectorXd ApplyLocal(const Light& light,
                              const Eigen::VectorXd& g) const;
+  // Of its step at the horizon.
+  Eigen::VectorXd ApplyHorizon(const Eigen::VectorXd& g) const;
   // J K_lamps J^T, channels c and d.
   RowMatrix LampBlock(const Linearisation& linear, int c, int d) const;
+  // J K0 J^T, K0 what the amplitude does not scale: level, horizon, lamps.
+  RowMatrix UnscaledBlock(const Linearisation& linear, int c, int d) const;
   Eigen::VectorXd ApplyJacobian(const Linearisation& linear,
                                 const Eigen::VectorXd& l) const;
   Eigen::VectorXd ApplyJacobianTransposed(const Linearisation& linear,
@@ -177,6 +181,8 @@ class MarginalLikelihood {
   Eigen::Matrix3d local_, level_, lamp_;
   ProcessSpectrum spectrum_;
   RowMatrix roughness_weights_;  // [bands][rows]
+  // The horizon's part of C at amplitude 1 is that of its step with itself.
+  Eigen::VectorXd horizon_;  // [texels]
   int map_height_, map_width_, num_lamps_;
   double smooth_share_, rough_share_;
   double texel_variance_;  // at amplitude and roughness 1

@@ -24,21 +24,17 @@ Eigen::MatrixXd MarginalLikelihood::Information(
   information.topLeftCorner(n, n).noalias() = whitened.transpose() * whitened;
   RowMatrix inverse = linear->factor;
   InvertFactored(&inverse);
-  // A^-1 J K_a J^T of each scale. The amplitude's: I - A^-1 (D + the level's
-  // and the lamps' parts).
+  // A^-1 J K_a J^T of each scale. The amplitude's: I - A^-1 (D + what it does
+  // not scale).
   std::array<RowMatrix, kCount> by;
-  by[0] = -inverse * noise.asDiagonal();
+  RowMatrix unscaled(3 * P, 3 * P);
   for (int c = 0; c < 3; ++c) {
-    Eigen::VectorXd level = Eigen::VectorXd::Zero(3 * P);
     for (int d = 0; d < 3; ++d) {
-      const auto columns = inverse.middleCols(d * P, P);
-      level += level_(d, c) * columns.rowwise().sum();
-      if (num_lamps_ > 0) {
-        by[0].middleCols(c * P, P) -= columns * LampBlock(*linear, d, c);
-      }
+      unscaled.block(c * P, d * P, P, P) = UnscaledBlock(*linear, c, d);
     }
-    by[0].middleCols(c * P, P).colwise() -= level;
   }
+  unscaled.diagonal() += noise;
+  MultiplyInTiles(inverse, -unscaled, num_threads_, &by[0]);
   by[0].diagonal().array() += 1.0;
   std::array<RowMatrix, 3> rough;
   for (int c = 0; c < 3; ++c) {
@@ -94,6 +90,7 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
     correlation.segment(r * map_width_, map_width_) =
         smooth_share_ + rough_share_ * roughness[r] * roughness[r];
   }
+  correlation += horizon_.array().square() / light.amplitude;
   // diag(K - K J^T A^-1 J K), row by row of J K.
   Eigen::VectorXd variance(3 * t);
   for (int c = 0; c < 3; ++c) {

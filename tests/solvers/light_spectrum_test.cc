@@ -53,9 +53,9 @@ TEST_P(LightSpectrumTest, ProductIsThatOfTheDenseCorrelation) {
   }
 }
 
-TEST_P(LightSpectrumTest, RoughPartIsWhatIsLeftWithoutTheSmoothOne) {
+TEST_P(LightSpectrumTest, RoughPartIsWhatIsLeftWithoutTheOthers) {
   LightProcess process = Process();
-  process.smooth_share = 0.0;
+  process.smooth_share = process.horizon_share = 0.0;
   const RowMatrix dense = LightCorrelation(height_, width_, process, scales_);
   RowMatrix product;
   process_.RoughAt(scales_).Multiply(

@@ -45,7 +45,9 @@ std::array<RowMatrix, 3> Lobes(double width, int points = kPoints,
 
 Eigen::VectorXd DrawLight(const LightProcess& process, double amplitude,
                           uint64_t seed, int lamps = 0) {
-  const RowMatrix C = LightCorrelation(kHeight, kWidth, process, LightScales());
+  LightScales scales;
+  scales.log_amplitude = std::log(amplitude);
+  const RowMatrix C = LightCorrelation(kHeight, kWidth, process, scales);
   const int n = kTexels + lamps;
   Eigen::MatrixXd K(3 * n, 3 * n);
   for (int c = 0; c < 3; ++c) {
@@ -189,6 +191,7 @@ TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
   process.lamp_chroma_variance = 0.005;
   process.level_variance = 0.01;
   process.level_chroma_variance = 0.002;
+  process.horizon_share = 0.02;
   const double log_amplitude = std::log(0.02), sigma = 0.15;
   const auto evidence = [&](const std::vector<double>& y) {
     const MarginalLikelihood likelihood(y, process, kHeight, kWidth, lamps, 1);
@@ -355,6 +358,26 @@ TEST(LightProcess, RoughnessIsLinearBetweenItsKnots) {
   EXPECT_NEAR(0.8, std::log(S[height - 1]), 1e-12);
   const double half_way = (57.5 - 40.0) / (75.0 - 40.0);
   EXPECT_NEAR(-1.5 + half_way * 1.9, std::log(S[57]), 1e-12);
+}
+
+TEST(LightProcess, HorizonIsAStepThatNoAmplitudeScales) {
+  const LightProcess process;
+  LightProcess without = process;
+  without.horizon_share = 0.0;
+  for (const double log_amplitude : {-3.0, 0.0, 1.5}) {
+    const LightScales scales{log_amplitude, LightScales::kMean};
+    const RowMatrix step = std::exp(log_amplitude) *
+                           (LightCorrelation(8, 16, process, scales) -
+                            LightCorrelation(8, 16, without, scales));
+    for (int i = 0; i < step.rows(); ++i) {
+      for (int j = 0; j < step.cols(); ++j) {
+        const double side = (i < 4 * 16) == (j < 4 * 16) ? 0.25 : -0.25;
+        ASSERT_NEAR(process.horizon_share * side, step(i, j), 1e-12);
+      }
+    }
+  }
+  // The horizon halves the middle row of an odd number.
+  EXPECT_EQ(Eigen::Vector3d(0.5, 0.0, -0.5), HorizonStep(3));
 }
 
 TEST(LightProcess, CovariancesArePositive) {
