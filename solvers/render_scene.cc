@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/light/procedural_sky.h"
 #include "ibrdf/render/lobe_bundles.h"
 #include "ibrdf/render/pixel_samples.h"

@@ -7,6 +7,7 @@
 #include "experiments/render_speed/scenes.h"
 #include "experiments/render_speed/studies.h"
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/render/gaussian_transport.h"
 #include "ibrdf/render/harmonic_transport.h"
 #include "ibrdf/render/reference_renderer.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/light/procedural_sky.h"
 #include "io/mesh.h"
 

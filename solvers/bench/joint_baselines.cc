@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "io/atomic_file.h"
 #include "io/image_file.h"

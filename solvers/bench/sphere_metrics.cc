@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/metrics/image_metrics.h"
 #include "ibrdf/render/reference_batch.h"

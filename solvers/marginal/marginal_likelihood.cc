@@ -41,11 +41,10 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
       lamp_(process.Lamp()),
       spectrum_(map_height, map_width, process),
       roughness_weights_(RoughnessWeights(map_height)),
-      horizon_(std::sqrt(process.horizon_share) *
-               HorizonStep(map_height)
-                   .transpose()
-                   .replicate(map_width, 1)
-                   .reshaped()),
+      horizon_(std::sqrt(process.horizon_share) * HorizonStep(map_height)
+                                                      .transpose()
+                                                      .replicate(map_width, 1)
+                                                      .reshaped()),
       map_height_(map_height),
       map_width_(map_width),
       num_lamps_(num_lamps),
@@ -480,8 +479,8 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
   const auto by_scale = [&](const Eigen::VectorXd& K_dual, double its_trace) {
     return -0.5 * mode.dual.dot(K_dual) + w.dot(K_dual) + 0.5 * its_trace;
   };
-  gradient->scales[0] = by_scale(
-      ApplyLocal(light, mode.dual) - ApplyHorizon(mode.dual), trace);
+  gradient->scales[0] =
+      by_scale(ApplyLocal(light, mode.dual) - ApplyHorizon(mode.dual), trace);
   // Of C, by the log roughness of a band with weights h along the texels:
   // diag(h) R + R diag(h), R the rough part.
   const Eigen::Map<const RowMatrix> dual(mode.dual.data(), 3, n);

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 
 namespace ibrdf {

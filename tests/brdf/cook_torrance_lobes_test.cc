@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/brdf/sample_merl.h"
+
 namespace ibrdf {
 namespace {
 

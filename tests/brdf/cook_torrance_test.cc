@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/geometry/half_diff.h"
 
 namespace ibrdf {

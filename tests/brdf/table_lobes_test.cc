@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 
 namespace ibrdf {
 namespace {

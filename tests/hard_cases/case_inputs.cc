@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
 #include "io/exr.h"

@@ -8,6 +8,7 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
 #include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/brdf/sample_merl.h"
 
 namespace ibrdf {
 namespace {

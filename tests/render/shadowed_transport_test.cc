@@ -7,6 +7,7 @@
 #include <random>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/render/reference_batch.h"
 #include "ibrdf/render/reference_renderer.h"
 #include "ibrdf/render/transport.h"

@@ -8,6 +8,7 @@
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/metrics/albedo.h"
 #include "io/merl.h"
 #include "io/model_file.h"

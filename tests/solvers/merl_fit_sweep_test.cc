@@ -8,6 +8,7 @@
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "io/merl.h"
 #include "solvers/bench/baseline_fitters.h"
 #include "solvers/bench/merl_fit_summary.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "ibrdf/brdf/sample_merl.h"
 #include "io/image_file.h"
 #include "io/png.h"
 #include "solvers/render_scene.h"

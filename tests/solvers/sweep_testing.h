@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "io/exr.h"
 #include "io/merl.h"
 #include "solvers/bench/solver_sweep.h"

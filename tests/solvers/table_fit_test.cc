@@ -8,6 +8,7 @@
 #include <random>
 
 #include "ibrdf/brdf/bivariate.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "solvers/baselines/dsbrdf_fit.h"
 #include "solvers/baselines/table_samples.h"

@@ -7,6 +7,7 @@
 
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 #include "io/merl.h"
 #include "solvers/adam.h"
 #include "solvers/trainer/checkpoint.h"

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 
 #include "ibrdf/brdf/brdf_grid.h"
-#include "ibrdf/brdf/merl_table.h"
 
 namespace ibrdf {
 
@@ -37,9 +36,5 @@ void FromLogParameters(const CookTorranceLog& parameters, int channel,
 double EvaluateCookTorrance(const CookTorranceLog& parameters, double theta_h,
                             double theta_d, double phi_d,
                             Eigen::Vector4d* gradient);
-
-// Samples at the bin centres; bins below the horizon hold -1 as in measured
-// tables.
-MerlTable SampleMerl(const BrdfFunction& brdf);
 
 }  // namespace ibrdf

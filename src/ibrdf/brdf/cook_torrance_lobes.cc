@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/brdf/sample_merl.h"
 
 namespace ibrdf {
 namespace {

@@ -1,11 +1,10 @@
 // Measured isotropic BRDFs on the grid of the MERL database
 // (Matusik et al. 2003).
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace ibrdf {
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
 
 namespace ibrdf {
 namespace {

@@ -44,7 +44,8 @@ struct ReferenceOptions {
   // these meet does along a quarter as many, at a coarser quadrature. 0: never.
   int lobe_rays = 0;
 };
-// A quarter of the rings: within 1 % but for mirrors (experiments/render_speed).
+// A quarter of the rings: within 1 % but for mirrors
+// (experiments/render_speed).
 inline ReferenceOptions Coarser(ReferenceOptions options) {
   options.near_rings /= 4;
   options.near_ring_samples /= 4;

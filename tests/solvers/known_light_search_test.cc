@@ -1,0 +1,42 @@
+#include "solvers/known_light_search.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/solvers/marginal_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+class KnownLightSearchTest : public MarginalTest {};
+
+TEST_F(KnownLightSearchTest, RanksFirstTheMaterialThatMadeTheImage) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  const FlowLobes lobes(model_, 2, resolution_.grid, 1);
+  TransportOptions options;
+  options.grid = resolution_.grid;
+  options.num_threads = 1;
+  const Transport transport(points_, 8, 16, options);
+  const std::vector<float> map = SmoothMap(8, 16).rgb;
+  for (size_t m = 0; m < prior.materials.size(); ++m) {
+    std::vector<double> E;
+    // Brighter than the material: the level is no part of the comparison.
+    Eigen::VectorXd x = prior.materials[m].parameters;
+    for (const int i : {4, 5, 6, 11, 12, 13}) x[i] += 1.5;
+    ASSERT_TRUE(
+        RenderLobeModel(transport, lobes, x.data(), map.data(), &E, nullptr));
+    RobustLogLikelihood likelihood;
+    likelihood.scale = 0.02;
+    const std::vector<RankedMaterial> ranked = RankUnderKnownLight(
+        transport, lobes, prior, map, MakeObservations(E), likelihood);
+    ASSERT_EQ(prior.materials.size(), ranked.size());
+    EXPECT_EQ(prior.materials[m].name, ranked[0].name);
+    EXPECT_NEAR(x[4], ranked[0].parameters[4], 1e-3);
+    for (size_t k = 1; k < ranked.size(); ++k) {
+      EXPECT_LE(ranked[k - 1].cost, ranked[k].cost);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ibrdf
