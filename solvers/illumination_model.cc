@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/natural_noise.h"
+
 namespace ibrdf {
 namespace {
 
@@ -16,7 +18,8 @@ constexpr float kMaxLogRadiance = 60.0f;
 class UnetIllumination final : public IlluminationModel {
  public:
   explicit UnetIllumination(const IlluminationUnetOptions& options)
-      : IlluminationModel(options.width, options.height), unet_(options) {}
+      : IlluminationModel(options.width, options.height),
+        unet_(options, NaturalNoise(options)) {}
 
   int num_parameters() const override { return unet_.num_weights(); }
 

@@ -13,6 +13,7 @@
 #include "ibrdf/light/illumination_unet_reference.h"
 #include "solvers/eigen_vectors.h"
 #include "solvers/joint/joint_objective.h"
+#include "solvers/natural_noise.h"
 #include "tests/render/render_testing.h"
 #include "tests/solvers/solver_testing.h"
 #include "tests/support/tiny_model.h"
@@ -30,7 +31,8 @@ class JointStudy {
         model_(model),
         scene_(testing::SpherePoints(5), testing::SmoothMap(8, 16)),
         lobes_(model, 2, scene_.options().grid, 0),
-        unet_(testing::TinyUnetOptions()),
+        unet_(testing::TinyUnetOptions(),
+              NaturalNoise(testing::TinyUnetOptions())),
         light_(MakeUnetIllumination(testing::TinyUnetOptions())),
         reference_(unet_.plan(), {unet_.noise().begin(), unet_.noise().end()}),
         table_(table) {

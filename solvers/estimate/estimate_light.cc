@@ -16,8 +16,9 @@ namespace {
 // rounds, whose last steps take the rest.
 constexpr double kProcessShare = 0.5;
 constexpr double kMapShare = 0.9;
-// Of the draw's misfit: a network beyond it is not finished.
-constexpr double kWorseMisfit = 1.2;
+// Of the draw's misfit: beyond it the draw is kept, which is the smoother of
+// the two where the image tells nothing and has the finer detail where it does.
+constexpr double kWorseMisfit = 1.02;
 // Of the misfit of an image of joined pixels, what joining them leaves out.
 constexpr double kBlurredShare = 0.2;
 // Maps are first found at this size or below.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "solvers/costs/log_radiance_cost.h"
+#include "solvers/natural_noise.h"
 #include "tests/solvers/joint_testing.h"
 
 namespace ibrdf {
@@ -31,7 +32,8 @@ double CeresCost(const JointScene& scene, const JointTerms& terms, bool unet,
   std::vector<double> lobes = state.lobes;
   std::vector<double> light(state.light.begin(), state.light.end());
   ceres::Problem problem;
-  const IlluminationUnet network(TiniestUnetOptions());
+  const IlluminationUnet network(TiniestUnetOptions(),
+                                 NaturalNoise(TiniestUnetOptions()));
   std::vector<float> log_map(scene.light->num_outputs()), map;
   scene.light->Forward(state.light.data(), log_map.data());
   ToRadianceMap(log_map, &map);
@@ -193,7 +195,7 @@ TEST_P(JointMethods, AllReachComparableCosts) {
     JointObjective objective(scene.Terms());
     JointState state = scene.State(0.2);
     JointMethodOptions options;
-    options.max_iterations = 100;
+    options.max_iterations = 200;
     options.tolerance = 1e-6;
     options.adam_light_rate = 0.03;
     const JointSummary summary =

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <utility>
 
+#include "ibrdf/base/normal_source.h"
 #include "ibrdf/light/illumination_unet_engine.h"
 
 namespace ibrdf {
@@ -41,24 +41,6 @@ constexpr float kHiddenBiasStd = 0.1f;
 constexpr float kOutputBiasStd = 1.0f;
 // Of the last layer's output: features enter log-radiance at this scale.
 constexpr float kOutputStd = 1.0f;
-
-// Normal numbers that do not depend on the standard library.
-class NormalSource {
- public:
-  explicit NormalSource(uint64_t seed) : bits_(seed) {}
-
-  float Next() {  // Box-Muller
-    const double radius = std::sqrt(-2.0 * std::log(Uniform()));
-    return static_cast<float>(radius * std::cos(2.0 * kPi * Uniform()));
-  }
-
- private:
-  static constexpr double kPi = 3.14159265358979323846;
-  double Uniform() {  // (0, 1)
-    return (static_cast<double>(bits_() >> 12) + 0.5) / 4503599627370496.0;
-  }
-  std::mt19937_64 bits_;
-};
 
 // E a(x)^2 for x ~ N(0, 1): the midpoint rule, exact to rounding here.
 double ActivationPower() {
