@@ -106,13 +106,12 @@ double MaterialPrior::CostAtBestLevel(const Eigen::VectorXd& x) const {
   return 0.5 * (y - y.dot(along) * along).squaredNorm() + WallCost(x, nullptr);
 }
 
-MaterialPrior KnownMaterial(MaterialPrior::Material material, int code_size) {
-  const Eigen::Index n = material.parameters.size();
+MaterialPrior KnownMaterial(const Eigen::VectorXd& parameters) {
+  const Eigen::Index n = parameters.size();
   MaterialPrior prior;
-  prior.code_size = code_size;
-  prior.mean = material.parameters;
+  prior.mean = parameters;
   prior.factor = kKnownStd * Eigen::MatrixXd::Identity(n, n);
-  prior.materials.push_back(std::move(material));
+  prior.materials.push_back({"known", parameters});
   return prior;
 }
 

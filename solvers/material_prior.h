@@ -50,8 +50,8 @@ MaterialPrior GaussianPrior(std::vector<MaterialPrior::Material> materials,
 MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
                                  double code_sigma);
 
-// A material that is known, from which no step moves the lobes.
-MaterialPrior KnownMaterial(MaterialPrior::Material material, int code_size);
+// One material without codes that is known: no step moves its lobes.
+MaterialPrior KnownMaterial(const Eigen::VectorXd& parameters);
 
 // The paper's: codes N(0, code_sigma^2 I), colours as the embedding's
 // (Chen et al. 2020, Sec. 4.3).

@@ -84,18 +84,18 @@ ReflectanceSearchOptions Estimator::SearchOptions(double share) {
   };
   if (problem_.transport.emitters != nullptr) {
     // Of all points, made when it is first asked for.
-    auto transport = std::make_shared<std::unique_ptr<Transport>>();
-    o.bounce_gain = [this, transport, shape = o.fine](
+    o.bounce_gain = [this, shape = o.fine,
+                     transport = std::shared_ptr<Transport>()](
                         const std::vector<double>& lobes,
-                        const std::vector<double>& log_radiance) {
-      if (*transport == nullptr) {
+                        const std::vector<double>& log_radiance) mutable {
+      if (transport == nullptr) {
         TransportOptions options = problem_.transport;
         options.num_threads = problem_.num_threads;
-        *transport = std::make_unique<Transport>(
+        transport = std::make_shared<Transport>(
             problem_.points, shape.map_height, shape.map_width, options);
       }
       return BounceGain(
-          **transport,
+          *transport,
           lobes_unknown() ? lobes_->Grid(lobes.data()) : *problem_.known_brdf,
           log_radiance);
     };
@@ -156,10 +156,10 @@ Status Estimator::SearchMarginal(JointState* state) {
 void Estimator::SearchLight() {
   ReflectanceSearchOptions o = SearchOptions(kLightSearchShare);
   o.covariance = false;
-  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      TableLobes::Factory(*problem_.known_brdf),
-      KnownMaterial({"known", ToEigen(TableLobes::KnownParameters())}, 0),
-      problem_.points, SearchRadiance(), o);
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance(TableLobes::Factory(*problem_.known_brdf),
+                        KnownMaterial(ToEigen(TableLobes::KnownParameters())),
+                        problem_.points, SearchRadiance(), o);
   if (found.ok()) KeepLight(*found, 0.0);
 }
 

@@ -158,7 +158,7 @@ class Estimator {
   // Whether the map at hand makes light that joined pixels cannot show.
   bool CellsBlur(const JointState& state);
   // As the network's output, from its fit to the draw at hand, which is kept
-  // where the network does not come near it in time.
+  // where the network does not explain the image as well.
   Status EstimateNetwork(JointState* state);
 
   // rounds.cc: steps at a falling scale.

@@ -116,6 +116,10 @@ Eigen::VectorXd HorizonStep(int map_height) {
   return step;
 }
 
+Eigen::VectorXd ByTexel(const Eigen::VectorXd& by_row, int map_width) {
+  return by_row.transpose().replicate(map_width, 1).reshaped();
+}
+
 RowMatrix LightCorrelation(int map_height, int map_width,
                            const LightProcess& process,
                            const LightScales& scales) {

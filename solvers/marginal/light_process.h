@@ -90,6 +90,8 @@ RowMatrix RoughnessWeights(int map_height);
 Eigen::VectorXd Roughness(int map_height, const LightScales& scales);
 // h [rows]; 0 in a row that the horizon halves.
 Eigen::VectorXd HorizonStep(int map_height);
+// What texels [H W] have from their rows [H].
+Eigen::VectorXd ByTexel(const Eigen::VectorXd& by_row, int map_width);
 
 // C between the texels of a map, [H W][H W].
 RowMatrix LightCorrelation(int map_height, int map_width,

@@ -41,10 +41,9 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
       lamp_(process.Lamp()),
       spectrum_(map_height, map_width, process),
       roughness_weights_(RoughnessWeights(map_height)),
-      horizon_(std::sqrt(process.horizon_share) * HorizonStep(map_height)
-                                                      .transpose()
-                                                      .replicate(map_width, 1)
-                                                      .reshaped()),
+      horizon_(
+          ByTexel(std::sqrt(process.horizon_share) * HorizonStep(map_height),
+                  map_width)),
       map_height_(map_height),
       map_width_(map_width),
       num_lamps_(num_lamps),
@@ -391,12 +390,7 @@ MarginalValue MarginalLikelihood::Evaluate(
 }
 
 Eigen::VectorXd MarginalLikelihood::BandWeights(int band) const {
-  Eigen::VectorXd h(num_texels());
-  for (int r = 0; r < map_height_; ++r) {
-    h.segment(r * map_width_, map_width_)
-        .setConstant(roughness_weights_(band, r));
-  }
-  return h;
+  return ByTexel(roughness_weights_.row(band).transpose(), map_width_);
 }
 
 // With F the cost, Phi its first two terms, l* the mode: dF = (partial of F at

@@ -84,13 +84,12 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
   CHECK(linear != nullptr);
   RowMatrix inverse = linear->factor;
   InvertFactored(&inverse);
-  const Eigen::VectorXd roughness = Roughness(map_height_, scales);
-  Eigen::ArrayXd correlation(t);  // of a texel with itself
-  for (int r = 0; r < map_height_; ++r) {
-    correlation.segment(r * map_width_, map_width_) =
-        smooth_share_ + rough_share_ * roughness[r] * roughness[r];
-  }
-  correlation += horizon_.array().square() / light.amplitude;
+  const Eigen::ArrayXd roughness =
+      ByTexel(Roughness(map_height_, scales), map_width_);
+  // Of a texel with itself.
+  const Eigen::ArrayXd correlation =
+      smooth_share_ + rough_share_ * roughness.square() +
+      horizon_.array().square() / light.amplitude;
   // diag(K - K J^T A^-1 J K), row by row of J K.
   Eigen::VectorXd variance(3 * t);
   for (int c = 0; c < 3; ++c) {

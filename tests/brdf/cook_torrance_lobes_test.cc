@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/sample_merl.h"
+#include "tests/support/coloured_paint.h"
 
 namespace ibrdf {
 namespace {
@@ -14,12 +15,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr BrdfGridShape kGrid{10, 6, 5};
 
 CookTorrance Paint() {
-  CookTorrance brdf;
-  brdf.diffuse = {0.5, 0.1, 0.02};
-  brdf.specular = {0.9, 0.7, 2.0};
-  brdf.roughness = {0.2, 0.2, 0.2};
-  brdf.f0 = {0.3, 0.3, 0.3};
-  return brdf;
+  return testing::ColouredPaint({0.2, 0.2, 0.2}, {0.3, 0.3, 0.3});
 }
 
 TEST(CookTorranceLobes, GridAndTableAreTheModels) {

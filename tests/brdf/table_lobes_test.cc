@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/sample_merl.h"
+#include "tests/support/coloured_paint.h"
 
 namespace ibrdf {
 namespace {
@@ -14,12 +14,9 @@ namespace {
 constexpr BrdfGridShape kShape{12, 8, 6};
 
 BrdfGrid Paint() {
-  CookTorrance brdf;
-  brdf.diffuse = {0.5, 0.1, 0.02};
-  brdf.specular = {0.9, 0.7, 2.0};
-  brdf.roughness = {0.2, 0.3, 0.1};
-  brdf.f0 = {0.3, 0.3, 0.3};
-  return BrdfGrid::FromFunction(brdf.Function(), kShape);
+  return BrdfGrid::FromFunction(
+      testing::ColouredPaint({0.2, 0.3, 0.1}, {0.3, 0.3, 0.3}).Function(),
+      kShape);
 }
 
 TEST(TableLobes, AreTheTableAtTheNodesOfAnyGrid) {

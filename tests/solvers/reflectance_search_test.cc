@@ -98,7 +98,7 @@ TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
   ReflectanceSearchOptions options = Options();
   options.covariance = false;
   const std::vector<double> parameters = TableLobes::KnownParameters();
-  const MaterialPrior prior = KnownMaterial({"known", ToEigen(parameters)}, 0);
+  const MaterialPrior prior = KnownMaterial(ToEigen(parameters));
   EXPECT_EQ(0.0, prior.Cost(ToEigen(parameters), nullptr));
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       TableLobes::Factory(known), prior, points, image, options);
@@ -121,7 +121,7 @@ TEST_F(ReflectanceSearchTest, UnderABlackReflectanceSaysSo) {
       [](double, double, double) { return Eigen::Array3d::Zero().eval(); },
       resolution_.grid);
   const MaterialPrior prior =
-      KnownMaterial({"known", ToEigen(TableLobes::KnownParameters())}, 0);
+      KnownMaterial(ToEigen(TableLobes::KnownParameters()));
   ReflectanceSearchOptions options = Options();
   int reports = 0;
   options.report = [&](const std::string&, double, double) { ++reports; };

@@ -12,6 +12,7 @@
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "solvers/baselines/dsbrdf_fit.h"
 #include "solvers/baselines/table_samples.h"
+#include "tests/support/coloured_paint.h"
 
 namespace ibrdf {
 namespace {
@@ -28,12 +29,7 @@ double LogRmse(const BrdfFunction& brdf, bool depends_on_phi_d,
 }
 
 CookTorrance Paint() {
-  CookTorrance brdf;
-  brdf.diffuse = {0.5, 0.1, 0.02};
-  brdf.specular = {0.9, 0.7, 2.0};
-  brdf.roughness = {0.07, 0.2, 0.5};
-  brdf.f0 = {0.04, 0.3, 0.8};
-  return brdf;
+  return testing::ColouredPaint({0.07, 0.2, 0.5}, {0.04, 0.3, 0.8});
 }
 
 Dsbrdf Lobes() {
