@@ -209,7 +209,7 @@ Status Estimator::EstimateNetwork(JointState* state) {
     StartAtLevel(state);
     StartFirstLight();
     state->light = draw;
-    Report("map: network unfinished", cells_.get(), *state);
+    Report("map: the draw kept", cells_.get(), *state);
   }
   return OkStatus();
 }
