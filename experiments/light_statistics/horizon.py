@@ -7,11 +7,10 @@ For every Radiance .hdr map, averaged to 32x16: by how many nats the log radianc
 roughness) of each; in brackets where the step is scaled by the amplitude as the rest is. needs numpy
 """
 import argparse
-import pathlib
 
 import numpy as np
 
-from light_statistics import read_rgbe
+from light_statistics import add_arguments, averaged_log_radiance, environment_maps
 
 HEIGHT, WIDTH = 16, 32
 SHARES = [0.15, 0.3, 0.6, 1.2, 2.4]
@@ -75,25 +74,18 @@ class Process:
 
 def main():
     ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    ap.add_argument("maps", type=pathlib.Path)
-    ap.add_argument("--leave-out", default="city,studio,forest,night,lobby", help="maps that experiments test on")
+    add_arguments(ap)
     args = ap.parse_args()
-    left_out = set(args.leave_out.split(","))
     process = Process()
     axes = np.array([[1, 1, 1], [1, -1, 0], [1, 1, -2]]) / np.sqrt([[3], [2], [6]])
     total = 0
     print(f"{'horizon_share':24s}" + "".join(f"{s:15.2f}" for s in SHARES))
-    for path in sorted(args.maps.glob("*.hdr")):
-        if path.stem in left_out:
-            continue
-        radiance = read_rgbe(path)
-        factor = radiance.shape[1] // WIDTH
-        mean = radiance.reshape(HEIGHT, factor, WIDTH, factor, 3).mean((1, 3))
-        log = np.log(mean + 1e-6 * mean.max()).reshape(-1, 3) @ axes.T
+    for name, radiance in environment_maps(args):
+        log = averaged_log_radiance(radiance, WIDTH).reshape(-1, 3) @ axes.T
         without = process.lowest_cost(log, 0)
         gains = without - np.array([[process.lowest_cost(log, s, scaled) for s in SHARES] for scaled in (False, True)])
         total = total + gains
-        print(f"{path.stem:24s}" + "".join(f"{a:7.1f} ({b:5.1f})" for a, b in gains.T), flush=True)
+        print(f"{name:24s}" + "".join(f"{a:7.1f} ({b:5.1f})" for a, b in gains.T), flush=True)
     print(f"{'all':24s}" + "".join(f"{a:7.1f} ({b:5.1f})" for a, b in total.T))
 
 

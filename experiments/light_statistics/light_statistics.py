@@ -42,10 +42,32 @@ def read_rgbe(path):
     return rgbe[..., :3] * np.exp2(rgbe[..., 3:].astype(float) - 136)
 
 
-def statistics(radiance, width):
+def add_arguments(parser):
+    parser.add_argument("maps", type=pathlib.Path)
+    parser.add_argument("--leave-out", default="city,studio,forest,night,lobby", help="maps that experiments test on")
+
+
+def environment_maps(args):
+    """(name, radiance [H, W, 3]) of every map that is not left out."""
+    left_out = set(args.leave_out.split(","))
+    for path in sorted(args.maps.glob("*.hdr")):
+        if path.stem not in left_out:
+            yield path.stem, read_rgbe(path)
+
+
+def log_radiance(radiance):
+    return np.log(radiance + 1e-6 * radiance.max())
+
+
+def averaged_log_radiance(radiance, width):
+    """Of a map averaged to [width / 2, width, 3]."""
     height, factor = width // 2, radiance.shape[1] // width
-    m = radiance.reshape(height, factor, width, factor, 3).mean((1, 3))
-    log = np.log(m + 1e-6 * m.max())
+    return log_radiance(radiance.reshape(height, factor, width, factor, 3).mean((1, 3)))
+
+
+def statistics(radiance, width):
+    height = width // 2
+    log = averaged_log_radiance(radiance, width)
     sine = np.sin(np.pi * (np.arange(height) + 0.5) / height)
     weight = (sine / sine.mean())[:, None, None]
     mean = (log * weight).mean((0, 1))
@@ -58,9 +80,7 @@ ANGLES = np.array([8, 14, 20, 30, 45, 60, 80, 100, 130, 180.01])
 def semivariograms(radiance):
     """Of grey (mean of channels) and of chroma, per bin of ANGLES, degrees."""
     height, width = 16, 32
-    factor = radiance.shape[1] // width
-    m = radiance.reshape(height, factor, width, factor, 3).mean((1, 3)).reshape(-1, 3)
-    log = np.log(m + 1e-6 * m.max())
+    log = averaged_log_radiance(radiance, width).reshape(-1, 3)
     theta = np.pi * (np.arange(height) + 0.5) / height
     phi = 2 * np.pi * (np.arange(width) + 0.5) / width
     t, p = np.meshgrid(theta, phi, indexing="ij")
@@ -77,7 +97,7 @@ def semivariograms(radiance):
 def variances_inside(radiance):
     """Of grey log radiance inside each texel of 32x16 [16, 32], and the texels' solid angles."""
     height, width = 16, 32
-    log = np.log(radiance + 1e-6 * radiance.max()).mean(2)
+    log = log_radiance(radiance).mean(2)
     factor = radiance.shape[1] // width
     inside = log.reshape(height, factor, width, factor).var((1, 3))
     sine = np.sin(np.pi * (np.arange(height) + 0.5) / height)
@@ -92,23 +112,19 @@ def quantile(values, weights, share):
 
 def main():
     ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    ap.add_argument("maps", type=pathlib.Path)
-    ap.add_argument("--leave-out", default="city,studio,forest,night,lobby",
-                    help="maps that experiments test on")
+    add_arguments(ap)
     ap.add_argument("--width", type=int, default=64)
     args = ap.parse_args()
-    left_out = set(args.leave_out.split(","))
+    maps = dict(environment_maps(args))
     rows = []
     print(f"{'map':28s} {'red-green':>10s} {'blue-green':>11s} {'std':>6s}")
-    for path in sorted(args.maps.glob("*.hdr")):
-        if path.stem in left_out:
-            continue
-        rows.append(statistics(read_rgbe(path), args.width))
-        print(f"{path.stem:28s} {rows[-1][0]:10.2f} {rows[-1][1]:11.2f} {rows[-1][2]:6.2f}")
+    for name, radiance in maps.items():
+        rows.append(statistics(radiance, args.width))
+        print(f"{name:28s} {rows[-1][0]:10.2f} {rows[-1][1]:11.2f} {rows[-1][2]:6.2f}")
     r = np.array(rows)
     print(f"{'mean (chroma: rms)':28s} {np.sqrt((r[:, 0] ** 2).mean()):10.2f} "
           f"{np.sqrt((r[:, 1] ** 2).mean()):11.2f} {r[:, 2].mean():6.2f}")
-    mean = np.mean([semivariograms(read_rgbe(p)) for p in sorted(args.maps.glob("*.hdr")) if p.stem not in left_out], 0)
+    mean = np.mean([semivariograms(radiance) for radiance in maps.values()], 0)
     middle = (ANGLES[:-1] + ANGLES[1:]) / 2
     print("angle, degrees         " + "".join(f"{a:7.0f}" for a in middle))
     print("grey                   " + "".join(f"{v:7.2f}" for v in mean[0]))
@@ -120,13 +136,11 @@ def main():
     print("0.12 (the same)        " + "".join(f"{0.12 * v:7.3f}" for v in process))
     print(f"{'inside texels of 11 degrees':28s} {'mean':>7s} {'10 %':>7s} {'median':>7s} {'90 %':>7s} "
           f"{'above':>7s} {'horizon':>7s} {'below':>7s}")
-    for path in sorted(args.maps.glob("*.hdr")):
-        if path.stem in left_out:
-            continue
-        v, w = variances_inside(read_rgbe(path))
+    for name, radiance in maps.items():
+        v, w = variances_inside(radiance)
         figures = [(v * w).sum() / w.sum()] + [quantile(v, w, share) for share in (0.1, 0.5, 0.9)]
-        figures += [quantile(v[rows], w[rows], 0.5) for rows in (slice(0, 5), slice(6, 10), slice(11, 16))]
-        print(f"{path.stem:28s} " + " ".join(f"{f:7.3f}" for f in figures))
+        figures += [quantile(v[band], w[band], 0.5) for band in (slice(0, 5), slice(6, 10), slice(11, 16))]
+        print(f"{name:28s} " + " ".join(f"{f:7.3f}" for f in figures))
 
 
 if __name__ == "__main__":
