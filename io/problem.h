@@ -53,6 +53,7 @@ struct IlluminationSpec {
   int height = 64;
   bool sized = false;  // they were asked for
   IlluminationPrior prior = IlluminationPrior::kUNet;
+  int unet_channels = 32;  // of the network's feature maps, [1, 128]
   // Known illumination: at most one is set.
   std::string known_file;  // .exr or .hdr
   std::optional<SkyOptions> sky;
@@ -106,9 +107,16 @@ const char* SolverMethodName(SolverMethod method);
 // kMaximum: the posterior of both together (Chen et al. 2020, Eq. 8).
 enum class SolverEstimator { kMarginal, kMaximum };
 
+// How finely the integral over light directions is taken.
+enum class QuadratureLevel { kCoarse, kStandard, kFine };
+inline constexpr int kNumQuadratureLevels = 3;
+// Name in problem files, e.g. "standard".
+const char* QuadratureLevelName(QuadratureLevel level);
+
 struct SolverSpec {
   SolverEstimator estimator = SolverEstimator::kMarginal;
   SolverMethod method = SolverMethod::kAuto;
+  QuadratureLevel quadrature = QuadratureLevel::kStandard;
   double seconds = 120.0;     // wall-clock budget, > 0
   double tolerance = 1e-4;    // relative decrease of the cost to stop at, >= 0
   int max_iterations = 1000;  // >= 0

@@ -16,6 +16,7 @@ using Strings = std::vector<std::string>;
 constexpr size_t kMaxFileBytes = size_t{1} << 20;
 // A map's far light and the solver's unknowns grow with these.
 constexpr int kMaxMapSide = 8192;
+constexpr int kMaxUnetChannels = 128;
 constexpr int kMaxLobes = 8;
 constexpr double kMaxSeconds = 1e7;
 
@@ -203,7 +204,7 @@ void ReadSky(ConfigContext* context, const ConfigNode* node, SkyOptions* sky) {
 void ReadIllumination(ConfigContext* context, const ConfigNode* node,
                       IlluminationSpec* illumination) {
   ConfigReader reader(context, node, "illumination",
-                      {"width", "height", "prior", "known"});
+                      {"width", "height", "prior", "unet_channels", "known"});
   reader.Integer("width", 8, kMaxMapSide, &illumination->width);
   illumination->sized = reader.Has("width") || reader.Has("height");
   // One side given: the map stays twice as wide as high.
@@ -219,6 +220,12 @@ void ReadIllumination(ConfigContext* context, const ConfigNode* node,
   }
   ReadChoice(&reader, "prior", {"unet", "process", "none"},
              &illumination->prior);
+  reader.Integer("unet_channels", 1, kMaxUnetChannels,
+                 &illumination->unet_channels);
+  if (reader.Has("unet_channels") &&
+      illumination->prior != IlluminationPrior::kUNet) {
+    reader.Fail("unet_channels", "expected with illumination.prior: unet only");
+  }
   const ConfigNode* known = reader.Find("known");
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {
@@ -284,14 +291,19 @@ void ReadEffects(ConfigContext* context, const ConfigNode* node,
 void ReadSolver(ConfigContext* context, const ConfigNode* node,
                 SolverSpec* solver) {
   ConfigReader reader(context, node, "solver",
-                      {"estimator", "method", "seconds", "tolerance",
-                       "max_iterations", "seed"});
+                      {"estimator", "method", "quadrature", "seconds",
+                       "tolerance", "max_iterations", "seed"});
   ReadChoice(&reader, "estimator", {"marginal", "maximum"}, &solver->estimator);
   Strings methods;
   for (int m = 0; m < kNumSolverMethods; ++m) {
     methods.emplace_back(SolverMethodName(static_cast<SolverMethod>(m)));
   }
   ReadChoice(&reader, "method", methods, &solver->method);
+  Strings levels;
+  for (int q = 0; q < kNumQuadratureLevels; ++q) {
+    levels.emplace_back(QuadratureLevelName(static_cast<QuadratureLevel>(q)));
+  }
+  ReadChoice(&reader, "quadrature", levels, &solver->quadrature);
   reader.Number("seconds", {0.0, kMaxSeconds, false, true}, &solver->seconds);
   reader.Number("tolerance", {0.0, 1.0, true, false}, &solver->tolerance);
   reader.Integer("max_iterations", 0, 100000000, &solver->max_iterations);
@@ -319,6 +331,18 @@ const char* SolverMethodName(SolverMethod method) {
       return "adam";
     case SolverMethod::kTrustRegion:
       return "trust_region";
+  }
+  return "";
+}
+
+const char* QuadratureLevelName(QuadratureLevel level) {
+  switch (level) {
+    case QuadratureLevel::kCoarse:
+      return "coarse";
+    case QuadratureLevel::kStandard:
+      return "standard";
+    case QuadratureLevel::kFine:
+      return "fine";
   }
   return "";
 }

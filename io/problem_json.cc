@@ -98,6 +98,7 @@ json IlluminationJson(const IlluminationSpec& illumination, bool rendered) {
   switch (illumination.prior) {
     case IlluminationPrior::kUNet:
       out["prior"] = "unet";
+      out["unet_channels"] = illumination.unet_channels;
       break;
     case IlluminationPrior::kProcess:
       out["prior"] = "process";
@@ -130,6 +131,7 @@ json SolverJson(const SolverSpec& solver) {
       {"estimator",
        solver.estimator == SolverEstimator::kMarginal ? "marginal" : "maximum"},
       {"method", SolverMethodName(solver.method)},
+      {"quadrature", QuadratureLevelName(solver.quadrature)},
       {"seconds", solver.seconds},
       {"tolerance", solver.tolerance},
       {"max_iterations", solver.max_iterations}};

@@ -33,13 +33,15 @@ struct InverseProblem {
   // Size of the map; known: its radiance at that size.
   int map_width = 128, map_height = 64;
   IlluminationPrior illumination_prior = IlluminationPrior::kUNet;
+  int unet_channels = 32;
   std::optional<Image> known_map;
 
   std::optional<double> scale, epsilon;  // of the likelihood
   SolverSpec solver;
   uint64_t seed = 1;
   int num_threads = 0;
-  // With the visibility of `points` where `effects` has it.
+  // Of the level solver.quadrature; with the visibility of `points` where
+  // `effects` has it.
   TransportOptions transport;
   EffectsPlan effects;
 };

@@ -8,6 +8,7 @@
 #include "io/png.h"
 #include "io/problem_file.h"
 #include "solvers/open_model.h"
+#include "solvers/quadrature_level.h"
 #include "solvers/render_scene.h"
 #include "solvers/solve_problem.h"
 
@@ -56,9 +57,12 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   inverse.map_width = problem.illumination.width;
   inverse.map_height = problem.illumination.height;
   inverse.illumination_prior = problem.illumination.prior;
+  inverse.unet_channels = problem.illumination.unet_channels;
   inverse.scale = problem.likelihood.scale;
   inverse.epsilon = problem.likelihood.epsilon;
   inverse.solver = problem.solver;
+  inverse.transport.quadrature =
+      AtLevel(inverse.transport.quadrature, problem.solver.quadrature);
   inverse.seed = problem.solver.seed.has_value()
                      ? static_cast<uint64_t>(*problem.solver.seed)
                      : default_seed;

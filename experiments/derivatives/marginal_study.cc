@@ -129,8 +129,8 @@ class MarginalStudy {
     resolution_.map_width = 8;
     resolution_.map_height = 4;
     resolution_.grid = {12, 8, 6};
-    resolution_.near_rings = 8;
-    resolution_.near_ring_samples = 24;
+    resolution_.quadrature.near_rings = 8;
+    resolution_.quadrature.near_ring_samples = 24;
   }
 
   // An image of other lobes than those at which derivatives are taken.
@@ -197,8 +197,7 @@ class MarginalStudy {
     const ImageCells& cells = reflectance.cells();
     TransportOptions options;
     options.grid = resolution_.grid;
-    options.quadrature.near_rings = resolution_.near_rings;
-    options.quadrature.near_ring_samples = resolution_.near_ring_samples;
+    options.quadrature = resolution_.quadrature;
     const ReferenceTransport transport(cells.points, resolution_.map_height,
                                        resolution_.map_width, options);
     const int codes = model_.shape.code_size(), lobe_size = codes + 3;

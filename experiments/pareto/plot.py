@@ -18,7 +18,7 @@ from results import front, median, numbers, open_pyplot, place_labels, read_rows
 
 CASE = ("material", "map", "geometry")
 SETTING = ("setting", "estimator", "method", "budget_seconds", "size",
-           "map_width", "lobes", "prior")
+           "map_width", "lobes", "prior", "unet_channels", "quadrature")
 PANELS = (("brdf_log_rmse_aligned", "BRDF log-RMSE, aligned"),
           ("illumination_relative_log_rmse_aligned",
            "map, relative log-RMSE, aligned"),
@@ -27,7 +27,8 @@ PANELS = (("brdf_log_rmse_aligned", "BRDF log-RMSE, aligned"),
 FAMILIES = {"default": "tab:red", "method": "tab:purple",
             "maximum": "tab:brown", "adam": "black", "seconds": "tab:red",
             "size": "tab:blue", "map": "tab:cyan", "lobes": "tab:green",
-            "prior": "tab:olive", "small": "tab:gray"}
+            "prior": "tab:olive", "unet": "tab:pink",
+            "quadrature": "tab:orange", "small": "tab:gray"}
 
 
 def family(name):

@@ -41,6 +41,7 @@ def pareto_row(material, setting, seconds, error, **cells):
     row = dict(material=material, map="m", geometry="sphere", setting=setting,
                estimator="marginal", method="auto", budget_seconds="60",
                size="128", map_width="128", lobes="2", prior="unet",
+               unet_channels="32", quadrature="standard",
                seconds=seconds, misfit=error, status="ok",
                brdf_log_rmse_aligned=error,
                illumination_relative_log_rmse_aligned=error)

@@ -102,12 +102,6 @@ double Number(const ResultsRow& row, const std::string& column) {
   return row[at].empty() ? std::nan("") : std::strtod(row[at].c_str(), nullptr);
 }
 
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
-
 // Rows of one source: how much energy is made.
 std::string EnergyLine(const std::string& source,
                        const std::vector<ResultsRow>& rows) {

@@ -73,12 +73,6 @@ double Mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t n = values.size();
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-}
-
 // One table of scores: of `prefix`, over all or all but the hard materials.
 std::string ScoreTable(const std::vector<Group>& groups,
                        const std::string& prefix, bool with_hard) {

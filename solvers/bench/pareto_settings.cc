@@ -23,7 +23,8 @@ void MakeSmall(ParetoPoint* p) {
 bool ParetoPoint::operator==(const ParetoPoint& o) const {
   const auto tie = [](const ParetoPoint& p) {
     return std::tie(p.estimator, p.method, p.seconds, p.size, p.map_width,
-                    p.lobes, p.prior, p.tolerance, p.max_iterations);
+                    p.lobes, p.prior, p.unet_channels, p.quadrature,
+                    p.tolerance, p.max_iterations);
   };
   return tie(*this) == tie(o);
 }
@@ -70,6 +71,10 @@ const std::vector<ParetoSetting>& ParetoSettings() {
       {"lobes-1", [](P* p) { p->lobes = 1; }},
       {"lobes-2", [](P* p) { p->lobes = 2; }},
       {"lobes-3", [](P* p) { p->lobes = 3; }},
+      {"unet-8", [](P* p) { p->unet_channels = 8; }},
+      {"unet-64", [](P* p) { p->unet_channels = 64; }},
+      {"quadrature-coarse", [](P* p) { p->quadrature = "coarse"; }},
+      {"quadrature-fine", [](P* p) { p->quadrature = "fine"; }},
       {"prior-process", [](P* p) { p->prior = "process"; }},
       {"prior-none", [](P* p) { p->prior = "none"; }},
       {"small", MakeSmall},

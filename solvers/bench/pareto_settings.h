@@ -14,6 +14,8 @@ struct ParetoPoint {
   int map_width = 128;  // twice its height
   int lobes = 2;
   std::string prior = "unet";
+  int unet_channels = 32;  // of prior unet
+  std::string quadrature = "standard";
   double tolerance = 1e-4;
   int max_iterations = 1000;
 

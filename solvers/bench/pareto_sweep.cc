@@ -14,7 +14,7 @@ namespace {
 
 constexpr char kDefault[] = "default";
 constexpr char kReference[] = "adam";
-constexpr int kKeyColumns = 12;
+constexpr int kKeyColumns = 14;
 
 struct NamedPoint {
   std::string name;
@@ -62,8 +62,13 @@ std::string ProblemText(const ParetoSweepOptions& options, const SweepCase& c,
          "reflectance: " + ReflectanceYaml(model, p.lobes) +
          "illumination: {width: " + std::to_string(p.map_width) +
          ", height: " + std::to_string(p.map_width / 2) +
-         ", prior: " + p.prior + "}\nsolver: {estimator: " + p.estimator +
-         ", method: " + p.method + ", seconds: " + NumberCell(p.seconds) +
+         ", prior: " + p.prior +
+         (p.prior == "unet"
+              ? ", unet_channels: " + std::to_string(p.unet_channels)
+              : "") +
+         "}\nsolver: {estimator: " + p.estimator + ", method: " + p.method +
+         ", quadrature: " + p.quadrature +
+         ", seconds: " + NumberCell(p.seconds) +
          ", tolerance: " + NumberCell(p.tolerance) +
          ", max_iterations: " + std::to_string(p.max_iterations) + "}\n" +
          JointTruthYaml(c);
@@ -74,7 +79,9 @@ std::string EstimateName(const NamedPoint& named, const ChosenModel& model) {
   const ParetoPoint& p = named.point;
   return "pareto_" + named.name + "_" + p.estimator + "_" + p.method + "_" +
          NumberCell(p.seconds) + "s_" + std::to_string(p.map_width) + "_" +
-         std::to_string(p.lobes) + "_" + p.prior + model.folder_suffix();
+         std::to_string(p.lobes) + "_" + p.prior +
+         std::to_string(p.unet_channels) + "_" + p.quadrature +
+         model.folder_suffix();
 }
 
 NamedRow KeyRow(const ParetoSweepOptions& options, const SweepCase& c,
@@ -90,6 +97,9 @@ NamedRow KeyRow(const ParetoSweepOptions& options, const SweepCase& c,
   row.Set("map_width", std::to_string(p.map_width));
   row.Set("lobes", std::to_string(p.lobes));
   row.Set("prior", p.prior);
+  row.Set("unet_channels",
+          p.prior == "unet" ? std::to_string(p.unet_channels) : "");
+  row.Set("quadrature", p.quadrature);
   return row;
 }
 
@@ -184,6 +194,8 @@ const std::vector<std::string>& ParetoColumns() {
       "map_width",
       "lobes",
       "prior",
+      "unet_channels",
+      "quadrature",
       "seconds",
       "peak_mb",
       "misfit",

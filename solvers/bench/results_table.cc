@@ -60,6 +60,13 @@ std::string NumberCell(double value) {
   return Format("%.6g", value);
 }
 
+double Median(std::vector<double> values) {
+  CHECK(!values.empty());
+  std::sort(values.begin(), values.end());
+  const size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+}
+
 NamedRow::NamedRow(const std::vector<std::string>& columns)
     : columns_(&columns), cells_(columns.size()) {}
 

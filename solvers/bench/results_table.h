@@ -12,6 +12,9 @@ using ResultsRow = std::vector<std::string>;  // a cell per column
 // Six digits; empty where the value is not finite.
 std::string NumberCell(double value);
 
+// Of at least one value.
+double Median(std::vector<double> values);
+
 // A row that is filled by column name; empty cells at first.
 class NamedRow {
  public:

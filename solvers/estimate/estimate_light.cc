@@ -48,6 +48,7 @@ std::unique_ptr<IlluminationModel> Estimator::MakeLight() const {
   IlluminationUnetOptions unet;
   unet.width = problem_.map_width;
   unet.height = problem_.map_height;
+  unet.channels = problem_.unet_channels;
   unet.seed = problem_.seed;
   unet.num_threads = problem_.num_threads;
   return MakeUnetIllumination(unet);

@@ -11,6 +11,7 @@
 #include "solvers/estimate/estimator.h"
 #include "solvers/known_light_search.h"
 #include "solvers/level_gauge.h"
+#include "solvers/quadrature_level.h"
 #include "solvers/reflectance_solver.h"
 
 namespace ibrdf {
@@ -63,8 +64,11 @@ std::vector<double> BounceGain(const Transport& transport, const BrdfGrid& grid,
 ReflectanceSearchOptions Estimator::SearchOptions(double share) {
   ReflectanceSearchOptions o;
   o.num_threads = problem_.num_threads;
-  o.screen.visibility = o.coarse.visibility = o.fine.visibility =
-      problem_.transport.visibility;
+  for (MarginalResolution* resolution : {&o.screen, &o.coarse, &o.fine}) {
+    resolution->visibility = problem_.transport.visibility;
+    resolution->quadrature =
+        AtLevel(resolution->quadrature, problem_.solver.quadrature);
+  }
   o.should_stop = StopAfter(share);
   // The first stages of a small budget of iterations are cut short alike.
   const int iterations = problem_.solver.max_iterations;

@@ -47,8 +47,7 @@ MarginalReflectance::MarginalReflectance(
   TransportOptions options;
   options.grid = resolution.grid;
   options.num_threads = num_threads;
-  options.quadrature.near_rings = resolution.near_rings;
-  options.quadrature.near_ring_samples = resolution.near_ring_samples;
+  options.quadrature = resolution.quadrature;
   options.visibility = resolution.visibility;
   transport_ = std::make_unique<Transport>(cells_.points, resolution.map_height,
                                            resolution.map_width, options);

@@ -17,8 +17,8 @@ struct MarginalResolution {
   ImageCellOptions cells;
   int map_width = 32, map_height = 16;
   BrdfGridShape grid = {48, 20, 12};
-  // Of QuadratureOptions: coarser than a render's, as the texels are.
-  int near_rings = 12, near_ring_samples = 32;
+  // Coarser than a render's, as the texels are.
+  QuadratureOptions quadrature = {8.0, 16.0, 12, 32};
   std::shared_ptr<const Visibility> visibility = nullptr;  // of the points
 };
 

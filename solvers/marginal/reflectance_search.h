@@ -26,7 +26,7 @@ struct ReflectanceSearchOptions {
   // second, where some are refined; the end is found at the third.
   MarginalResolution screen = {{8, 4, 0.2}, 16, 8, {48, 20, 12}};
   MarginalResolution coarse = {{12, 4, 0.2}, 24, 12, {48, 20, 12}};
-  MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}, 20, 56};
+  MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}, {}};
   int kept = 10;  // of each ranking
   // At the coarse resolution, the best of each going on to the next. The first
   // takes the rankings' best in turns.

@@ -47,6 +47,8 @@ TEST_F(ProblemFile, LeastFileHasTheDocumentedDefaults) {
   EXPECT_EQ(0.5, p.reflectance.prior_sigma);
   EXPECT_EQ(128, p.illumination.width);
   EXPECT_EQ(64, p.illumination.height);
+  EXPECT_EQ(32, p.illumination.unet_channels);
+  EXPECT_EQ(QuadratureLevel::kStandard, p.solver.quadrature);
   EXPECT_FALSE(p.likelihood.scale.has_value());
   EXPECT_EQ(EffectsMode::kAuto, p.effects.mode);
   EXPECT_EQ(120.0, p.solver.seconds);
@@ -63,10 +65,10 @@ image: {file: in.exr, mask: sub/../mask.png}
 camera: {type: perspective, fov_degrees: 40, from: [0, 1, 5], to: [0, 0, 1], up: [1, 0, 0]}
 geometry: {mesh: /abs/bunny.obj, fit: none}
 reflectance: {model: m.ibrdf, lobes: 3, prior_sigma: 0.25}
-illumination: {known: env.hdr}
+illumination: {known: env.hdr, unet_channels: 16}
 likelihood: {scale: 0.02, epsilon: 1e-5}
 effects: [sharp_lobes, perspective]
-solver: {method: lbfgs, seconds: 5, tolerance: 0, max_iterations: 7, seed: 9}
+solver: {method: lbfgs, quadrature: fine, seconds: 5, tolerance: 0, max_iterations: 7, seed: 9}
 truth: {brdf: gt.binary, illumination: gt.exr}
 )");
   ASSERT_TRUE(read.ok()) << read.status().message();
@@ -81,11 +83,13 @@ truth: {brdf: gt.binary, illumination: gt.exr}
   EXPECT_EQ(3, p.reflectance.lobes);
   EXPECT_EQ(dir_.File("env.hdr"), p.illumination.known_file);
   EXPECT_FALSE(p.illumination.sized);
+  EXPECT_EQ(16, p.illumination.unet_channels);
   EXPECT_EQ(0.02, *p.likelihood.scale);
   EXPECT_EQ(1e-5, *p.likelihood.epsilon);
   ASSERT_EQ(2u, p.effects.list.size());
   EXPECT_EQ(Effect::kPerspective, p.effects.list[1]);
   EXPECT_EQ(SolverMethod::kLbfgs, p.solver.method);
+  EXPECT_EQ(QuadratureLevel::kFine, p.solver.quadrature);
   EXPECT_EQ(7, p.solver.max_iterations);
   EXPECT_EQ(9, *p.solver.seed);
   EXPECT_EQ(dir_.File("gt.exr"), p.truth.illumination);
@@ -164,6 +168,13 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {least + "camera: {type: perspective, from: [0, 0]}",
        "camera.from: expected a list of three"},
       {least + "illumination: {width: 63}", "expected an even number"},
+      {least + "illumination: {unet_channels: 0}",
+       "illumination.unet_channels: expected a whole number in [1, 128], "
+       "found '0'"},
+      {least + "illumination: {prior: process, unet_channels: 8}",
+       "illumination.unet_channels: expected with illumination.prior: unet"},
+      {least + "solver: {quadrature: finest}",
+       "solver.quadrature: expected coarse, standard or fine, found 'finest'"},
       {least + "illumination: {known: {sun: {}}}",
        "illumination.known.sun: unknown key"},
       {least + "illumination: {known: {sky: {cloud: 1}}}",

@@ -86,6 +86,11 @@ TEST_F(ParetoSweepTest, ProblemsSayWhatRowsSay) {
         {IlluminationPrior::kProcess, "process"},
         {IlluminationPrior::kNone, "none"}};
     EXPECT_EQ(Cell(row, "prior"), priors.at(problem->illumination.prior));
+    if (problem->illumination.prior == IlluminationPrior::kUNet) {
+      EXPECT_EQ(std::stoi(Cell(row, "unet_channels")),
+                problem->illumination.unet_channels);
+    }
+    EXPECT_EQ(Cell(row, "quadrature"), QuadratureLevelName(solver.quadrature));
     EXPECT_EQ(std::stoi(Cell(row, "size")), run.of.size);
     const bool own_case = run.of.name != "paint_a";
     EXPECT_EQ(own_case, run.of.size != options_.size);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <nlohmann/json.hpp>
 
 #include "ibrdf/image/rgb8_image.h"
@@ -87,6 +88,30 @@ TEST_F(SolveProblemTest, LoadsWhatTheFileNames) {
   ASSERT_FALSE(p->points.empty());
   for (const ShadingPoint& point : p->points) EXPECT_NE(11, point.pixel % 12);
   EXPECT_EQ(uint64_t{9}, Load({"solver.seed=9"})->seed);
+  EXPECT_EQ(8, Load({"illumination={unet_channels: 8}"})->unet_channels);
+}
+
+TEST_F(SolveProblemTest, QuadratureLevelsAreOfOrderedCostAndTheSameLight) {
+  // Half-vectors and cells of the sphere by level, of the same integral.
+  double before = 0.0, least = 1e300, most = 0.0;
+  for (const std::string level : {"coarse", "standard", "fine"}) {
+    const StatusOr<InverseProblem> p =
+        Load({"problem=illumination", "reflectance={known: {lambertian: 0.5}}",
+              "illumination={width: 128}", "solver.quadrature=" + level});
+    ASSERT_TRUE(p.ok()) << p.status().message();
+    const Transport transport(p->points, 64, 128, p->transport);
+    const auto bytes = static_cast<double>(transport.MemoryBytes());
+    EXPECT_GT(bytes, 1.5 * before) << level;
+    before = bytes;
+    const Image map = testing::SmoothMap(64, 128);
+    std::vector<double> E(3 * p->points.size());
+    transport.Render(*p->known_brdf, map.rgb.data(), E.data());
+    const double sum = std::accumulate(E.begin(), E.end(), 0.0);
+    least = std::min(least, sum);
+    most = std::max(most, sum);
+  }
+  EXPECT_LT(most, 1.003 * least);
+  EXPECT_GT(most, least);
 }
 
 TEST_F(SolveProblemTest, KnownPartsAreLoadedAtTheProblemsSize) {
