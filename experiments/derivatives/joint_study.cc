@@ -67,11 +67,10 @@ class JointStudy {
     objective.Gradient(state, &gradient);
     objective.Linearise(state);
     const std::vector<Real> right = Gradient(state, exact, observed);
-    const auto numbers = [](const Eigen::VectorXd& v) { return ToVector(v); };
     // The blocks apart: the larger one would hide the other.
     const auto nl = static_cast<std::ptrdiff_t>(state.lobes.size());
     const auto add = [&](const std::string& what, const Eigen::VectorXd& v) {
-      const std::vector<double> found = numbers(v);
+      const std::vector<double> found = ToVector(v);
       table_->Add(name_ + ": " + what + " by lobes", kind, where,
                   {found.begin(), found.begin() + nl},
                   {right.begin(), right.begin() + nl});
@@ -84,7 +83,7 @@ class JointStudy {
     Eigen::VectorXd v(objective.size());
     for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = std::cos(3.0 * i);
     table_->Add(name_ + ": radiance along a direction", kind, where,
-                numbers(objective.RadianceJvp(v)), Jvp(state, exact, v));
+                ToVector(objective.RadianceJvp(v)), Jvp(state, exact, v));
   }
 
  private:

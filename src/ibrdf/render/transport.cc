@@ -103,9 +103,6 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
                            const std::vector<FarCell>& cells,
                            const PointQuadrature& quadrature, Of of,
                            Chunk* chunk) const {
-  const auto set_cell = [this](const auto& sample, auto* pair) {
-    SetCell(options_.grid, sample, pair);
-  };
   const Visibility* const visibility = options_.visibility.get();
   const SurfaceEmitters* const emitters = options_.emitters.get();
   const int columns = map_width_ / block_;
@@ -113,7 +110,7 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
   std::vector<EmitterShare> shares;
   const auto add_emitter = [&](const auto& sample, int emitter, double weight) {
     FarPair pair{};
-    set_cell(sample, &pair);
+    SetCell(options_.grid, sample, &pair);
     pair.block = static_cast<uint16_t>(num_blocks_ + emitter);
     pair.weight = static_cast<float>(weight);
     chunk->far.push_back(pair);
@@ -144,14 +141,14 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
         if (share <= 0.0) continue;
         if (share < 1.0 && block_ > 1) {
           NearPair sample{};
-          set_cell(s, &sample);
+          SetCell(options_.grid, s, &sample);
           SplitBlock(hidden, n, s.cell, sample, &chunk->near);
           continue;
         }
         s.weight *= share;
       }
       FarPair pair{};
-      set_cell(s, &pair);
+      SetCell(options_.grid, s, &pair);
       pair.block = static_cast<uint16_t>(s.cell);
       chunk->far.push_back(pair);
     }
@@ -168,7 +165,7 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
         if (s.weight <= 0.0) continue;
       }
       NearPair pair{};
-      set_cell(s, &pair);
+      SetCell(options_.grid, s, &pair);
       double row = 0.0, column = 0.0;
       FastMapPosition(s.wi, map_height_, map_width_, &row, &column);
       const double y0 = std::floor(row - 0.5), x0 = std::floor(column - 0.5);
