@@ -35,6 +35,16 @@ void ReadChoice(ConfigReader* reader, const std::string& key,
   *out = static_cast<Enum>(index);
 }
 
+// What problem files call the values 0 to count - 1 of an enumeration.
+template <typename Enum>
+Strings Names(int count, const char* (*name)(Enum)) {
+  Strings names;
+  for (int i = 0; i < count; ++i) {
+    names.emplace_back(name(static_cast<Enum>(i)));
+  }
+  return names;
+}
+
 void ReadAutoNumber(ConfigReader* reader, const std::string& key,
                     const Range& range, std::optional<double>* out) {
   if (!reader->Has(key) || reader->IsWord(key, "auto")) return;
@@ -239,10 +249,7 @@ void ReadIllumination(ConfigContext* context, const ConfigNode* node,
 void ReadEffects(ConfigContext* context, const ConfigNode* node,
                  EffectsSpec* effects) {
   if (node == nullptr) return;
-  Strings names;
-  for (int e = 0; e < kNumEffects; ++e) {
-    names.emplace_back(EffectName(static_cast<Effect>(e)));
-  }
+  const Strings names = Names(kNumEffects, EffectName);
   const auto add = [&](const ConfigNode& item) {
     const auto name = std::find(names.begin(), names.end(), item.scalar);
     if (item.kind != Kind::kScalar || name == names.end()) {
@@ -294,16 +301,11 @@ void ReadSolver(ConfigContext* context, const ConfigNode* node,
                       {"estimator", "method", "quadrature", "seconds",
                        "tolerance", "max_iterations", "seed"});
   ReadChoice(&reader, "estimator", {"marginal", "maximum"}, &solver->estimator);
-  Strings methods;
-  for (int m = 0; m < kNumSolverMethods; ++m) {
-    methods.emplace_back(SolverMethodName(static_cast<SolverMethod>(m)));
-  }
-  ReadChoice(&reader, "method", methods, &solver->method);
-  Strings levels;
-  for (int q = 0; q < kNumQuadratureLevels; ++q) {
-    levels.emplace_back(QuadratureLevelName(static_cast<QuadratureLevel>(q)));
-  }
-  ReadChoice(&reader, "quadrature", levels, &solver->quadrature);
+  ReadChoice(&reader, "method", Names(kNumSolverMethods, SolverMethodName),
+             &solver->method);
+  ReadChoice(&reader, "quadrature",
+             Names(kNumQuadratureLevels, QuadratureLevelName),
+             &solver->quadrature);
   reader.Number("seconds", {0.0, kMaxSeconds, false, true}, &solver->seconds);
   reader.Number("tolerance", {0.0, 1.0, true, false}, &solver->tolerance);
   reader.Integer("max_iterations", 0, 100000000, &solver->max_iterations);
