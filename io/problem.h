@@ -113,11 +113,21 @@ inline constexpr int kNumQuadratureLevels = 3;
 // Name in problem files, e.g. "standard".
 const char* QuadratureLevelName(QuadratureLevel level);
 
+// Where a joint estimate has the scale per channel between reflectance and
+// light, which no image tells. kPrior: where the priors do. kGreyLight: the
+// light's mean radiance over the sphere is the same in all channels, at the
+// geometric mean of what kPrior makes of them. kUnitLight: it is 1 in all.
+enum class SolverGauge { kPrior, kGreyLight, kUnitLight };
+inline constexpr int kNumSolverGauges = 3;
+// Name in problem files, e.g. "grey_light".
+const char* SolverGaugeName(SolverGauge gauge);
+
 struct SolverSpec {
   SolverEstimator estimator = SolverEstimator::kMarginal;
   SolverMethod method = SolverMethod::kAuto;
   QuadratureLevel quadrature = QuadratureLevel::kStandard;
-  double seconds = 120.0;     // wall-clock budget, > 0
+  SolverGauge gauge = SolverGauge::kPrior;  // of joint problems
+  double seconds = 120.0;                   // wall-clock budget, > 0
   double tolerance = 1e-4;    // relative decrease of the cost to stop at, >= 0
   int max_iterations = 1000;  // >= 0
   std::optional<int64_t> seed;  // unset: the program's --seed

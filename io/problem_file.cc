@@ -296,9 +296,9 @@ void ReadEffects(ConfigContext* context, const ConfigNode* node,
 }
 
 void ReadSolver(ConfigContext* context, const ConfigNode* node,
-                SolverSpec* solver) {
+                ProblemKind kind, SolverSpec* solver) {
   ConfigReader reader(context, node, "solver",
-                      {"estimator", "method", "quadrature", "seconds",
+                      {"estimator", "method", "quadrature", "gauge", "seconds",
                        "tolerance", "max_iterations", "seed"});
   ReadChoice(&reader, "estimator", {"marginal", "maximum"}, &solver->estimator);
   ReadChoice(&reader, "method", Names(kNumSolverMethods, SolverMethodName),
@@ -306,6 +306,11 @@ void ReadSolver(ConfigContext* context, const ConfigNode* node,
   ReadChoice(&reader, "quadrature",
              Names(kNumQuadratureLevels, QuadratureLevelName),
              &solver->quadrature);
+  ReadChoice(&reader, "gauge", Names(kNumSolverGauges, SolverGaugeName),
+             &solver->gauge);
+  if (reader.Has("gauge") && kind != ProblemKind::kJoint) {
+    reader.Fail("gauge", "expected with problem: joint only");
+  }
   reader.Number("seconds", {0.0, kMaxSeconds, false, true}, &solver->seconds);
   reader.Number("tolerance", {0.0, 1.0, true, false}, &solver->tolerance);
   reader.Integer("max_iterations", 0, 100000000, &solver->max_iterations);
@@ -345,6 +350,18 @@ const char* QuadratureLevelName(QuadratureLevel level) {
       return "standard";
     case QuadratureLevel::kFine:
       return "fine";
+  }
+  return "";
+}
+
+const char* SolverGaugeName(SolverGauge gauge) {
+  switch (gauge) {
+    case SolverGauge::kPrior:
+      return "prior";
+    case SolverGauge::kGreyLight:
+      return "grey_light";
+    case SolverGauge::kUnitLight:
+      return "unit_light";
   }
   return "";
 }
@@ -421,7 +438,7 @@ StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
   ReadAutoNumber(&likelihood, "epsilon", kNotNegative,
                  &problem.likelihood.epsilon);
   ReadEffects(&context, reader.Find("effects"), &problem.effects);
-  ReadSolver(&context, reader.Find("solver"), &problem.solver);
+  ReadSolver(&context, reader.Find("solver"), problem.kind, &problem.solver);
   ConfigReader truth(&context, reader.Find("truth"), "truth",
                      {"brdf", "illumination"});
   truth.Path("brdf", &problem.truth.brdf);

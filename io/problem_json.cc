@@ -132,6 +132,7 @@ json SolverJson(const SolverSpec& solver) {
        solver.estimator == SolverEstimator::kMarginal ? "marginal" : "maximum"},
       {"method", SolverMethodName(solver.method)},
       {"quadrature", QuadratureLevelName(solver.quadrature)},
+      {"gauge", SolverGaugeName(solver.gauge)},
       {"seconds", solver.seconds},
       {"tolerance", solver.tolerance},
       {"max_iterations", solver.max_iterations}};

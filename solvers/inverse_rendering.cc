@@ -2,6 +2,7 @@
 
 #include "solvers/estimate/estimator.h"
 #include "solvers/exposure.h"
+#include "solvers/light_gauge.h"
 
 namespace ibrdf {
 
@@ -11,7 +12,12 @@ StatusOr<Estimate> SolveInverseRendering(const InverseProblem& problem,
   const double exposure = ExposureOf(problem);
   const InverseProblem scaled = InUnitsOf(exposure, problem);
   StatusOr<Estimate> estimate = Estimator(scaled, progress, stop).Run();
-  if (estimate.ok()) RestoreUnits(exposure, &estimate.value());
+  if (!estimate.ok()) return estimate;
+  RestoreUnits(exposure, &*estimate);
+  if (problem.solver.gauge != SolverGauge::kPrior &&
+      !problem.known_map.has_value() && !problem.known_brdf.has_value()) {
+    SetGauge(problem.solver.gauge, problem.lobes, &*estimate);
+  }
   return estimate;
 }
 

@@ -1,8 +1,10 @@
-// The estimate: reflectance, illumination or both from one image, as the
-// maximum of the posterior of Chen et al. 2020, Eq. 1 and 8.
+// The estimate: reflectance, illumination or both from one image, by the
+// posterior of Chen et al. 2020, Eq. 1. Of both: reflectance with the light
+// integrated out, then the light, or their joint maximum (Eq. 8).
 #pragma once
 #include <atomic>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,6 +75,8 @@ struct Estimate {
   // Posterior covariance of those (Laplace, light integrated out), row-major;
   // empty where it was not found.
   std::vector<double> lobe_covariance;
+  // Of that posterior, see reflectance_spread.h; NaN where it was not found.
+  double spread = std::numeric_limits<double>::quiet_NaN();
   std::vector<Alternative> alternatives;  // joint problems
   // Standard deviation of log radiance given the reflectance, at the
   // resolution of the search; joint problems with SolverEstimator::kMarginal.

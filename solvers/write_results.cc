@@ -17,6 +17,7 @@
 #include "io/problem_json.h"
 #include "io/result_preview.h"
 #include "solvers/conditioning.h"
+#include "solvers/reflectance_spread.h"
 #include "solvers/report/report_page.h"
 #include "solvers/solve_problem.h"
 
@@ -154,6 +155,12 @@ Json PosteriorJson(const InverseProblem& inverse, const Estimate& estimate) {
     VLOG(1) << "condition of the posterior's correlations " << condition;
     out["condition_number"] = Metric(condition);
   }
+  if (std::isfinite(estimate.spread)) {
+    out["brdf_spread"] = estimate.spread;
+    const ErrorToExpect error = ExpectError(estimate.spread);
+    out["brdf_log_rmse_expected"] = error.median;
+    out["brdf_log_rmse_90"] = error.most;
+  }
   Json alternatives = Json::array();
   for (const Alternative& a : estimate.alternatives) {
     alternatives.push_back(
@@ -173,6 +180,16 @@ std::string Text(const Json& document) {
 const char* Gauge(const InverseProblem& inverse) {
   if (inverse.known_map.has_value()) return "set by the known illumination";
   if (inverse.known_brdf.has_value()) return "set by the known reflectance";
+  switch (inverse.solver.gauge) {
+    case SolverGauge::kGreyLight:
+      return "scale between reflectance and light: the light's mean radiance "
+             "is grey; level: as with gauge: prior";
+    case SolverGauge::kUnitLight:
+      return "scale between reflectance and light: the light's mean radiance "
+             "is 1 in every channel";
+    case SolverGauge::kPrior:
+      break;
+  }
   if (inverse.solver.estimator == SolverEstimator::kMarginal) {
     return "scale between reflectance and light: mean log reflectance that of "
            "the training materials; hue: most probable";

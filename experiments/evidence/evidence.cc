@@ -26,6 +26,7 @@
 #include "solvers/lobe_table_fit.h"
 #include "solvers/marginal/marginal_descent.h"
 #include "solvers/marginal/reflectance_search.h"
+#include "solvers/reflectance_spread.h"
 #include "solvers/solve_problem.h"
 
 namespace ibrdf {
@@ -35,6 +36,7 @@ constexpr int kDescentIterations = 40;
 // Past the search's own stop.
 constexpr int kFurtherIterations = 200;
 constexpr double kFurtherGain = 1e-4;  // nats
+constexpr int kSpreadDraws = 64;
 // Factors of the noise that light inside texels makes, at which the likelihood
 // is taken.
 constexpr std::array<double, 6> kTexelNoise = {2.0, 1.0, 0.5, 0.25, 0.1, 0.0};
@@ -44,6 +46,8 @@ struct StudyOptions {
   bool texel_noise = false;
   bool found_alone = false;
   bool further = false;
+  bool spread = false;
+  int breadth = 1;
   bool ball_prior = false;
   bool cook_torrance = false;
   int most_lamps = ReflectanceSearchOptions().most_lamps;
@@ -68,8 +72,12 @@ class EvidenceStudy {
         study_(study),
         radiance_(RadianceOf(problem.image, problem.points)) {
     options_.num_threads = problem.num_threads;
-    options_.covariance = false;
+    options_.covariance = study.spread;
     options_.most_lamps = study.most_lamps;
+    options_.kept *= study.breadth;
+    for (SearchRound& round : options_.coarse_rounds) {
+      round.most *= study.breadth;
+    }
     options_.screen.visibility = options_.coarse.visibility =
         options_.fine.visibility = problem.transport.visibility;
     if (study.cells_across > 0) {
@@ -94,6 +102,7 @@ class EvidenceStudy {
                 found->start.c_str());
     const Point end = {ToEigen(found->parameters), found->scales};
     Show(fine, "found", end);
+    if (study_.spread) ShowSpread(*found);
     if (study_.further) {
       const Descent descent =
           DescendFrom(fine, end, kFurtherIterations, kFurtherGain);
@@ -183,6 +192,16 @@ class EvidenceStudy {
     std::fflush(stdout);  // one problem takes half a minute
   }
 
+  void ShowSpread(const ReflectanceSearchResult& found) const {
+    const std::vector<double> covariance(
+        found.covariance.data(),
+        found.covariance.data() + found.covariance.size());
+    const double spread =
+        ReflectanceSpread(LobeDistance(factory_), found.parameters, covariance,
+                          kSpreadDraws, problem_.seed);
+    std::printf("  spread %.3f\n", spread);
+  }
+
   void SweepTexelNoise(const MarginalReflectance& fine, const Point& point,
                        const Eigen::VectorXd& noise) const {
     const std::array<RowMatrix, 3> matrices =
@@ -268,6 +287,12 @@ int main(int argc, char** argv) {
       ->excludes("--ball-prior");
   app.add_flag("--further", options.further,
                "the search's last descent, far past its stop");
+  app.add_option("--breadth", options.breadth,
+                 "so many times the search's own materials go on from each "
+                 "stage to the next")
+      ->check(CLI::Range(1, 8));
+  app.add_flag("--spread", options.spread,
+               "how far apart draws of the posterior are");
   app.add_option("--lamps", options.most_lamps, "at most; the search's own: 3")
       ->check(CLI::Range(0, 8));
   app.add_option("--threads", options.num_threads, "0: all");

@@ -2,9 +2,10 @@
 """Errors of the sweep `ibrdf_bench joint` as sorted curves, and its worst cases.
 
 usage: plot.py RESULTS.csv [--cases DIR] [--out DIR]
-Writes DIR/errors.png: the share of cases below each error, of the BRDF beside
-Cook-Torrance given the true map and of the map beside the constant map of the
-true mean, all aligned, with medians and 90th percentiles; and DIR/worst.png:
+Writes DIR/errors.png: the share of cases below each error of the BRDF, beside
+Cook-Torrance given the true map, with medians and 90th percentiles, and each
+map's error against that of the constant map of the true mean, all aligned; and
+DIR/worst.png:
 the overview pictures of the ten cases of the largest BRDF error, from the
 sweep's folder `cases` (by default beside RESULTS.csv). Needs Debian's
 python3-matplotlib (scripts/install_plots.sh).
@@ -18,15 +19,11 @@ from results import median, numbers, open_pyplot, percentile, read_rows
 
 BRDF = "brdf_log_rmse_aligned"
 MAP = "illumination_relative_log_rmse_aligned"
-# Title, then curves: label, column, colour.
-PANELS = (("BRDF log-RMSE, aligned",
-           (("joint estimate", BRDF, "tab:red"),
-            ("Cook-Torrance given the true map",
-             "cook_torrance_brdf_log_rmse_aligned", "0.45"))),
-          ("map, relative log-RMSE, aligned",
-           (("joint estimate", MAP, "tab:red"),
-            ("constant map of the true mean",
-             "constant_map_relative_log_rmse_aligned", "0.45"))))
+COOK_TORRANCE = "cook_torrance_brdf_log_rmse_aligned"
+CONSTANT_MAP = "constant_map_relative_log_rmse_aligned"
+# Label, column, colour.
+CURVES = (("joint estimate", BRDF, "tab:red"),
+          ("Cook-Torrance given the true map", COOK_TORRANCE, "0.45"))
 CASE = ("material", "map", "geometry", "lobes", "method", "model")
 NUM_WORST = 10
 WORST_COLUMNS = 5
@@ -55,30 +52,52 @@ def worst(rows, count):
     return sorted(scored, key=lambda row: -float(row[BRDF]))[:count]
 
 
+def draw_shares(axes, rows):
+    largest = 0.0
+    for label, column, colour in CURVES:
+        values = sorted(numbers(rows, column))
+        if not values:
+            raise ValueError(f"expected numbers in the column {column}")
+        shares = [(i + 1) / len(values) for i in range(len(values))]
+        middle, high = median(values), percentile(values, 0.9)
+        axes.step([0.0] + values, [0.0] + shares, where="post", color=colour,
+                  label=f"{label}\nmedian {middle:.3g}, 90 %: {high:.3g}")
+        axes.plot([middle, high], [0.5, 0.9], "o", ms=4, color=colour)
+        largest = max(largest, values[-1])
+    wins, of = better(rows, BRDF, COOK_TORRANCE)
+    axes.set_title(f"BRDF log-RMSE, aligned: {wins} of {of} better")
+    axes.set_xlim(0.0, 1.03 * largest)
+    axes.set_ylim(0.0, 1.02)
+    axes.set_xlabel("error")
+    axes.set_ylabel("share of cases at most that")
+    axes.legend(loc="lower right")
+
+
+def draw_maps(axes, rows):
+    both = [row for row in rows if row[MAP] and row[CONSTANT_MAP]]
+    if not both:
+        raise ValueError(f"expected numbers in the column {MAP}")
+    for name in dict.fromkeys(row["map"] for row in both):
+        chosen = [row for row in both if row["map"] == name]
+        axes.plot(numbers(chosen, CONSTANT_MAP), numbers(chosen, MAP), "o",
+                  ms=4, alpha=0.6, label=name)
+    largest = 1.05 * max(numbers(both, MAP) + numbers(both, CONSTANT_MAP))
+    axes.plot([0.0, largest], [0.0, largest], "--", color="0.6", lw=1,
+              label="as good as constant")
+    wins, of = better(rows, MAP, CONSTANT_MAP)
+    axes.set_title(f"map, relative log-RMSE, aligned: {wins} of {of} better")
+    axes.set_xlim(0.0, largest)
+    axes.set_ylim(0.0, largest)
+    axes.set_xlabel("error of the constant map of the true mean")
+    axes.set_ylabel("error of the estimate, each case")
+    axes.legend(loc="upper left")
+
+
 def draw_errors(rows, out):
     pyplot = open_pyplot()
     figure, panels = pyplot.subplots(1, 2, figsize=(10, 4.2))
-    for axes, (title, curves) in zip(panels, PANELS):
-        largest = 0.0
-        for label, column, colour in curves:
-            values = sorted(numbers(rows, column))
-            if not values:
-                raise ValueError(f"expected numbers in the column {column}")
-            shares = [(i + 1) / len(values) for i in range(len(values))]
-            middle, high = median(values), percentile(values, 0.9)
-            axes.step([0.0] + values, [0.0] + shares, where="post",
-                      color=colour,
-                      label=f"{label}\nmedian {middle:.3g}, "
-                            f"90 %: {high:.3g}")
-            axes.plot([middle, high], [0.5, 0.9], "o", ms=4, color=colour)
-            largest = max(largest, values[-1])
-        wins, of = better(rows, curves[0][1], curves[1][1])
-        axes.set_title(f"{title}: {wins} of {of} better")
-        axes.set_xlim(0.0, 1.03 * largest)
-        axes.set_ylim(0.0, 1.02)
-        axes.set_xlabel("error")
-        axes.set_ylabel("share of cases at most that")
-        axes.legend(loc="lower right")
+    draw_shares(panels[0], rows)
+    draw_maps(panels[1], rows)
     figure.suptitle(f"{len(rows)} cases")
     figure.tight_layout()
     figure.savefig(out)
@@ -129,9 +148,9 @@ def main():
     parser.add_argument("--out", default=".", help="folder of the pictures")
     options = parser.parse_args()
     cases = options.cases or Path(options.results).parent / "cases"
-    columns = [curve[1] for _, curves in PANELS for curve in curves]
     try:
-        rows = read_rows(options.results, CASE + ("misfit",) + tuple(columns))
+        rows = read_rows(options.results, CASE + ("misfit", BRDF, MAP, COOK_TORRANCE,
+                                                CONSTANT_MAP))
         Path(options.out).mkdir(parents=True, exist_ok=True)
         draw_errors(rows, Path(options.out) / "errors.png")
         draw_worst(rows, cases, Path(options.out) / "worst.png")

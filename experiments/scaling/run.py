@@ -131,20 +131,20 @@ def draw(rows, path):
             axes = panels[down][across]
             for problem in dict.fromkeys(row["problem"] for row in rows):
                 points = curve(rows, problem, varied, quantity)
-                if points:
-                    axes.plot(*zip(*points), "o-", ms=4, label=problem)
-            # What linear growth through the last point of the dearest would be.
-            dearest = max((curve(rows, p, varied, quantity) for p in {row["problem"] for row in rows}),
-                          key=lambda points: points[-1][1] if points else 0)
-            if dearest:
-                (x, y) = dearest[-1]
-                axes.plot([dearest[0][0], x], [y * dearest[0][0] / x, y], "--", color="0.6", lw=1, label="linear")
+                if not points:
+                    continue
+                line, = axes.plot(*zip(*points), "o-", ms=4, label=problem)
+                # What linear growth up to the last point would have been.
+                (least, lowest), (most, value) = points[0], points[-1]
+                least = max(least, most * lowest / value / 3)
+                axes.plot([least, most], [value * least / most, value], ":", color=line.get_color(), lw=1)
             axes.set_xscale("log")
             axes.set_yscale("log")
             axes.set_ylabel("seconds, wall clock" if quantity == "seconds" else "peak memory, MB")
             if down:
                 fixed = f"map {WIDTH}x{WIDTH // 2}" if varied == "pixels" else f"image {SIZE}x{SIZE}"
                 axes.set_xlabel(f"{varied} ({fixed})")
+    panels[0][0].plot([], [], ":", color="0.4", lw=1, label="linear growth")
     panels[0][0].legend()
     figure.tight_layout()
     figure.savefig(path)

@@ -1,17 +1,32 @@
 #include "solvers/bench/joint_sweep.h"
 
 #include "solvers/bench/joint_baselines.h"
+#include "solvers/bench/sphere_columns.h"
 
 namespace ibrdf {
 
 const std::vector<std::string>& JointColumns() {
-  static const std::vector<std::string> columns = ModelSweepColumns(
-      {"seconds", "peak_mb", "misfit", "brdf_log_rmse", "brdf_log_rmse_aligned",
-       "brdf_log_rmse_below80", "illumination_relative_log_rmse",
-       "illumination_relative_log_rmse_aligned", "status",
-       "cook_torrance_misfit", "cook_torrance_brdf_log_rmse",
-       "cook_torrance_brdf_log_rmse_aligned", "constant_map_relative_log_rmse",
-       "constant_map_relative_log_rmse_aligned"});
+  static const std::vector<std::string> columns =
+      ModelSweepColumns({"seconds",
+                         "peak_mb",
+                         "misfit",
+                         "brdf_log_rmse",
+                         "brdf_log_rmse_aligned",
+                         "brdf_log_rmse_below80",
+                         "illumination_relative_log_rmse",
+                         "illumination_relative_log_rmse_aligned",
+                         "status",
+                         "cook_torrance_misfit",
+                         "cook_torrance_brdf_log_rmse",
+                         "cook_torrance_brdf_log_rmse_aligned",
+                         "constant_map_relative_log_rmse",
+                         "constant_map_relative_log_rmse_aligned",
+                         "mirror_log_rmse",
+                         "mirror_rmse",
+                         "mirror_dssim",
+                         "relit_log_rmse",
+                         "relit_rmse",
+                         "relit_dssim"});
   return columns;
 }
 
@@ -30,9 +45,12 @@ StatusOr<SolverSweep> JointSweep(const JointSweepOptions& options) {
                SolverYaml(options) + JointTruthYaml(c);
       },
       &sweep));
-  sweep.finish = [options](const SolverRun& run, const std::string&, bool,
-                           NamedRow* row) {
-    return SetJointBaselines(options, run.of, row);
+  sweep.finish = [options](const SolverRun& run, const std::string& folder,
+                           bool solved, NamedRow* row) {
+    IBRDF_RETURN_IF_ERROR(SetJointBaselines(options, run.of, row));
+    if (!solved) return OkStatus();
+    IBRDF_RETURN_IF_ERROR(SetMirror(options, run, folder, row));
+    return SetRelit(options, run, folder, row);
   };
   return sweep;
 }

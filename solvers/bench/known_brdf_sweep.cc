@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "io/image_file.h"
-#include "solvers/bench/sphere_metrics.h"
+#include "solvers/bench/sphere_columns.h"
 
 namespace ibrdf {
 namespace {
@@ -33,10 +33,7 @@ Status CompareMaps(const KnownBrdfSweepOptions& options,
   const auto spheres = gallery.Compare(*map, *truth);
   if (!spheres.ok()) return spheres.status();
   for (int k = 0; k < kNumSpheres; ++k) {
-    const std::string name = SphereName(static_cast<Sphere>(k));
-    row->Set(name + "_log_rmse", NumberCell((*spheres)[k].log_rmse));
-    row->Set(name + "_rmse", NumberCell((*spheres)[k].rmse));
-    row->Set(name + "_dssim", NumberCell((*spheres)[k].dssim));
+    SetSphere(SphereName(static_cast<Sphere>(k)), (*spheres)[k], row);
   }
   return OkStatus();
 }

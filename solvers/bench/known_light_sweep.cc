@@ -1,11 +1,14 @@
 #include "solvers/bench/known_light_sweep.h"
 
+#include "solvers/bench/sphere_columns.h"
+
 namespace ibrdf {
 
 const std::vector<std::string>& KnownLightColumns() {
   static const std::vector<std::string> columns = ModelSweepColumns(
       {"seconds", "peak_mb", "misfit", "brdf_log_rmse", "brdf_log_rmse_aligned",
-       "brdf_log_rmse_below80", "status"});
+       "brdf_log_rmse_below80", "status", "relit_log_rmse", "relit_rmse",
+       "relit_dssim"});
   return columns;
 }
 
@@ -24,6 +27,10 @@ StatusOr<SolverSweep> KnownLightSweep(const KnownLightSweepOptions& options) {
                "}\n";
       },
       &sweep));
+  sweep.finish = [options](const SolverRun& run, const std::string& folder,
+                           bool solved, NamedRow* row) {
+    return solved ? SetRelit(options, run, folder, row) : OkStatus();
+  };
   return sweep;
 }
 

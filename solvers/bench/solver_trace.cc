@@ -28,15 +28,17 @@ StatusOr<std::vector<TraceLine>> DecodeTrace(const std::string& path,
   for (const nlohmann::json& line : json["trace"]) {
     if (!line.is_object() || !line.contains("stage") ||
         !line["stage"].is_string() || !IsNumber(line, "seconds") ||
-        !IsNumber(line, "misfit") || !IsNumber(line, "scale")) {
+        !IsNumber(line, "misfit") || !IsNumber(line, "scale") ||
+        !IsNumber(line, "pixels")) {
       return InvalidInput(
           path + ": trace[" + std::to_string(trace.size()) + "]",
-          "expected stage, seconds, scale and misfit");
+          "expected stage, seconds, scale, pixels and misfit");
     }
     // The search for the reflectance knows no scale.
     trace.push_back(
         {line["stage"].get<std::string>(), line["seconds"].get<double>(),
-         line["misfit"].get<double>(), line["scale"].get<double>() > 0.0});
+         line["misfit"].get<double>(), line["pixels"].get<int64_t>(),
+         line["scale"].get<double>() > 0.0});
   }
   return trace;
 }
@@ -54,10 +56,20 @@ int CountRounds(const std::vector<TraceLine>& trace) {
       }));
 }
 
-std::optional<double> SecondsToMisfit(const std::vector<TraceLine>& trace,
-                                      double misfit) {
+const TraceLine* LastRound(const std::vector<TraceLine>& trace) {
+  const TraceLine* last = nullptr;
   for (const TraceLine& line : trace) {
-    if (line.has_map && line.misfit <= misfit) return line.seconds;
+    if (line.has_map && line.stage != "end") last = &line;
+  }
+  return last;
+}
+
+std::optional<double> SecondsToMisfit(const std::vector<TraceLine>& trace,
+                                      const TraceLine& of) {
+  for (const TraceLine& line : trace) {
+    if (line.has_map && line.pixels == of.pixels && line.misfit <= of.misfit) {
+      return line.seconds;
+    }
   }
   return std::nullopt;
 }

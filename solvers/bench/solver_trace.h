@@ -1,5 +1,6 @@
 // The trace that ibrdf_solve leaves in result.json.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@ struct TraceLine {
   std::string stage;
   double seconds = 0.0;
   double misfit = 0.0;
+  int64_t pixels = 0;  // that took part
   // False in the search for the reflectance with the light integrated out:
   // its misfit is of cells of pixels and of no map.
   bool has_map = false;
@@ -27,8 +29,13 @@ StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json);
 // cost: lines "STAGE round N". With Adam each is one round of its schedule.
 int CountRounds(const std::vector<TraceLine>& trace);
 
-// Seconds until a map and a reflectance had at most this misfit; none: never.
+// The last line with a map before the end, whose misfit is of all pixels; null:
+// there is none.
+const TraceLine* LastRound(const std::vector<TraceLine>& trace);
+
+// Seconds until a map and a reflectance had at most the misfit of a line on as
+// many pixels: joined ones have less noise. None: never.
 std::optional<double> SecondsToMisfit(const std::vector<TraceLine>& trace,
-                                      double misfit);
+                                      const TraceLine& of);
 
 }  // namespace ibrdf

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kMirrorSize = 128;
 constexpr int kSmoothSize = 40;
+constexpr int kRelitSize = 64;
 
 std::vector<ShadingPoint> SpherePoints(int size, int samples_per_side) {
   StatusOr<std::vector<ShadingPoint>> points = FindShadingPoints(
@@ -38,9 +39,10 @@ Image RenderMirror(const Image& map) {
   return PixelMeans(points, E.data(), kMirrorSize, kMirrorSize);
 }
 
-bool IsFinite(const Image& map) {
-  return std::all_of(map.rgb.begin(), map.rgb.end(),
-                     [](float v) { return std::isfinite(v); });
+Status CheckFinite(const char* name, const Image& map) {
+  const bool finite = std::all_of(map.rgb.begin(), map.rgb.end(),
+                                  [](float v) { return std::isfinite(v); });
+  return finite ? OkStatus() : InvalidInput(name, "expected finite radiance");
 }
 
 // e: not yet scaled.
@@ -121,14 +123,35 @@ SphereGallery::Pictures SphereGallery::Render(const Image& map) const {
   return pictures;
 }
 
+StatusOr<SphereMetrics> CompareMirrors(const Image& estimate,
+                                       const Image& reference) {
+  IBRDF_RETURN_IF_ERROR(CheckFinite("estimate", estimate));
+  IBRDF_RETURN_IF_ERROR(CheckFinite("reference", reference));
+  return ComparePictures(RenderMirror(estimate), RenderMirror(reference));
+}
+
+StatusOr<SphereMetrics> CompareRelit(const MerlTable& estimate,
+                                     const MerlTable& reference,
+                                     const Image& map, int num_threads) {
+  IBRDF_RETURN_IF_ERROR(CheckFinite("map", map));
+  MerlTableStack tables(2);
+  tables.Set(0, estimate);
+  tables.Set(1, reference);
+  ReferenceOptions options;
+  options.far_width = 64;
+  options.num_threads = num_threads;
+  const std::vector<ShadingPoint> points = SpherePoints(kRelitSize, 1);
+  const size_t size = 3 * points.size();
+  std::vector<double> E(2 * size);
+  ReferenceBatch(tables, {&map}, options).Render(points, E.data());
+  return ComparePictures(PixelMeans(points, E.data(), kRelitSize, kRelitSize),
+                         PixelMeans(points, &E[size], kRelitSize, kRelitSize));
+}
+
 StatusOr<std::array<SphereMetrics, kNumSpheres>> SphereGallery::Compare(
     const Image& estimate, const Image& reference) const {
-  if (!IsFinite(estimate)) {
-    return InvalidInput("estimate", "expected finite radiance");
-  }
-  if (!IsFinite(reference)) {
-    return InvalidInput("reference", "expected finite radiance");
-  }
+  IBRDF_RETURN_IF_ERROR(CheckFinite("estimate", estimate));
+  IBRDF_RETURN_IF_ERROR(CheckFinite("reference", reference));
   const Pictures e = Render(estimate), r = Render(reference);
   std::array<SphereMetrics, kNumSpheres> metrics;
   for (int k = 0; k < kNumSpheres; ++k) {

@@ -1,9 +1,10 @@
-// Maps compared by what spheres look like under them.
+// Maps and reflectances compared by what spheres look like.
 #pragma once
 #include <array>
 #include <string>
 
 #include "ibrdf/base/status.h"
+#include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/render/merl_table_stack.h"
 
@@ -24,6 +25,19 @@ struct SphereMetrics {
   double rmse = 0.0;      // of s e - r
   double dssim = 0.0;     // of s e and r, see image_metrics.h
 };
+
+// Mirror spheres under two maps: 128x128 pixels, 2x2 samples. Refuses what
+// SphereGallery::Compare does.
+StatusOr<SphereMetrics> CompareMirrors(const Image& estimate,
+                                       const Image& reference);
+
+// Spheres of two materials under one map that is not the input's: the
+// supplement's "nat. illum."; 64x64 pixels. num_threads <= 0: all. Refuses a
+// map that is not finite and a reference that looks black; the message starts
+// with "map" or "reference".
+StatusOr<SphereMetrics> CompareRelit(const MerlTable& estimate,
+                                     const MerlTable& reference,
+                                     const Image& map, int num_threads);
 
 // Immutable; its functions may be called from one thread at a time.
 class SphereGallery {

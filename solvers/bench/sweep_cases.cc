@@ -62,7 +62,7 @@ std::string ImageYaml(const SweepOptions& options) {
 }
 
 StatusOr<std::vector<SweepCase>> ListSweepCases(const SweepOptions& options) {
-  const std::vector<std::string> map_extensions = {".hdr", ".exr"};
+  const std::vector<std::string> map_extensions = MapExtensions();
   std::vector<std::string> materials = options.materials;
   std::vector<std::string> map_names = options.map_names;
   if (materials.empty()) {

@@ -8,6 +8,8 @@ namespace {
 namespace fs = std::filesystem;
 }  // namespace
 
+std::vector<std::string> MapExtensions() { return {".hdr", ".exr"}; }
+
 std::string FindFile(const std::string& folder, const std::string& name,
                      const std::vector<std::string>& extensions) {
   for (const std::string& extension : extensions) {

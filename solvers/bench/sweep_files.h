@@ -7,6 +7,9 @@
 
 namespace ibrdf {
 
+// Of the maps that a sweep takes.
+std::vector<std::string> MapExtensions();
+
 // Absolute path of the file in `folder` called `name` with one of the
 // extensions (".binary"), the first that is there; empty: none.
 std::string FindFile(const std::string& folder, const std::string& name,

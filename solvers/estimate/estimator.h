@@ -197,6 +197,8 @@ class Estimator {
   void RenderPixels(const std::vector<View*>& views);
   // Evaluates the end at every pixel, against the start.
   StatusOr<Estimate> Finish(JointState best);
+  // Of the posterior around a state; NaN where none was found.
+  double SpreadOf(const JointState& state) const;
   void AddAlternatives(Estimate* estimate) const;
 
   const InverseProblem& problem_;

@@ -4,14 +4,17 @@
 #include <vector>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "solvers/estimate/estimator.h"
+#include "solvers/reflectance_spread.h"
 
 namespace ibrdf {
 namespace {
 
 // Transported at once: the lists of pairs of all pixels would take gigabytes.
 constexpr size_t kPointsAtOnce = 4096;
+constexpr int kSpreadDraws = 64;
 
 }  // namespace
 
@@ -89,6 +92,7 @@ StatusOr<Estimate> Estimator::Finish(JointState best) {
     estimate.brdf = lobes_->ToMerl(best.lobes.data());
     estimate.lobe_covariance.assign(covariance_.data(),
                                     covariance_.data() + covariance_.size());
+    estimate.spread = SpreadOf(best);
     AddAlternatives(&estimate);
   }
   estimate.map_std = map_std_;
@@ -102,6 +106,16 @@ StatusOr<Estimate> Estimator::Finish(JointState best) {
   estimate.trace = std::move(trace_);
   estimate.seconds = Elapsed();
   return estimate;
+}
+
+double Estimator::SpreadOf(const JointState& state) const {
+  if (covariance_.size() == 0) return Estimate().spread;
+  const LobeDistance distance(
+      FlowLobes::Factory(problem_.model, problem_.lobes, problem_.num_threads));
+  const std::vector<double> covariance(covariance_.data(),
+                                       covariance_.data() + covariance_.size());
+  return ReflectanceSpread(distance, state.lobes, covariance, kSpreadDraws,
+                           problem_.seed);
 }
 
 void Estimator::AddAlternatives(Estimate* estimate) const {

@@ -76,6 +76,27 @@ std::string AlternativeTable(const Json& alternatives) {
       rows);
 }
 
+// Where it is stated.
+std::string ExpectedErrorWords(const Json& posterior) {
+  const double expected = NumberAt(posterior, "brdf_log_rmse_expected");
+  if (!std::isfinite(expected)) return "";
+  const double most = NumberAt(posterior, "brdf_log_rmse_90");
+  return HtmlElement(
+             "p",
+             "How far off to expect it: reflectances drawn from this posterior "
+             "differ from the estimate by " +
+                 ShortNumber(NumberAt(posterior, "brdf_spread")) +
+                 " in the logarithm (root mean square over all angles, "
+                 "aligned). Such posteriors are too sure: of images whose "
+                 "truth is known half were off by more than " +
+                 ShortNumber(expected) + " at such a spread (a factor of " +
+                 ShortNumber(std::exp(expected)) +
+                 "), one in ten by more "
+                 "than " +
+                 ShortNumber(most) + ".") +
+         "\n";
+}
+
 }  // namespace
 
 std::string PosteriorSection(const Json& posterior, const Json& brdf) {
@@ -103,6 +124,7 @@ std::string PosteriorSection(const Json& posterior, const Json& brdf) {
               "this problem: how well these numbers are known is not stated.");
     out += "\n";
   }
+  out += ExpectedErrorWords(posterior);
   const Json alternatives = MemberAt(posterior, "alternatives");
   if (alternatives.is_array() && !alternatives.empty()) {
     out += HtmlElement("h3", "Other explanations") + "\n" +

@@ -17,6 +17,9 @@ constexpr double kTimeShare = 0.8;
 // 20 of the evidence and beyond a tenth in the logarithm.
 constexpr double kRivalCost = 3.0;
 constexpr double kRivalDifference = 0.1;
+// Of the expected error: two thirds of joint_grid's cases above it are off by
+// more than 0.6, a third of the others.
+constexpr double kUncertain = 0.84;
 
 std::string StatusWarning(const std::string& status) {
   if (status == "no_improvement") {
@@ -37,6 +40,17 @@ std::string PixelWarning(const Json& result) {
   return ShortNumber(all - used) + " of the object's " + ShortNumber(all) +
          " pixels took no part: they are not finite and positive in all three "
          "channels.";
+}
+
+std::string UncertainWarning(const Json& result) {
+  const double expected =
+      NumberAt(MemberAt(result, "posterior"), "brdf_log_rmse_expected");
+  if (!(expected > kUncertain)) return "";
+  return "This image does not tell the reflectance well: its logarithm is "
+         "expected to be off by " +
+         ShortNumber(expected) + ", a factor of " +
+         ShortNumber(std::exp(expected)) +
+         " (root mean square over all angles, after the best scale).";
 }
 
 std::string RivalWarning(const Json& result) {
@@ -70,7 +84,8 @@ std::vector<std::string> ResultWarnings(const Json& result) {
   const bool out_of_time = NumberAt(metrics, "seconds") > kTimeShare * limit;
   if (out_of_time) {
     add("The time limit of " + ShortNumber(limit) +
-        " s was used up: with more (solver.seconds) the result may still "
+        " s was nearly used up: with more (solver.seconds) the result may "
+        "still "
         "change.");
   }
   const double misfit = NumberAt(metrics, "misfit");
@@ -84,6 +99,7 @@ std::vector<std::string> ResultWarnings(const Json& result) {
         "radiance.");
   }
   add(PixelWarning(result));
+  add(UncertainWarning(result));
   add(RivalWarning(result));
   const std::string effects = TextAt(result, "effects");
   const Json geometry = MemberAt(problem, "geometry");

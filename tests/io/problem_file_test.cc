@@ -49,6 +49,7 @@ TEST_F(ProblemFile, LeastFileHasTheDocumentedDefaults) {
   EXPECT_EQ(64, p.illumination.height);
   EXPECT_EQ(32, p.illumination.unet_channels);
   EXPECT_EQ(QuadratureLevel::kStandard, p.solver.quadrature);
+  EXPECT_EQ(SolverGauge::kPrior, p.solver.gauge);
   EXPECT_FALSE(p.likelihood.scale.has_value());
   EXPECT_EQ(EffectsMode::kAuto, p.effects.mode);
   EXPECT_EQ(120.0, p.solver.seconds);
@@ -94,6 +95,14 @@ truth: {brdf: gt.binary, illumination: gt.exr}
   EXPECT_EQ(9, *p.solver.seed);
   EXPECT_EQ(dir_.File("gt.exr"), p.truth.illumination);
   EXPECT_TRUE(CheckSolvable(p).ok());
+}
+
+TEST_F(ProblemFile, GaugesAreOfJointProblems) {
+  const std::string least = kLeast;
+  EXPECT_EQ(SolverGauge::kGreyLight,
+            Read(least + "solver: {gauge: grey_light}")->solver.gauge);
+  EXPECT_EQ(SolverGauge::kUnitLight,
+            Read(least + "solver: {gauge: unit_light}")->solver.gauge);
 }
 
 TEST_F(ProblemFile, BuiltInScenesNeedNoFile) {
@@ -175,6 +184,10 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
        "illumination.unet_channels: expected with illumination.prior: unet"},
       {least + "solver: {quadrature: finest}",
        "solver.quadrature: expected coarse, standard or fine, found 'finest'"},
+      {least + "solver: {gauge: grey}",
+       "solver.gauge: expected prior, grey_light or unit_light, found 'grey'"},
+      {least + "problem: reflectance\nsolver: {gauge: prior}",
+       "solver.gauge: expected with problem: joint only"},
       {least + "illumination: {known: {sun: {}}}",
        "illumination.known.sun: unknown key"},
       {least + "illumination: {known: {sky: {cloud: 1}}}",

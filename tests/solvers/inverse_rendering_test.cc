@@ -8,6 +8,7 @@
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/reference_renderer.h"
 #include "tests/solvers/solver_testing.h"
 
@@ -297,6 +298,33 @@ TEST_F(InverseRenderingTest, TheImagesUnitMovesTheMapAlone) {
   for (size_t i = 0; i < one.map.rgb.size(); ++i) {
     EXPECT_NEAR(std::log(one.map.rgb[i] * 1000), std::log(scaled.map.rgb[i]),
                 0.05);
+  }
+}
+
+// Another gauge moves scale between the two and leaves all else as it is.
+TEST_F(InverseRenderingTest, GaugesDifferByScaleAlone) {
+  const Estimate prior = Solve();
+  problem_.solver.gauge = SolverGauge::kUnitLight;
+  const Estimate unit = Solve();
+  EXPECT_EQ(prior.render.rgb, unit.render.rgb);
+  EXPECT_EQ(prior.misfit, unit.misfit);
+  EXPECT_EQ(prior.spread, unit.spread);
+  const Eigen::Array3d mean = MeanRadiance(unit.map);
+  EXPECT_LT((mean - 1.0).abs().maxCoeff(), 1e-5);
+  const Eigen::Array3d factor = MeanRadiance(prior.map);  // to the reflectance
+  EXPECT_GT((factor - 1.0).abs().minCoeff(), 1e-3);
+  for (size_t i = 0; i < unit.lobe_parameters.size(); ++i) {
+    // Seven of a lobe, the last three colours.
+    const double moved = i % 7 < 4 ? 0.0 : std::log(factor[i % 7 - 4]);
+    EXPECT_NEAR(prior.lobe_parameters[i] + moved, unit.lobe_parameters[i],
+                1e-5);
+  }
+  for (int c = 0; c < 3; ++c) {
+    for (int bin = 0; bin < kMerlBins; bin += 1001) {
+      const double raw = prior.brdf.Raw(c, bin);
+      EXPECT_NEAR(unit.brdf.Raw(c, bin), raw > 0.0 ? factor[c] * raw : raw,
+                  1e-5 * std::abs(factor[c] * raw));
+    }
   }
 }
 

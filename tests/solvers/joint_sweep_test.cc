@@ -18,7 +18,13 @@ namespace {
 
 class JointSweepTest : public testing::SweepTest {
  protected:
-  JointSweepTest() { Apply(&options_); }
+  JointSweepTest() {
+    Apply(&options_);
+    Image estimate =
+        ResizeMap(testing::SmoothMap(8, 16), kSweepMapHeight, kSweepMapWidth);
+    for (float& v : estimate.rgb) v *= 3.0f;
+    CHECK(WriteExr(estimate, dir_.File("estimate.exr")).ok());
+  }
   Status Run() const { return SweepTest::Run(options_, JointSweep(options_)); }
   std::vector<ResultsRow> Rows() const {
     return SweepTest::Rows(JointColumns());
@@ -45,6 +51,10 @@ TEST_F(JointSweepTest, WritesRowsAndResumes) {
   EXPECT_LT(0.0, std::stod(Cell(row, "peak_mb")));
   EXPECT_LT(0.0, std::stod(Cell(row, "constant_map_relative_log_rmse")));
   EXPECT_LT(std::stod(Cell(row, "cook_torrance_misfit")), 1.0);
+  // The true map and table but for the scale.
+  EXPECT_NEAR(0.0, std::stod(Cell(row, "mirror_log_rmse")), 1e-4);
+  EXPECT_NEAR(0.0, std::stod(Cell(row, "relit_log_rmse")), 1e-4);
+  EXPECT_NEAR(0.0, std::stod(Cell(row, "relit_dssim")), 1e-4);
   const std::string folder = options_.out + "/cases/paint_b/";
   for (const char* file : {"input.exr", "mask.png", "joint.yaml"}) {
     EXPECT_TRUE(std::filesystem::exists(folder + file)) << file;

@@ -5,6 +5,7 @@
 #include "io/model_file.h"
 #include "solvers/bench/known_brdf_sweep.h"
 #include "solvers/bench/known_light_sweep.h"
+#include "solvers/bench/sphere_metrics.h"
 #include "tests/solvers/sweep_testing.h"
 #include "tests/support/tiny_model.h"
 
@@ -34,6 +35,7 @@ TEST_F(KnownSweepsTest, KnownLightSolvesWithModelsThatHaveNotSeenTheMaterial) {
   EXPECT_EQ("fold1/m.ibrdf", Cell(columns, row, "model"));
   EXPECT_EQ("0.25", Cell(columns, row, "misfit"));
   EXPECT_EQ("ok", Cell(columns, row, "status"));
+  EXPECT_NEAR(0.0, std::stod(Cell(columns, row, "relit_log_rmse")), 1e-6);
   const std::string yaml =
       ReadBytes(options.out + "/cases/paint_b/known_light.yaml");
   EXPECT_NE(std::string::npos, yaml.find("problem: reflectance\n"));
@@ -86,6 +88,47 @@ TEST_F(KnownSweepsTest, KnownBrdfComparesPriorsAndSpheres) {
   ASSERT_TRUE(Run(options, KnownBrdfSweep(options)).ok());
   EXPECT_EQ(3u, Calls());
   EXPECT_EQ(2u, Rows(columns).size());
+}
+
+// The light of the input says nothing new of the reflectance.
+TEST_F(KnownSweepsTest, ReflectanceIsComparedUnderTheNextMap) {
+  const MerlTable other = SampleMerl(testing::Glossy(0.3, 0.5, 60.0));
+  ASSERT_TRUE(WriteMerl(other, dir_.File("other.binary")).ok());
+  WriteSolver("{\"metrics\": {}}", 0,
+              "cp '" + dir_.File("other.binary") + "' \"$out/brdf.binary\"");
+  Image sun = testing::SmoothMap(8, 16);
+  for (int c = 0; c < 3; ++c) sun.At(2, 5)[c] *= 100.0f;
+  ASSERT_TRUE(WriteExr(sun, dir_.File("maps/a.exr")).ok());
+  KnownLightSweepOptions options;
+  Apply(&options);
+  options.map_names = {"a", "c"};
+  ASSERT_TRUE(Run(options, KnownLightSweep(options)).ok());
+  const MerlTable truth = ReadMerl(dir_.File("data/paint.binary")).value();
+  const auto relit = [&](const Image& map) {
+    return CompareRelit(other, truth,
+                        ResizeMap(map, kSweepMapHeight, kSweepMapWidth), 1)
+        .value()
+        .log_rmse;
+  };
+  const auto& columns = KnownLightColumns();
+  const std::vector<ResultsRow> rows = Rows(columns);
+  ASSERT_EQ(2u, rows.size());
+  const double smooth = relit(testing::SmoothMap(8, 16)), sunny = relit(sun);
+  EXPECT_GT(std::abs(std::log(sunny / smooth)), 0.1);
+  EXPECT_NEAR(smooth, std::stod(Cell(columns, rows[0], "relit_log_rmse")),
+              1e-4 * smooth);
+  EXPECT_NEAR(sunny, std::stod(Cell(columns, rows[1], "relit_log_rmse")),
+              1e-4 * sunny);
+
+  std::filesystem::remove(dir_.File("maps/b.exr"));
+  std::filesystem::remove(dir_.File("maps/c.exr"));
+  options.map_names = {"a"};
+  options.out = dir_.File("alone");
+  ASSERT_TRUE(Run(options, KnownLightSweep(options)).ok());
+  const ResultsRow alone =
+      ReadResults(options.out + "/results.csv", columns).value().at(0);
+  EXPECT_EQ("ok", Cell(columns, alone, "status"));
+  EXPECT_EQ("", Cell(columns, alone, "relit_log_rmse"));
 }
 
 TEST_F(KnownSweepsTest, AnEstimateThatIsNotThereLeavesCellsEmpty) {

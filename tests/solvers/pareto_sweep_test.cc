@@ -21,13 +21,19 @@ class ParetoSweepTest : public testing::SweepTest {
     CHECK(WriteExr(map, dir_.File("estimate.exr")).ok());
     Solve(0.25, 2);
   }
-  // The stand-in ends at this misfit after `seconds`, as a map.
+  // The stand-in comes to this misfit of joined pixels after `seconds`, and
+  // ends ten later.
   void Solve(double misfit, double seconds) {
-    const std::string m = std::to_string(misfit), s = std::to_string(seconds);
-    WriteSolver(R"({"metrics": {"misfit": )" + m +
-                    R"(, "illumination_relative_log_rmse": 0.5},
-                "trace": [{"stage": "coarse round 1", "seconds": )" +
-                    s + R"(, "scale": 1, "misfit": )" + m + "}]}",
+    const auto line = [](const char* stage, double at, int pixels, double m) {
+      return std::string(R"({"stage": ")") + stage + R"(", "seconds": )" +
+             std::to_string(at) + R"(, "scale": 1, "pixels": )" +
+             std::to_string(pixels) + R"(, "misfit": )" + std::to_string(m) +
+             "}";
+    };
+    WriteSolver(R"({"metrics": {"misfit": )" + std::to_string(misfit) +
+                    R"(, "illumination_relative_log_rmse": 0.5}, "trace": [)" +
+                    line("coarse round 1", seconds, 4, misfit) + ", " +
+                    line("end", seconds + 10.0, 9, 3.0 * misfit) + "]}",
                 0);
   }
   Status Run() const { return SweepTest::Run(options_, ParetoSweep(options_)); }
@@ -146,8 +152,8 @@ TEST_F(ParetoSweepTest, WritesRowsResumesAndComparesTimes) {
   }
   EXPECT_NE(std::string::npos,
             ReadBytes(options_.out + "/results.md")
-                .find("| paint | a | 1 | 0.2500 | 90.0 | 15.0 | 6.0 | "
-                      "0.1250 | 15.0 |"));
+                .find("| paint | a | 1 | 0.2500 | 90.0 | 100.0 | 15.0 | 6.7 | "
+                      "25.0 |"));
   ASSERT_TRUE(Run().ok());
   EXPECT_EQ(3u, Calls());
   CutResults();

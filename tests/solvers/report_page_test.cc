@@ -45,6 +45,9 @@ Json JointResult() {
       {"posterior",
        {{"lobes",
          {{{"code_std", {0.1, 0.2}}, {"log_colour_std", {0.05, 0.2, 1.1}}}}},
+        {"brdf_spread", 0.21875},
+        {"brdf_log_rmse_expected", 0.34375},
+        {"brdf_log_rmse_90", 0.6875},
         {"alternatives",
          {{{"start", "gold & silver"},
            {"cost_above_best", 0.0},
@@ -110,6 +113,7 @@ TEST(ReportPage, ShowsWhatTheResultHolds) {
         "0.01832",  // exp(-4)
         "1.25", "0.375", "0.3125", "solver.seconds",
         "within a factor of 3.004",  // exp(1.1)
+        "0.2188", "0.3438 at such a spread (a factor of 1.41", "0.6875",
         "the sphere is convex", "time (s)", "</svg>"}) {
     EXPECT_TRUE(Contains(page, part)) << part;
   }
@@ -229,6 +233,7 @@ TEST(ResultWarnings, NameEachCause) {
   warned("/metrics/seconds", 55.0, "time limit");
   warned("/pixels_used", 90, "10 of the object's 100");
   warned("/posterior/alternatives/1/cost_above_best", 1.0, "<chrome>");
+  warned("/posterior/brdf_log_rmse_expected", 0.9, "a factor of 2.46");
   warned("/problem/geometry", {{"mesh", "a.obj"}}, "convex");
 }
 

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/brdf/sample_merl.h"
 #include "tests/render/render_testing.h"
 
 namespace ibrdf {
@@ -60,6 +62,54 @@ TEST(SphereMetrics, ClosedFormOfTwoGreys) {
   EXPECT_NEAR(std::sqrt(2.0), m.rmse, 1e-5);
   const double up = std::log(3.0 / 2.0), down = std::log(3.0 / 5.0);
   EXPECT_NEAR(std::sqrt((2 * up * up + down * down) / 3), m.log_rmse, 1e-5);
+}
+
+TEST(SphereMetrics, MirrorsAreTheGallerys) {
+  const Image map = testing::SmoothMap(32, 64),
+              other = testing::ConstantMap(32, 64, 1.0f);
+  const SphereMetrics alone = CompareMirrors(other, map).value();
+  const SphereMetrics one = Gallery().Compare(other, map).value()[0];
+  EXPECT_GT(alone.log_rmse, 0.01);
+  EXPECT_EQ(one.log_rmse, alone.log_rmse);
+  EXPECT_EQ(one.dssim, alone.dssim);
+}
+
+TEST(SphereMetrics, RelitReflectanceHasOneFreeScale) {
+  const MerlTable truth = SampleMerl(testing::Glossy(0.3, 0.5, 20.0));
+  const Image map = testing::SmoothMap(32, 64);
+  MerlTable scaled = truth, red = truth;
+  for (size_t i = 0; i < truth.raw.size(); ++i) {
+    scaled.raw[i] *= 5.0;
+    red.raw[i] *= i < kMerlBins ? 2.0 : 1.0;
+  }
+  const SphereMetrics same = CompareRelit(scaled, truth, map, 1).value();
+  EXPECT_NEAR(0.0, same.log_rmse, 1e-5);
+  EXPECT_NEAR(0.0, same.dssim, 1e-5);
+  EXPECT_LT(0.05, CompareRelit(red, truth, map, 1).value().log_rmse);
+  // Closed form where all that is seen is white: (1, 1, 1) for (2, 1, 1).
+  const MerlTable matte = SampleMerl([](double, double, double) {
+    return Eigen::Array3d::Constant(1 / M_PI);
+  });
+  MerlTable pink = matte;
+  for (int i = 0; i < kMerlBins; ++i) pink.raw[i] *= 2.0;
+  const SphereMetrics furnace =
+      CompareRelit(pink, matte, testing::ConstantMap(32, 64, 1.0f), 1).value();
+  // s = 4/6: errors 1/3, 1/3, 1/3.
+  EXPECT_NEAR(1.0 / 3.0, furnace.rmse, 1e-3);
+}
+
+TEST(SphereMetrics, RelitRefusesWhatCannotBeCompared) {
+  const MerlTable truth = SampleMerl(testing::Glossy(0.3, 0.5, 20.0));
+  Image map = testing::SmoothMap(16, 32);
+  MerlTable black = truth;
+  for (double& v : black.raw) v = std::min(v, 0.0);
+  EXPECT_TRUE(std::isfinite(CompareRelit(black, truth, map, 1)->log_rmse));
+  EXPECT_EQ(
+      0u,
+      CompareRelit(truth, black, map, 1).status().message().find("reference"));
+  map.rgb[0] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(0u,
+            CompareRelit(truth, truth, map, 1).status().message().find("map"));
 }
 
 TEST(SphereMetrics, Extremes) {

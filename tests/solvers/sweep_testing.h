@@ -37,9 +37,9 @@ class SweepTest : public ::testing::Test {
                 0);
   }
 
-  // Counts its calls in DIR/calls, writes result.json and DIR/estimate.exr,
-  // where that is, as illumination.exr, runs `command`, and exits with
-  // `exit_code`.
+  // Counts its calls in DIR/calls, writes result.json, the paint as brdf.binary
+  // and DIR/estimate.exr, where that is, as illumination.exr, runs `command`,
+  // and exits with `exit_code`.
   void WriteSolver(const std::string& json, int exit_code,
                    const std::string& command = "echo 'error: of the case'") {
     WriteBytes(
@@ -53,6 +53,9 @@ class SweepTest : public ::testing::Test {
             dir_.File("estimate.exr") + "' ] && cp '" +
             dir_.File("estimate.exr") +
             "' \"$out/illumination.exr\"\n"
+            "cp '" +
+            dir_.File("data/paint.binary") +
+            "' \"$out/brdf.binary\"\n"
             "echo '" +
             json + "' > \"$out/result.json\"\n" + command +
             "\n"

@@ -1,0 +1,47 @@
+// How far apart the reflectances are that a posterior deems probable.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "ibrdf/brdf/lobe_model.h"
+
+namespace ibrdf {
+
+// Aligned log-RMSE between lobes as CompareBrdfs has it of their tables, but
+// over some thousands of nodes, each with the share of bins around it.
+// Immutable.
+class LobeDistance {
+ public:
+  explicit LobeDistance(const LobeFactory& lobes);
+
+  const LobeModel& lobes() const { return *lobes_; }
+  // Log of raw values plus the metric's floor, [3][nodes].
+  std::vector<double> LogValues(const std::vector<double>& parameters) const;
+  // Of two such.
+  double Aligned(const std::vector<double>& a,
+                 const std::vector<double>& b) const;
+
+ private:
+  std::unique_ptr<const LobeModel> lobes_;
+  std::vector<double> weights_;  // [nodes], sum 1
+};
+
+// Root mean square, over `draws` of N(parameters, covariance), of the distance
+// to `parameters`: what the estimate's error is if that is the posterior.
+// covariance [n * n], symmetric; what rounding made negative in it counts as
+// none. Codes of draws stay in the unit ball. NaN where a value is not finite.
+double ReflectanceSpread(const LobeDistance& distance,
+                         const std::vector<double>& parameters,
+                         const std::vector<double>& covariance, int draws,
+                         uint64_t seed);
+
+// A posterior that takes no account of what lobes and light's statistics get
+// wrong is too sure. The aligned log-RMSE that half and nine of ten problems
+// whose truth is known stayed within at that spread (experiments/evidence, "How
+// sure is it?").
+struct ErrorToExpect {
+  double median = 0.0, most = 0.0;
+};
+ErrorToExpect ExpectError(double spread);
+
+}  // namespace ibrdf
