@@ -18,7 +18,7 @@ constexpr BrdfGridShape kGrid = {36, 16, 24};
 constexpr double kFloor = 1e-6;  // raw units, as of CompareBrdfs
 // Errors over spreads: the median and the 90th percentile.
 constexpr double kMedianRatio = 2.1;
-constexpr double kMostRatio = 3.7;
+constexpr double kMostRatio = 3.8;
 
 // Into the unit ball where they are outside.
 void ClampCodes(const LobeModel& lobes, Eigen::VectorXd* parameters) {

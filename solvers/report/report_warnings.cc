@@ -17,8 +17,8 @@ constexpr double kTimeShare = 0.8;
 // 20 of the evidence and beyond a tenth in the logarithm.
 constexpr double kRivalCost = 3.0;
 constexpr double kRivalDifference = 0.1;
-// Of the expected error: two thirds of joint_grid's cases above it are off by
-// more than 0.6, a third of the others.
+// Of the expected error: of joint_grid's cases above it three quarters are off
+// by more than 0.6, a quarter of the others.
 constexpr double kUncertain = 0.84;
 
 std::string StatusWarning(const std::string& status) {
