@@ -126,16 +126,19 @@ json EffectsJson(const EffectsSpec& effects) {
   return list;
 }
 
-json SolverJson(const SolverSpec& solver) {
+json SolverJson(const SolverSpec& solver, ProblemKind kind) {
   json out = {
       {"estimator",
        solver.estimator == SolverEstimator::kMarginal ? "marginal" : "maximum"},
       {"method", SolverMethodName(solver.method)},
       {"quadrature", QuadratureLevelName(solver.quadrature)},
-      {"gauge", SolverGaugeName(solver.gauge)},
       {"seconds", solver.seconds},
       {"tolerance", solver.tolerance},
       {"max_iterations", solver.max_iterations}};
+  // Only where both parts are unknown may scale move between them.
+  if (kind == ProblemKind::kJoint) {
+    out["gauge"] = SolverGaugeName(solver.gauge);
+  }
   if (solver.seed.has_value()) out["seed"] = *solver.seed;
   return out;
 }
@@ -175,7 +178,7 @@ nlohmann::json ProblemToJson(const Problem& problem) {
   out["problem"] = KindName(problem.kind);
   out["likelihood"] = {{"scale", AutoOr(problem.likelihood.scale)},
                        {"epsilon", AutoOr(problem.likelihood.epsilon)}};
-  out["solver"] = SolverJson(problem.solver);
+  out["solver"] = SolverJson(problem.solver, problem.kind);
   json truth = json::object();
   if (!problem.truth.brdf.empty()) truth["brdf"] = problem.truth.brdf;
   if (!problem.truth.illumination.empty()) {

@@ -120,6 +120,10 @@ Problem AnyProblem() {
     }
     p.solver.estimator = AnyOf<SolverEstimator>(2);
     p.solver.method = AnyOf<SolverMethod>(kNumSolverMethods);
+    p.solver.quadrature = AnyOf<QuadratureLevel>(kNumQuadratureLevels);
+    if (p.kind == ProblemKind::kJoint) {
+      p.solver.gauge = AnyOf<SolverGauge>(kNumSolverGauges);
+    }
     p.solver.seconds = AnyNumber(kLeast, 1e7);
     p.solver.tolerance = AnyNumber(0.0, 1.0 - 1e-16);
     p.solver.max_iterations = *rc::gen::inRange(0, 100000001);
@@ -163,6 +167,9 @@ Problem AnyProblem() {
     p.illumination.sky = AnySky();
   } else {
     p.illumination.prior = AnyOf<IlluminationPrior>(3);
+    if (p.illumination.prior == IlluminationPrior::kUNet) {
+      p.illumination.unet_channels = *rc::gen::inRange(1, 129);
+    }
   }
   p.effects.mode = AnyOf<EffectsMode>(4);
   if (p.effects.mode == EffectsMode::kList) {
@@ -235,6 +242,7 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
   RC_ASSERT(p.illumination.height == q.illumination.height);
   RC_ASSERT(p.illumination.sized == q.illumination.sized);
   RC_ASSERT(p.illumination.prior == q.illumination.prior);
+  RC_ASSERT(p.illumination.unet_channels == q.illumination.unet_channels);
   RC_ASSERT(p.illumination.known_file == q.illumination.known_file);
   RC_ASSERT(p.illumination.sky.has_value() == q.illumination.sky.has_value());
   if (p.illumination.sky.has_value()) {
@@ -246,6 +254,8 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
   RC_ASSERT(p.effects.list == q.effects.list);
   RC_ASSERT(p.solver.estimator == q.solver.estimator);
   RC_ASSERT(p.solver.method == q.solver.method);
+  RC_ASSERT(p.solver.quadrature == q.solver.quadrature);
+  RC_ASSERT(p.solver.gauge == q.solver.gauge);
   RC_ASSERT(p.solver.seconds == q.solver.seconds);
   RC_ASSERT(p.solver.tolerance == q.solver.tolerance);
   RC_ASSERT(p.solver.max_iterations == q.solver.max_iterations);
