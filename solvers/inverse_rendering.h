@@ -40,6 +40,9 @@ struct InverseProblem {
 
   std::optional<double> scale, epsilon;  // of the likelihood
   SolverSpec solver;
+  // Of solver.seconds: what went before the call, and what is to be left for
+  // what follows it, as a program reads files before and writes them after.
+  double seconds_spent = 0.0, seconds_reserved = 0.0;
   uint64_t seed = 1;
   int num_threads = 0;
   // Of the level solver.quadrature; with the visibility of `points` where
@@ -52,7 +55,7 @@ struct InverseProblem {
 // another scale or another number of pixels do not compare; misfits do.
 struct TraceEntry {
   std::string stage;
-  double seconds = 0.0;
+  double seconds = 0.0;     // with those spent before
   double scale = 0.0;       // b of the likelihood then
   int64_t pixels = 0;       // that took part: the first stages thin them
   double cost = 0.0;        // likelihood + priors, nats
@@ -90,7 +93,7 @@ struct Estimate {
   // Of the start and of this estimate, both with `scale` on all pixels:
   // end_cost <= start_cost.
   double start_cost = 0.0, end_cost = 0.0;
-  double seconds = 0.0;
+  double seconds = 0.0;  // with those spent before
   int64_t pixels_used = 0;
   std::string
       start;  // in words: the reflectance that the best start began with

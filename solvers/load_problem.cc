@@ -11,6 +11,7 @@
 #include "solvers/quadrature_level.h"
 #include "solvers/render_scene.h"
 #include "solvers/solve_problem.h"
+#include "solvers/stopwatch.h"
 
 namespace ibrdf {
 namespace {
@@ -50,6 +51,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
                                             uint64_t default_seed,
                                             int num_threads) {
   IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
+  const Stopwatch clock;
   InverseProblem inverse;
   inverse.kind = problem.kind;
   inverse.lobes = problem.reflectance.lobes;
@@ -137,6 +139,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
           *scene, inverse.points, inverse.transport.visibility, emitters);
     }
   }
+  inverse.seconds_spent = clock.Seconds();
   return inverse;
 }
 

@@ -15,6 +15,9 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
                                             uint64_t default_seed,
                                             int num_threads);
 
+// What WriteResults takes on one core of 2.5 GHz.
+double PredictWriteSeconds(const InverseProblem& inverse);
+
 // Makes `folder` where need be; kInvalidInput where nothing can be written to
 // it. Call it before a solve.
 Status PrepareFolder(const std::string& folder);

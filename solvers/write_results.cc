@@ -26,6 +26,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Previews of reflectance and map, the table; and what grows with the image.
+constexpr double kWriteSeconds = 0.75;
+constexpr double kWriteSecondsPerMegapixel = 2.0;
+
 Json Metric(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
@@ -259,6 +263,11 @@ std::vector<std::string> MetricLines(const Json& metrics) {
 }
 
 }  // namespace
+
+double PredictWriteSeconds(const InverseProblem& inverse) {
+  const double megapixels = 1e-6 * inverse.image.width * inverse.image.height;
+  return kWriteSeconds + kWriteSecondsPerMegapixel * megapixels;
+}
 
 Status PrepareFolder(const std::string& folder) {
   std::error_code error;

@@ -7,7 +7,7 @@
 #include "solvers/baselines/dsbrdf_fit.h"
 #include "solvers/baselines/table_fit.h"
 #include "solvers/baselines/table_samples.h"
-#include "solvers/bench/stopwatch.h"
+#include "solvers/stopwatch.h"
 
 namespace ibrdf {
 namespace {

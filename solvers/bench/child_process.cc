@@ -16,7 +16,7 @@
 #include <fstream>
 #include <thread>
 
-#include "solvers/bench/stopwatch.h"
+#include "solvers/stopwatch.h"
 
 namespace ibrdf {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "ibrdf/brdf/flow_brdf.h"
 #include "ibrdf/brdf/flow_lobes.h"
-#include "solvers/bench/stopwatch.h"
+#include "solvers/stopwatch.h"
 #include "solvers/trainer/flow_trainer.h"
 
 namespace ibrdf {

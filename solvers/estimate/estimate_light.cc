@@ -137,8 +137,14 @@ Status Estimator::EstimateLight(JointState* state) {
     height /= 2;
   }
   // solver.method is the network's.
-  IBRDF_RETURN_IF_ERROR(EstimateDraw(width, height, JointMethod::kGaussNewton,
-                                     kProcessShare, state));
+  const JointMethod of_draw = JointMethod::kGaussNewton;
+  const std::function<bool()> cut_short = StopAfter(kProcessShare);
+  IBRDF_RETURN_IF_ERROR(
+      EstimateDraw(width, height, of_draw, kProcessShare, state));
+  if (cut_short() && width == problem_.map_width) {
+    // What time is left serves the draw better than a network.
+    return MapRounds(of_draw, kMapShare, state);
+  }
   return EstimateNetwork(state);
 }
 

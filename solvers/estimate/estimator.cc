@@ -17,10 +17,15 @@ namespace {
 
 constexpr double kFirstScale = 0.1;     // b at first: tolerant
 constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
-// Time of Finish over that of a transport of all pixels, which it builds: the
-// render, the alternatives and the tables are the rest.
-constexpr double kFinishPerTransport = 2.5;
-constexpr double kMostFinishShare = 0.3;
+// Time of Finish: over that of a transport of all pixels, which it builds and
+// renders by, and for the table and the draws of the posterior.
+constexpr double kFinishPerTransport = 1.4;
+constexpr double kTableSeconds = 0.3;
+// That a transport is timed on.
+constexpr size_t kProbePoints = 128;
+// Of the time left when it is predicted: the rest is to have something to
+// finish.
+constexpr double kMostFinishShare = 0.6;
 
 // Of directions that stand for a bright texel: finer than the narrowest lobes.
 constexpr double kBrightSpacing = 0.75 * M_PI / 180.0;
@@ -40,7 +45,10 @@ double Now() {
 Estimator::Estimator(const InverseProblem& problem,
                      const SolveProgress& progress,
                      const std::atomic<bool>* stop)
-    : problem_(problem), progress_(progress), stop_(stop), start_(Now()) {}
+    : problem_(problem),
+      progress_(progress),
+      stop_(stop),
+      start_(Now() - problem.seconds_spent) {}
 
 StatusOr<Estimate> Estimator::Run() {
   IBRDF_RETURN_IF_ERROR(Prepare());
@@ -96,7 +104,30 @@ Status Estimator::Prepare() {
     materials_ = JointMaterialPrior(problem_.model, problem_.lobes,
                                     problem_.prior_sigma);
   }
+  PredictFinish();
   return OkStatus();
+}
+
+void Estimator::PredictFinish() {
+  const std::vector<ShadingPoint>& points = full_->points;
+  const size_t stride = std::max<size_t>(points.size() / kProbePoints, 1);
+  Level probe;
+  for (size_t i = 0; i < points.size(); i += stride) {
+    probe.points.push_back(points[i]);
+  }
+  const double start = Elapsed();
+  TransportOf(&probe);
+  // Each transport has one of the emitters besides.
+  const auto& emitters = problem_.transport.emitters;
+  const size_t besides = emitters ? emitters->points().size() : 0;
+  const double transport = (Elapsed() - start) *
+                           static_cast<double>(points.size() + besides) /
+                           static_cast<double>(probe.points.size() + besides);
+  finish_seconds_ = std::min(
+      kFinishPerTransport * transport +
+          (lobes_unknown() ? kTableSeconds : 0.0) + problem_.seconds_reserved,
+      kMostFinishShare * std::max(Budget() - start, 0.0));
+  VLOG(1) << "the end is predicted to take " << finish_seconds_ << " s";
 }
 
 const Transport& Estimator::TransportOf(Level* level) {
@@ -107,16 +138,8 @@ const Transport& Estimator::TransportOf(Level* level) {
     TransportOptions options = problem_.transport;
     options.num_threads = problem_.num_threads;
     options.bright = bright_;
-    const double start = Elapsed();
     level->transport =
         std::make_unique<Transport>(level->points, height, width, options);
-    const double texels =
-        static_cast<double>(problem_.map_width) * problem_.map_height;
-    finish_seconds_ = std::min(
-        kFinishPerTransport * (Elapsed() - start) *
-            (static_cast<double>(full_->points.size()) / level->points.size()) *
-            std::max(1.0, texels / (static_cast<double>(width) * height)),
-        kMostFinishShare * Budget());
   }
   return *level->transport;
 }

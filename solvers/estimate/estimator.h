@@ -18,6 +18,7 @@
 #include "solvers/marginal/light_process.h"
 #include "solvers/marginal/reflectance_search.h"
 #include "solvers/material_prior.h"
+#include "solvers/reflectance_spread.h"
 
 namespace ibrdf {
 
@@ -60,6 +61,8 @@ class Estimator {
   std::function<bool()> StopAfter(double share) const;
   // kInvalidInput if no pixel can be used.
   Status Prepare();
+  // Sets finish_seconds_.
+  void PredictFinish();
   // Built at first use, for the present map's size.
   const Transport& TransportOf(Level* level);
   // The objective on a level, at the current scale and light mean. It must not
@@ -198,8 +201,9 @@ class Estimator {
   // Evaluates the end at every pixel, against the start.
   StatusOr<Estimate> Finish(JointState best);
   // Of the posterior around a state; NaN where none was found.
-  double SpreadOf(const JointState& state) const;
-  void AddAlternatives(Estimate* estimate) const;
+  double SpreadOf(const LobeDistance& distance, const JointState& state) const;
+  void AddAlternatives(const LobeDistance& distance, const JointState& best,
+                       Estimate* estimate) const;
 
   const InverseProblem& problem_;
   const SolveProgress& progress_;
@@ -224,7 +228,7 @@ class Estimator {
   std::vector<float> known_map_;
   std::vector<BrightSample> bright_;
   JointState first_;
-  double finish_seconds_ = 0.0;  // predicted
+  double finish_seconds_ = 0.0;  // Finish and what follows, predicted
   std::string start_name_;
   std::vector<TriedMaterial> tried_;
   Eigen::MatrixXd covariance_;

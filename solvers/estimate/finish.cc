@@ -1,13 +1,10 @@
 #include <algorithm>
-#include <optional>
+#include <cmath>
 #include <utility>
 #include <vector>
 
-#include "ibrdf/base/parallel_for.h"
 #include "ibrdf/brdf/flow_lobes.h"
-#include "ibrdf/metrics/brdf_metrics.h"
 #include "solvers/estimate/estimator.h"
-#include "solvers/reflectance_spread.h"
 
 namespace ibrdf {
 namespace {
@@ -92,8 +89,10 @@ StatusOr<Estimate> Estimator::Finish(JointState best) {
     estimate.brdf = lobes_->ToMerl(best.lobes.data());
     estimate.lobe_covariance.assign(covariance_.data(),
                                     covariance_.data() + covariance_.size());
-    estimate.spread = SpreadOf(best);
-    AddAlternatives(&estimate);
+    const LobeDistance distance(FlowLobes::Factory(
+        problem_.model, problem_.lobes, problem_.num_threads));
+    estimate.spread = SpreadOf(distance, best);
+    AddAlternatives(distance, best, &estimate);
   }
   estimate.map_std = map_std_;
   estimate.scale = likelihood_.scale;
@@ -108,35 +107,28 @@ StatusOr<Estimate> Estimator::Finish(JointState best) {
   return estimate;
 }
 
-double Estimator::SpreadOf(const JointState& state) const {
+double Estimator::SpreadOf(const LobeDistance& distance,
+                           const JointState& state) const {
   if (covariance_.size() == 0) return Estimate().spread;
-  const LobeDistance distance(
-      FlowLobes::Factory(problem_.model, problem_.lobes, problem_.num_threads));
   const std::vector<double> covariance(covariance_.data(),
                                        covariance_.data() + covariance_.size());
   return ReflectanceSpread(distance, state.lobes, covariance, kSpreadDraws,
                            problem_.seed);
 }
 
-void Estimator::AddAlternatives(Estimate* estimate) const {
-  std::vector<MerlTable> tables;
+void Estimator::AddAlternatives(const LobeDistance& distance,
+                                const JointState& best,
+                                Estimate* estimate) const {
+  if (tried_.empty()) return;
+  const std::vector<double> found = distance.LogValues(best.lobes);
   for (const TriedMaterial& tried : tried_) {
-    tables.push_back(lobes_->ToMerl(tried.parameters.data()));
-  }
-  std::vector<std::optional<Alternative>> compared(tried_.size());
-  ParallelFor(static_cast<int64_t>(tried_.size()), problem_.num_threads,
-              [&](int64_t i, int) {
-                const StatusOr<BrdfMetrics> difference =
-                    CompareBrdfs(tables[i], estimate->brdf);
-                if (!difference.ok()) return;
-                Alternative a;
-                a.start = tried_[i].name;
-                a.cost = tried_[i].cost - tried_.front().cost;
-                a.brdf_log_difference = difference->log_rmse_aligned;
-                compared[i] = a;
-              });
-  for (const std::optional<Alternative>& a : compared) {
-    if (a) estimate->alternatives.push_back(*a);
+    Alternative a;
+    a.start = tried.name;
+    a.cost = tried.cost - tried_.front().cost;
+    a.brdf_log_difference =
+        distance.Aligned(distance.LogValues(tried.parameters), found);
+    if (!std::isfinite(a.brdf_log_difference)) continue;
+    estimate->alternatives.push_back(a);
   }
 }
 

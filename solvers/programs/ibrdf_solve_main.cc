@@ -13,6 +13,7 @@
 #include "solvers/programs/blas_memory.h"
 #include "solvers/programs/common_flags.h"
 #include "solvers/solve_problem.h"
+#include "solvers/stopwatch.h"
 
 namespace ibrdf {
 namespace {
@@ -25,7 +26,8 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
              const CommonFlags& flags) {
   const StatusOr<Problem> problem = ReadProblem(file, overrides);
   if (!problem.ok()) return problem.status();
-  const StatusOr<InverseProblem> inverse =
+  const Stopwatch clock;
+  StatusOr<InverseProblem> inverse =
       LoadInverseProblem(*problem, flags.seed, flags.threads);
   if (!inverse.ok()) return inverse.status();
   std::signal(SIGINT, RequestStop);
@@ -51,6 +53,8 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
                 terminal && e.stage != "end" ? "" : "\n");
     std::fflush(stdout);
   };
+  inverse->seconds_spent = clock.Seconds();
+  inverse->seconds_reserved = PredictWriteSeconds(*inverse);
   const StatusOr<Estimate> estimate =
       SolveInverseRendering(*inverse, progress, &stop_requested);
   if (!estimate.ok()) return estimate.status();
