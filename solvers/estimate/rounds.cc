@@ -74,6 +74,10 @@ Status Estimator::Rounds(const std::string& stage, JointMethod method,
   // The network's products cost more, and its fit leaves less to do.
   o.max_iterations = has_process_prior_ ? 3 : 4;
   o.max_cg_iterations = has_process_prior_ ? 20 : 40;
+  if (blocks == JointBlocks::kBoth && method == JointMethod::kGaussNewton) {
+    o.max_cg_iterations = 100;
+    o.cg_forcing = 1e-4;
+  }
   o.tolerance = problem_.solver.tolerance;
   o.should_stop = stop;
   o.adam_rounds = 1;

@@ -15,9 +15,6 @@ namespace {
 // Damping of the lobes, of their Hessian's diagonal where that of the light is
 // 1: few parameters, whose trust region may start wide.
 constexpr double kLobeDamping = 0.1;
-// Of the squared residual of a step's equations: a tenth, which an inexact
-// Newton method needs no better.
-constexpr double kForcing = 1e-2;
 
 // The damped system (H + damping D) at the objective's point: D the priors'
 // inverse variances in the light, a share of H's diagonal in the lobes.
@@ -74,7 +71,7 @@ void GaussNewtonSteps(MethodRun* run, int max_iterations, bool report) {
     const Eigen::VectorXd step = ConjugateGradients(
         [&](const Eigen::VectorXd& v) { return system.Product(v); },
         [&](const Eigen::VectorXd& r) { return system.Precondition(r); },
-        -objective->gradient(), options.max_cg_iterations, kForcing,
+        -objective->gradient(), options.max_cg_iterations, options.cg_forcing,
         &coefficients);
     VLOG(1) << "Gauss-Newton step " << k + 1 << ": "
             << coefficients.alpha.size()

@@ -40,6 +40,11 @@ struct JointMethodOptions {
   // take products. Not of Adam.
   int max_iterations = 50;
   int max_cg_iterations = 20;
+  // Share of the squared preconditioned residual that conjugate gradients stop
+  // at. A tenth of the residual is enough of an inexact Newton step on one
+  // block; on both, whose levels and colours make up for each other, the steps
+  // that leaves stay along such directions short (experiments/pareto).
+  double cg_forcing = 1e-2;
   double tolerance = 1e-4;  // relative decrease of the cost to stop at
   double seconds = 1e9;     // wall clock, checked between iterations
   std::function<bool()> should_stop;  // likewise; may be empty
