@@ -89,7 +89,9 @@ struct EffectsSpec {
   bool Lists(Effect effect) const;
 };
 
-// Of the joint estimate; kAuto: the program decides.
+// What minimises the map, under SolverEstimator::kMaximum map and reflectance.
+// With IlluminationPrior::kUNet it is the network's: the draw before it is
+// found by kGaussNewton. kAuto: the program decides.
 enum class SolverMethod {
   kAuto,
   kAlternating,
