@@ -4,8 +4,8 @@
     experiments/effects/run.py MESHES MAPS OUT [--bin build/release/bin] [--size 64] [--only torus]
 
 MESHES: folder with torus.obj, spot_low_resolution.obj, bunny.obj, armadillo.obj; MAPS: with the maps of LIGHTS.
-Each scene is rendered with everything on at reference quality, and, as images are rendered by default, with everything,
-shadows alone, nothing and what `auto` chooses. OUT/results.csv has a row a scene; scenes that have one are not rendered
+Each scene is rendered with everything on at reference quality, and as previews with everything, shadows alone, nothing
+and what `auto` chooses. OUT/results.csv has a row a scene; scenes that have one are not rendered
 again. Seconds are of whole programs.
 """
 import argparse
