@@ -76,7 +76,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   if (!scene.ok()) return scene.status();
   StatusOr<std::vector<ShadingPoint>> points =
       FindShadingPoints(*scene, problem.camera, inverse.image.width,
-                        inverse.image.height, mask, 1);
+                        inverse.image.height, mask, 1, num_threads);
   if (!points.ok()) {
     return InvalidInput(problem.path, points.status().message());
   }

@@ -140,7 +140,7 @@ class PixelRenderer {
     if (unclear.empty()) return Status();
     StatusOr<std::vector<ShadingPoint>> points =
         FindShadingPoints(scene, problem_.camera, image->width, image->height,
-                          unclear, kSamplesPerSide);
+                          unclear, kSamplesPerSide, options_.num_threads);
     if (!points.ok()) return points.status();
     SortByAngle(&*points);
     const StatusOr<Image> finer = Render(*points, begin, end);
@@ -188,13 +188,14 @@ void AddNoise(double sigma, uint64_t seed, Image* image) {
   }
 }
 
-StatusOr<ViewPoints> FindViewPoints(const Problem& problem) {
+StatusOr<ViewPoints> FindViewPoints(const Problem& problem, int num_threads) {
   const StatusOr<Scene> scene = LoadScene(problem.geometry);
   if (!scene.ok()) return scene.status();
   const int width = problem.image.width, height = problem.image.height;
   StatusOr<std::vector<ShadingPoint>> found = FindShadingPoints(
       *scene, problem.camera, width, height, Mask(),
-      problem.quality == RenderQuality::kReference ? kSamplesPerSide : 1);
+      problem.quality == RenderQuality::kReference ? kSamplesPerSide : 1,
+      num_threads);
   if (!found.ok()) {
     return InvalidInput(problem.path, found.status().message());
   }
@@ -267,7 +268,8 @@ StatusOr<MerlTable> LoadKnownReflectance(const ReflectanceSpec& reflectance) {
 
 StatusOr<RenderedScene> RenderScene(const Problem& problem,
                                     const RenderSceneOptions& options) {
-  const StatusOr<ViewPoints> view = FindViewPoints(problem);
+  const StatusOr<ViewPoints> view =
+      FindViewPoints(problem, options.num_threads);
   if (!view.ok()) return view.status();
   const std::vector<ShadingPoint>& points = view->points;
   StatusOr<Image> map = LoadKnownIllumination(problem.illumination);

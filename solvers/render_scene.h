@@ -33,7 +33,8 @@ struct ViewPoints {
   Mask mask;  // pixels with a point
   Scene scene = Scene::UnitSphere();
 };
-StatusOr<ViewPoints> FindViewPoints(const Problem& problem);
+StatusOr<ViewPoints> FindViewPoints(const Problem& problem,
+                                    int num_threads = 0);
 
 // Multiplies each channel of each pixel by exp(sigma * normal), row-major; the
 // same seed gives the same noise anywhere.

@@ -61,6 +61,20 @@ TEST(Scene, OrthographicSphereHasTheClosedFormNormals) {
               0.01);
 }
 
+TEST(Scene, ThreadsDoNotChangeThePoints) {
+  const Mask all;
+  const auto one =
+      FindShadingPoints(Scene::UnitSphere(), Camera(), 32, 32, all, 2, 1);
+  const auto two =
+      FindShadingPoints(Scene::UnitSphere(), Camera(), 32, 32, all, 2, 2);
+  ASSERT_TRUE(one.ok() && two.ok());
+  ASSERT_EQ(one->size(), two->size());
+  for (size_t i = 0; i < one->size(); ++i) {
+    EXPECT_EQ((*one)[i].pixel, (*two)[i].pixel);
+    EXPECT_EQ((*one)[i].normal, (*two)[i].normal);
+  }
+}
+
 TEST(Scene, SupersamplesStandForTheirShareOfThePixel) {
   const auto points =
       FindShadingPoints(Scene::UnitSphere(), Camera(), 16, 16, Mask(), 4);

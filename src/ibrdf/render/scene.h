@@ -85,12 +85,11 @@ class Scene {
 // hits of samples_per_side^2 positions on a regular grid in every pixel inside
 // `mask` (empty: all). 1: the pixel's centre. Fails when the mask has another
 // size, the camera is invalid, a normal map is combined with a perspective
-// camera or another image size, or no pixel sees the object.
-StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
-                                                      const Camera& camera,
-                                                      int width, int height,
-                                                      const Mask& mask,
-                                                      int samples_per_side);
+// camera or another image size, or no pixel sees the object. num_threads <= 0:
+// all.
+StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
+    const Scene& scene, const Camera& camera, int width, int height,
+    const Mask& mask, int samples_per_side, int num_threads = 0);
 
 // At most `most` of the points, evenly spread over the list.
 std::vector<ShadingPoint> SpreadPoints(const std::vector<ShadingPoint>& points,

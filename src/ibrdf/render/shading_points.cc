@@ -36,11 +36,9 @@ bool NormalAt(const Image& normals, double x, double y,
 
 }  // namespace
 
-StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
-                                                      const Camera& camera,
-                                                      int width, int height,
-                                                      const Mask& mask,
-                                                      int samples_per_side) {
+StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
+    const Scene& scene, const Camera& camera, int width, int height,
+    const Mask& mask, int samples_per_side, int num_threads) {
   CHECK(width > 0 && height > 0 && samples_per_side > 0);
   const Image& normals = scene.normal_map();
   const bool orthographic = camera.type == CameraType::kOrthographic;
@@ -70,7 +68,7 @@ StatusOr<std::vector<ShadingPoint>> FindShadingPoints(const Scene& scene,
 
   std::vector<std::vector<ShadingPoint>> rows(height);
   const int s = samples_per_side;
-  ParallelFor(height, 0, [&](int64_t y, int) {
+  ParallelFor(height, num_threads, [&](int64_t y, int) {
     for (int x = 0; x < width; ++x) {
       const int pixel = static_cast<int>(y) * width + x;
       if (!mask.empty() && mask.inside[pixel] == 0) continue;
