@@ -29,7 +29,7 @@ EffectsWorth Predict(const Scene& scene,
   const Image sky = RenderSky(SkyOptions(), kProbeWidth / 2, kProbeWidth);
   const Image* map = known_map != nullptr ? known_map : &sky;
   Image small;
-  if (map->width > kProbeWidth) {
+  if (map->width > kProbeWidth || map->height > kProbeWidth) {
     small = ResizeMap(*map, kProbeWidth / 2, kProbeWidth);
     map = &small;
   }

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/render/quadrature.h"
 #include "io/image_file.h"
 #include "io/mesh.h"
 #include "io/png.h"
@@ -19,6 +21,8 @@ namespace {
 constexpr int kLeastKnownWidth = 128;
 // Beyond it texels are finer than pixels and rings (PointQuadrature) show them.
 constexpr int kMostKnownWidth = 256;
+// What a transport takes of a map; the rest is for emitters and bright samples.
+constexpr int kMostFarCells = 3 * kMaxFarSources / 4;
 
 Status LoadImage(const ImageSpec& spec, Image* image, Mask* mask) {
   StatusOr<Image> read = ReadImage(spec.file);
@@ -36,6 +40,22 @@ Status LoadImage(const ImageSpec& spec, Image* image, Mask* mask) {
                        std::to_string(mask->height));
   }
   return OkStatus();
+}
+
+// Sides that do not halve leave a map of many texels in as many cells.
+Status CheckMapSize(const Problem& problem, int far_width) {
+  const int width = problem.illumination.width;
+  const int height = problem.illumination.height;
+  const int cells = NumFarCells(height, width, far_width);
+  if (cells <= kMostFarCells) return OkStatus();
+  const std::string found =
+      std::to_string(width) + "x" + std::to_string(height);
+  return InvalidInput(problem.path + ": illumination.width",
+                      "expected a map whose width and height can both be "
+                      "halved until at most " +
+                          std::to_string(kMostFarCells) +
+                          " texels are left, as powers of two can, found " +
+                          found);
 }
 
 // Of a known map that no size is asked for: its own, to a power of two.
@@ -69,6 +89,8 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
                      ? static_cast<uint64_t>(*problem.solver.seed)
                      : default_seed;
   inverse.num_threads = num_threads;
+  IBRDF_RETURN_IF_ERROR(
+      CheckMapSize(problem, inverse.transport.quadrature.far_width));
 
   Mask mask;
   IBRDF_RETURN_IF_ERROR(LoadImage(problem.image, &inverse.image, &mask));

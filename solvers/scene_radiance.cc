@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/transport.h"
 
 namespace ibrdf {
@@ -19,6 +21,8 @@ constexpr size_t kReferenceEmitterPoints = 8192;
 constexpr int kPreviewLobeRays = 8;
 // A small image of an intricate object shows as much of it as a large one.
 constexpr size_t kLeastEmitters = 2048;
+// Of maps whose sides do not halve and which no transport takes as they are.
+constexpr int kObjectLightWidth = 1024;
 
 }  // namespace
 
@@ -83,9 +87,17 @@ void SceneRadiance::LightObject(const Scene& scene,
   transport.emitters = std::make_shared<SurfaceEmitters>(
       scene, few, transport.visibility, emitters);
   options_.emitters = transport.emitters;
+  // What the object lights itself by is a blur of the map.
+  const bool fits =
+      NumFarCells(map.height, map.width, transport.quadrature.far_width) +
+          transport.emitters->count() <=
+      kMaxFarSources;
+  const Image smaller =
+      fits ? Image() : ResizeMap(map, kObjectLightWidth / 2, kObjectLightWidth);
+  const Image& light = fits ? map : smaller;
   options_.lobe_rays = reference ? kMostLobeRays : kPreviewLobeRays;
-  emitted_ = Transport({}, map.height, map.width, transport)
-                 .Emitted(grid, map.rgb.data());
+  emitted_ = Transport({}, light.height, light.width, transport)
+                 .Emitted(grid, light.rgb.data());
 }
 
 void SceneRadiance::set_bounces(int bounces) {

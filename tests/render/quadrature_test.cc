@@ -42,6 +42,9 @@ TEST(Quadrature, BlocksDivideTheMap) {
   EXPECT_EQ(8, FarBlockSize(256, 512, 64));
   EXPECT_EQ(1, FarBlockSize(65, 130, 64));
   EXPECT_EQ(2, FarBlockSize(50, 100, 64));
+  EXPECT_EQ(32 * 64, NumFarCells(256, 512, 64));
+  EXPECT_EQ(65 * 130, NumFarCells(65, 130, 64));
+  EXPECT_EQ(225 * 450, NumFarCells(1800, 3600, 64));
   double sum = 0.0;
   for (const FarCell& cell : MapCells(64, 128, 4)) sum += cell.solid_angle;
   EXPECT_NEAR(4 * kPi, sum, 1e-11);

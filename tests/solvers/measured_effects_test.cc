@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ibrdf/light/environment_map.h"
 #include "tests/render/render_testing.h"
 #include "tests/render/shadow_testing.h"
 
@@ -50,6 +51,19 @@ TEST_F(MeasuredEffects, WorthIsTheDifferenceOfWholeImages) {
     EXPECT_NEAR(MeanAbsLogRatio(Render(all), full), worth.bounces[b], 1e-12);
   }
   EXPECT_GT(worth.bounces[0], worth.bounces[1]);
+}
+
+// A map of more cells than a transport takes lights the object like a smaller
+// one.
+TEST_F(MeasuredEffects, MapsWhoseSidesDoNotHalveLightTheObject) {
+  all_.bounces = 1;
+  const Image large = SmoothMap(450, 900);
+  const Image small = ResizeMap(large, 256, 512);
+  const auto render = [&](const Image& map) {
+    return Render(SceneRadiance(scene_, points_, map, &brdf_, brdf_.Grid(),
+                                all_, RenderQuality::kPreview, 2));
+  };
+  EXPECT_LT(MeanAbsLogRatio(render(large), render(small)), 1e-3);
 }
 
 TEST_F(MeasuredEffects, RaysAreAsManyAsTheErrorAsksFor) {

@@ -177,6 +177,17 @@ TEST_F(SolveProblemTest, MaskOfAnotherSizeIsRefused) {
   ExpectRefused({"image.mask=small.png"}, "12x10");
 }
 
+// No transport takes so many cells.
+TEST_F(SolveProblemTest, MapsWhoseSidesDoNotHalveAreRefused) {
+  ExpectRefused({"illumination={width: 510, height: 255}"},
+                "illumination.width");
+  ExpectRefused(
+      {"problem=reflectance", "illumination={known: truth.exr, width: 510}"},
+      "found 510x255");
+  EXPECT_TRUE(Load({"illumination={width: 512}"}).ok());
+  EXPECT_TRUE(Load({"illumination={width: 250}"}).ok());
+}
+
 TEST_F(SolveProblemTest, EmptyMaskIsRefused) {
   WriteMask("one.png", 12, 10);
   ASSERT_TRUE(WritePng(Rgb8Image(12, 10), dir_.File("black.png")).ok());

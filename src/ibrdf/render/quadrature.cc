@@ -67,6 +67,11 @@ int FarBlockSize(int map_height, int map_width, int far_width) {
   return block;
 }
 
+int NumFarCells(int map_height, int map_width, int far_width) {
+  const int block = FarBlockSize(map_height, map_width, far_width);
+  return (map_height / block) * (map_width / block);
+}
+
 std::vector<FarCell> MapCells(int map_height, int map_width, int block) {
   CHECK(map_height % block == 0 && map_width % block == 0);
   const int rows = map_height / block, columns = map_width / block;

@@ -39,6 +39,9 @@ struct FarCell {
 // the largest that divides them where none does.
 int FarBlockSize(int map_height, int map_width, int far_width);
 
+// Blocks that this leaves of a map.
+int NumFarCells(int map_height, int map_width, int far_width);
+
 // Cells of blocks of block x block texels, row-major; block divides both sides.
 std::vector<FarCell> MapCells(int map_height, int map_width, int block);
 

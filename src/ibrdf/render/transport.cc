@@ -85,7 +85,8 @@ Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
   CHECK(options.grid.h >= 2 && options.grid.d >= 2 && options.grid.p >= 1);
   num_blocks_ = (map_height / block_) * (map_width / block_);
   CHECK(options.emitters == nullptr || options.visibility != nullptr);
-  CHECK_LE(num_blocks_ + num_emitters() + options.bright.size(), 65536u)
+  CHECK_LE(num_blocks_ + num_emitters() + options.bright.size(),
+           size_t{kMaxFarSources})
       << "map of odd size: resize it first";
   const std::vector<FarCell> cells = MapCells(map_height, map_width, block_);
   const PointQuadrature quadrature(cells, options.quadrature);

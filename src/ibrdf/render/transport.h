@@ -46,6 +46,10 @@ struct TransportOptions {
   std::vector<BrightSample> bright;
 };
 
+// Far cells of the map (NumFarCells), emitters and bright samples that a
+// transport takes, together.
+inline constexpr int kMaxFarSources = 65536;
+
 class LightOperator;
 class ReflectanceOperator;
 
@@ -53,8 +57,7 @@ class ReflectanceOperator;
 // a time (they are parallel inside).
 class Transport {
  public:
-  // map_width even; at most 65536 far cells (see FarBlockSize), emitters and
-  // bright samples.
+  // map_width even; at most kMaxFarSources.
   Transport(const std::vector<ShadingPoint>& points, int map_height,
             int map_width, const TransportOptions& options);
 
