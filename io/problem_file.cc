@@ -447,6 +447,24 @@ StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
   ReadChoice(&reader, "quality", {"preview", "reference"}, &problem.quality);
   if (!context.error.ok()) return context.error;
   return problem;
+std::vector<NamedFile> NamedFiles(const Problem& problem) {
+  const bool mesh = problem.geometry.kind == GeometryKind::kMesh;
+  std::vector<NamedFile> files = {
+      {"problem", problem.path},
+      {"image.file", problem.image.file},
+      {"image.mask", problem.image.mask},
+      {mesh ? "geometry.mesh" : "geometry.normals", problem.geometry.file},
+      {"reflectance.model", problem.reflectance.model},
+      {"reflectance.known", problem.reflectance.known_file},
+      {"illumination.known", problem.illumination.known_file},
+      {"truth.brdf", problem.truth.brdf},
+      {"truth.illumination", problem.truth.illumination}};
+  files.erase(std::remove_if(files.begin(), files.end(),
+                             [](const NamedFile& f) { return f.path.empty(); }),
+              files.end());
+  return files;
+}
+
 }
 
 Status CheckSolvable(const Problem& problem) {

@@ -19,6 +19,13 @@ StatusOr<Problem> ReadProblem(const std::string& path,
 StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
                                const std::vector<std::string>& overrides);
 
+// A file that a problem names, and the key that names it.
+struct NamedFile {
+  std::string key;  // "image.file"; of the problem file itself "problem"
+  std::string path;
+};
+std::vector<NamedFile> NamedFiles(const Problem& problem);
+
 // What an estimate needs: an image file, and known exactly what `problem` says
 // is known.
 Status CheckSolvable(const Problem& problem);

@@ -2,6 +2,7 @@
 #pragma once
 #include <atomic>
 #include <string>
+#include <vector>
 
 #include "ibrdf/base/status.h"
 #include "io/problem.h"
@@ -21,6 +22,15 @@ double PredictWriteSeconds(const InverseProblem& inverse);
 // Makes `folder` where need be; kInvalidInput where nothing can be written to
 // it. Call it before a solve.
 Status PrepareFolder(const std::string& folder);
+
+// What WriteResults may write for the problem.
+std::vector<std::string> ResultPaths(const Problem& problem,
+                                     const std::string& folder);
+
+// kInvalidInput where one of the paths is a file that the problem names, which
+// a result would replace. Call it before a solve or a render.
+Status CheckNothingReplaced(const Problem& problem,
+                            const std::vector<std::string>& paths);
 
 // Writes result.json, brdf.binary, brdf.json, illumination.exr,
 // illumination_log_std.exr (joint problems), render.exr, residual.exr, the PNG

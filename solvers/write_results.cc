@@ -14,6 +14,7 @@
 #include "io/atomic_file.h"
 #include "io/exr.h"
 #include "io/merl.h"
+#include "io/problem_file.h"
 #include "io/problem_json.h"
 #include "io/result_preview.h"
 #include "solvers/conditioning.h"
@@ -215,21 +216,28 @@ const char* StatusName(const Status& status) {
   }
 }
 
+// The file that the problem names and that `path` is; null: none.
+const NamedFile* NamedAs(const std::vector<NamedFile>& named,
+                         const std::filesystem::path& path) {
+  const auto found =
+      std::find_if(named.begin(), named.end(), [&](const NamedFile& file) {
+        std::error_code ignored;
+        return std::filesystem::equivalent(path, file.path, ignored);
+      });
+  return found == named.end() ? nullptr : &*found;
+}
+
 // Removes what an earlier run left in the folder and this one does not write,
 // but no file that the problem names.
 void RemoveEarlier(const Problem& problem, const std::string& folder,
                    const std::vector<std::string>& names) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
+  const std::vector<NamedFile> named = NamedFiles(problem);
   for (const std::string& name : names) {
-    const fs::path path = fs::path(folder) / name;
-    bool named = false;
-    for (const std::string& input :
-         {problem.reflectance.known_file, problem.illumination.known_file,
-          problem.truth.brdf, problem.truth.illumination}) {
-      named = named || (!input.empty() && fs::equivalent(path, input, ignored));
+    const std::filesystem::path path = std::filesystem::path(folder) / name;
+    std::error_code ignored;
+    if (NamedAs(named, path) == nullptr) {
+      std::filesystem::remove(path, ignored);
     }
-    if (!named) fs::remove(path, ignored);
   }
 }
 
@@ -275,6 +283,35 @@ Status PrepareFolder(const std::string& folder) {
   if (error) return InvalidInput(folder, error.message());
   if (::access(folder.c_str(), W_OK | X_OK) != 0) {
     return InvalidInput(folder, "expected a folder that can be written to");
+  }
+  return OkStatus();
+}
+
+std::vector<std::string> ResultPaths(const Problem& problem,
+                                     const std::string& folder) {
+  std::vector<std::string> paths = {
+      "result.json",  "report.html", "illumination.exr", "render.exr",
+      "residual.exr", "input.png",   "render.png",       "residual.png",
+      "overview.png", "brdf.png",    "illumination.png"};
+  if (!problem.reflectance.known()) {
+    paths.insert(paths.end(), {"brdf.binary", "brdf.json"});
+  }
+  if (!problem.illumination.known()) {
+    paths.emplace_back("illumination_log_std.exr");
+  }
+  for (std::string& path : paths) path.insert(0, folder + "/");
+  return paths;
+}
+
+Status CheckNothingReplaced(const Problem& problem,
+                            const std::vector<std::string>& paths) {
+  const std::vector<NamedFile> named = NamedFiles(problem);
+  for (const std::string& path : paths) {
+    if (const NamedFile* const file = NamedAs(named, path)) {
+      return InvalidInput(problem.path + ": " + file->key,
+                          "expected a file that no result replaces, found '" +
+                              file->path + "', which " + path + " is");
+    }
   }
   return OkStatus();
 }

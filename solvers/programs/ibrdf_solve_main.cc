@@ -44,6 +44,8 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
       LoadTruth(problem->truth, inverse->map_width, inverse->map_height);
   if (!truth.ok()) return truth.status();
   IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
+  IBRDF_RETURN_IF_ERROR(
+      CheckNothingReplaced(*problem, ResultPaths(*problem, folder)));
   IBRDF_RETURN_IF_ERROR(ReserveBlasMemory(flags.threads));
   const SolveProgress progress = [&](const TraceEntry& e, double share) {
     if (flags.quiet) return;

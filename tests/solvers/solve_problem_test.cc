@@ -392,6 +392,39 @@ TEST_F(SolveProblemTest, FolderIsPreparedOrNamed) {
   EXPECT_NE(std::string::npos, s.message().find("input.exr"));
 }
 
+TEST_F(SolveProblemTest, ResultsDoNotReplaceWhatTheProblemNames) {
+  const std::string out = dir_.File("out");
+  std::filesystem::create_directories(out);
+  std::filesystem::copy_file(dir_.File("input.exr"), out + "/render.exr");
+  std::filesystem::copy_file(dir_.File("mask.png"), out + "/brdf.png");
+  std::filesystem::copy_file(dir_.File("truth.exr"), out + "/illumination.exr");
+  WriteBytes(out + "/brdf.binary", "a table");
+  const auto check = [&](const std::vector<std::string>& overrides) {
+    const Problem problem =
+        ReadProblem(dir_.File("joint.yaml"), overrides).value();
+    return CheckNothingReplaced(problem, ResultPaths(problem, out));
+  };
+  const struct {
+    std::string key, file;
+  } cases[] = {{"image.file", "render.exr"},
+               {"image.mask", "brdf.png"},
+               {"truth.illumination", "illumination.exr"},
+               {"truth.brdf", "brdf.binary"}};
+  for (const auto& c : cases) {
+    const Status s = check({c.key + "=out/../out/" + c.file});
+    EXPECT_EQ(StatusCode::kInvalidInput, s.code()) << c.key;
+    for (const std::string& word :
+         {"joint.yaml: " + c.key, out + "/" + c.file}) {
+      EXPECT_NE(std::string::npos, s.message().find(word)) << s.message();
+    }
+  }
+  EXPECT_TRUE(check({}).ok());
+  // The table of a known reflectance is read and not written.
+  EXPECT_TRUE(
+      check({"problem=illumination", "reflectance={known: out/brdf.binary}"})
+          .ok());
+}
+
 TEST_F(SolveProblemTest, FolderThatCannotBeMadeIsNamed) {
   const StatusOr<InverseProblem> p = Load({"solver.max_iterations=0"});
   ASSERT_TRUE(p.ok());
