@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -18,9 +20,13 @@
 #include "io/tone_map.h"
 #include "solvers/programs/common_flags.h"
 #include "solvers/render_scene.h"
+#include "solvers/solve_problem.h"
 
 namespace ibrdf {
 namespace {
+
+std::atomic<bool> stop_requested{false};
+void RequestStop(int) { stop_requested = true; }
 
 struct Outputs {
   std::string image, mask, illumination, brdf;
@@ -33,20 +39,19 @@ class ProgressLine {
   explicit ProgressLine(bool quiet)
       : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
 
-  bool Show(double share) {
+  void Show(double share) {
     const std::chrono::duration<double> elapsed = Clock::now() - start_;
     const int percent = static_cast<int>(100.0 * share);
-    if (quiet_ || percent == shown_) return true;
-    if (share < 1.0 && elapsed.count() < kSilentSeconds) return true;
-    if (shown_ < 0 && share >= 1.0) return true;
-    if (!terminal_ && percent / 10 == shown_ / 10 && shown_ >= 0) return true;
+    if (quiet_ || percent == shown_) return;
+    if (share < 1.0 && elapsed.count() < kSilentSeconds) return;
+    if (shown_ < 0 && share >= 1.0) return;
+    if (!terminal_ && percent / 10 == shown_ / 10 && shown_ >= 0) return;
     shown_ = percent;
     std::fprintf(
         stderr,
         terminal_ ? "\rrender %3d %%, %.0f s" : "render %d %%, %.0f s\n",
         percent, elapsed.count());
     if (terminal_ && share >= 1.0) std::fputc('\n', stderr);
-    return true;
   }
 
  private:
@@ -83,28 +88,38 @@ Status RequireExtension(const std::string& path, const std::string& wanted,
                       "expected a ." + wanted + " file, found '" + path + "'");
 }
 
-// Makes the folder of an output.
-Status MakeFolder(const std::string& path) {
-  const std::filesystem::path folder =
-      std::filesystem::path(path).parent_path();
-  if (folder.empty()) return OkStatus();
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return InvalidInput(folder.string(), error.message());
+// Makes the folder of an output, which may be empty.
+Status PreparePath(const std::string& path) {
+  if (path.empty()) return OkStatus();
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  IBRDF_RETURN_IF_ERROR(PrepareFolder(folder.empty() ? "." : folder));
+  if (std::filesystem::is_directory(path)) {
+    return InvalidInput(path, "expected a file, found a folder");
+  }
   return OkStatus();
 }
 
-Status CheckOutputs(const Outputs& out) {
+// What is written beside the radiance.
+std::string PreviewPath(const Outputs& out) {
+  return std::filesystem::path(out.image).replace_extension(".png").string();
+}
+
+// Before time is spent.
+Status CheckOutputs(const Problem& problem, const Outputs& out) {
   IBRDF_RETURN_IF_ERROR(RequireExtension(out.image, "exr", "--out"));
   IBRDF_RETURN_IF_ERROR(RequireExtension(out.mask, "png", "--mask"));
   IBRDF_RETURN_IF_ERROR(
       RequireExtension(out.illumination, "exr", "--illumination-out"));
   IBRDF_RETURN_IF_ERROR(RequireExtension(out.brdf, "binary", "--brdf-out"));
-  for (const std::string* path :
-       {&out.image, &out.mask, &out.illumination, &out.brdf}) {
-    IBRDF_RETURN_IF_ERROR(MakeFolder(*path));
+  const std::vector<std::string> paths = {out.image, PreviewPath(out), out.mask,
+                                          out.illumination, out.brdf};
+  for (const std::string& path : paths) {
+    IBRDF_RETURN_IF_ERROR(PreparePath(path));
   }
-  return OkStatus();
+  // A scene's truth may be what this makes.
+  Problem read = problem;
+  read.truth = {};
+  return CheckNothingReplaced(read, paths);
 }
 
 Status Run(const std::string& scene, const std::vector<std::string>& overrides,
@@ -117,15 +132,20 @@ Status Run(const std::string& scene, const std::vector<std::string>& overrides,
       return InvalidInput("command line: --out",
                           "expected an .exr file, found nothing");
     }
-    IBRDF_RETURN_IF_ERROR(CheckOutputs(out));
+    IBRDF_RETURN_IF_ERROR(CheckOutputs(*problem, out));
   }
 
   ProgressLine progress(flags.quiet);
   RenderSceneOptions options;
   options.seed = flags.seed;
   options.num_threads = flags.threads;
-  options.progress = [&](double share) { return progress.Show(share); };
+  options.progress = [&](double share) {
+    progress.Show(share);
+    return !stop_requested;
+  };
   options.plan_only = explain;
+  std::signal(SIGINT, RequestStop);
+  std::signal(SIGTERM, RequestStop);
   const StatusOr<RenderedScene> rendered = RenderScene(*problem, options);
   if (!rendered.ok()) return rendered.status();
 
@@ -134,8 +154,7 @@ Status Run(const std::string& scene, const std::vector<std::string>& overrides,
   }
   if (explain) return OkStatus();
   IBRDF_RETURN_IF_ERROR(WriteExr(rendered->image, out.image));
-  const std::string preview =
-      std::filesystem::path(out.image).replace_extension(".png").string();
+  const std::string preview = PreviewPath(out);
   if (preview != out.mask) {
     IBRDF_RETURN_IF_ERROR(
         WritePng(Preview(rendered->image, rendered->mask), preview));
@@ -158,7 +177,8 @@ Status Run(const std::string& scene, const std::vector<std::string>& overrides,
 int Main(int argc, char** argv) {
   CLI::App app(
       "Renders a scene file: known reflectance (1/sr) and illumination "
-      "(W/(m^2 sr)) to radiance, with a tone-mapped PNG beside it.");
+      "(W/(m^2 sr)) to radiance, with a tone-mapped PNG beside it. SIGINT ends "
+      "it with nothing written (exit status 130).");
   CommonFlags flags;
   AddCommonFlags(&app, &flags);
   std::string scene, quality;
