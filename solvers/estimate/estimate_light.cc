@@ -106,6 +106,15 @@ void Estimator::StartFirstLight() {
 
 Status Estimator::EstimateBoth(JointState* state) {
   StartAtMeanMaterial(state);
+void Estimator::StartWithoutSearch(JointState* state) {
+  StartAtMeanMaterial(state);
+  first_.lobes = state->lobes;
+  SetLight(MakeLight(),
+           problem_.illumination_prior != IlluminationPrior::kNone);
+  MatchLight(state);
+  StartFirstLight();
+}
+
   SetLight(MakeLight(), true);
   MatchLight(state);
   FixGauge(state);

@@ -59,7 +59,14 @@ StatusOr<Estimate> Estimator::Run() {
   } else if (joint_maximum()) {
     IBRDF_RETURN_IF_ERROR(EstimateBoth(&state));
   } else {
-    if (lobes_unknown()) IBRDF_RETURN_IF_ERROR(SearchMarginal(&state));
+    Status found;
+    if (lobes_unknown()) found = SearchMarginal(&state);
+    if (found.code() == StatusCode::kNoImprovement) {
+      LOG(WARNING) << found.message();
+      StartWithoutSearch(&state);
+      return Finish(state);
+    }
+    IBRDF_RETURN_IF_ERROR(found);
     IBRDF_RETURN_IF_ERROR(EstimateLight(&state));
   }
   return Finish(state);

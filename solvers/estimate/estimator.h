@@ -96,7 +96,8 @@ class Estimator {
   // integrated out, under the known reflectance; left at the average where the
   // image does not tell.
   void SearchLight();
-  // The reflectance whose posterior is highest with the light integrated out.
+  // The reflectance whose posterior is highest with the light integrated out;
+  // kNoImprovement where the light explains the image of no material.
   Status SearchMarginal(JointState* state);
   // The first of the spread materials.
   void StartAtMeanMaterial(JointState* state);
@@ -140,6 +141,9 @@ class Estimator {
   void StartAtLevel(JointState* state);
   // Priors of the light centred at a constant map.
   struct LightPriors {
+  // The mean material under such a map, which is what there is to say of an
+  // image that no search explains.
+  void StartWithoutSearch(JointState* state);
     std::vector<float> mean;  // of the light's parameters
     std::vector<std::unique_ptr<LightPrior>> on_map;
   };

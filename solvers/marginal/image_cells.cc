@@ -69,4 +69,24 @@ ImageCells GroupByNormal(const std::vector<ShadingPoint>& points,
   return cells;
 }
 
+ImageCells KeepCells(const ImageCells& cells, const std::vector<bool>& keep) {
+  const int count = cells.num_cells();
+  CHECK_EQ(keep.size(), static_cast<size_t>(count));
+  ImageCells kept;
+  kept.first.push_back(0);
+  for (int i = 0; i < count; ++i) {
+    if (!keep[i]) continue;
+    kept.points.insert(kept.points.end(), cells.points.begin() + cells.first[i],
+                       cells.points.begin() + cells.first[i + 1]);
+    kept.first.push_back(static_cast<int>(kept.points.size()));
+  }
+  for (int c = 0; c < 3; ++c) {
+    for (int i = 0; i < count; ++i) {
+      if (keep[i])
+        kept.log_radiance.push_back(cells.log_radiance[c * count + i]);
+    }
+  }
+  return kept;
+}
+
 }  // namespace ibrdf

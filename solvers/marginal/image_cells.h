@@ -42,4 +42,7 @@ ImageCells GroupByNormal(const std::vector<ShadingPoint>& points,
                          const std::vector<double>& radiance,
                          const ImageCellOptions& options);
 
+// Those with keep [cells] set.
+ImageCells KeepCells(const ImageCells& cells, const std::vector<bool>& keep);
+
 }  // namespace ibrdf

@@ -15,9 +15,32 @@ namespace {
 // Radians, of LampSlopes: below a cell of the grid for most half-vectors.
 constexpr double kLampStep = 1e-3;
 
+// Of a map of 1, on white: a point whose whole sky is hidden has 1e-4 left at
+// the horizon, which the steps of VisibilityGrid cut.
+constexpr double kLeastSeen = 1e-3;
+
 double Colour(double log_colour, int channel) {
   return std::exp(std::min(log_colour, LobeModel::kMaxLogColour)) *
          kMerlScale[channel];
+}
+
+// Cells that a map of constant radiance lights.
+std::vector<bool> LitCells(const ImageCells& cells,
+                           const Transport& transport) {
+  BrdfGrid white;
+  white.shape = transport.grid_shape();
+  white.values.assign(3 * white.shape.num_nodes(), 1.0f);
+  const std::vector<float> map(
+      size_t{3} * transport.map_height() * transport.map_width(), 1.0f);
+  std::vector<double> E(3 * cells.points.size());
+  transport.Render(white, map.data(), E.data());
+  std::vector<bool> lit;
+  for (int i = 0; i < cells.num_cells(); ++i) {
+    lit.push_back(std::any_of(E.begin() + 3 * cells.first[i],
+                              E.begin() + 3 * cells.first[i + 1],
+                              [](double e) { return e > kLeastSeen; }));
+  }
+  return lit;
 }
 
 }  // namespace
@@ -49,8 +72,20 @@ MarginalReflectance::MarginalReflectance(
   options.num_threads = num_threads;
   options.quadrature = resolution.quadrature;
   options.visibility = resolution.visibility;
-  transport_ = std::make_unique<Transport>(cells_.points, resolution.map_height,
-                                           resolution.map_width, options);
+  const auto transport = [&] {
+    return std::make_unique<Transport>(cells_.points, resolution.map_height,
+                                       resolution.map_width, options);
+  };
+  transport_ = transport();
+  if (resolution.visibility != nullptr) {
+    // No light explains radiance where none of the map is seen.
+    const std::vector<bool> lit = LitCells(cells_, *transport_);
+    const auto count = std::count(lit.begin(), lit.end(), true);
+    if (count > 0 && count < cells_.num_cells()) {
+      cells_ = KeepCells(cells_, lit);
+      transport_ = transport();
+    }
+  }
   lobes_ = lobes(resolution.grid);
   likelihood_ = std::make_unique<MarginalLikelihood>(
       cells_.log_radiance, process, resolution.map_height, resolution.map_width,

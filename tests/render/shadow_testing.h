@@ -21,6 +21,21 @@ inline void AddQuad(const std::vector<Eigen::Vector3d>& corners,
   mesh->triangles.push_back({first, first + 2, first + 3});
 }
 
+// The closed cube of sides of 2 around the origin.
+inline TriangleMesh CubeMesh() {
+  TriangleMesh mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Eigen::Vector3d n = Eigen::Vector3d::Zero(), a = n, b = n;
+      n[axis] = side;
+      a[(axis + 1) % 3] = 1.0;
+      b[(axis + 2) % 3] = side;
+      AddQuad({n - a - b, n + a - b, n + a + b, n - a + b}, &mesh);
+    }
+  }
+  return mesh;
+}
+
 // Facing z.
 inline void AddDisc(const Eigen::Vector3d& centre, double radius, int sides,
                     TriangleMesh* mesh) {
