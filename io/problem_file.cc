@@ -17,6 +17,8 @@ constexpr size_t kMaxFileBytes = size_t{1} << 20;
 // A map's far light and the solver's unknowns grow with these.
 constexpr int kMaxMapSide = 8192;
 constexpr int kMaxUnetChannels = 128;
+// A draw of the light's process takes O(width height^3).
+constexpr int kMaxProcessSide = 256;
 constexpr int kMaxLobes = 8;
 constexpr double kMaxSeconds = 1e7;
 
@@ -470,6 +472,23 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
 Status CheckSolvable(const Problem& problem) {
   const auto fail = [&](const std::string& key, const std::string& what) {
     return InvalidInput(problem.path + ": " + key, what);
+  for (const Effect tier : {Effect::kHarmonics, Effect::kGaussians}) {
+    if (problem.effects.Lists(tier)) {
+      return fail("effects",
+                  std::string(EffectName(tier)) + " are ibrdf_render's alone");
+    }
+  }
+  const IlluminationSpec& light = problem.illumination;
+  if (!light.known() && light.prior == IlluminationPrior::kProcess) {
+    for (const auto& [key, side] :
+         {std::pair("width", light.width), std::pair("height", light.height)}) {
+      if (side <= kMaxProcessSide) continue;
+      return fail(std::string("illumination.") + key,
+                  "expected at most " + std::to_string(kMaxProcessSide) +
+                      " with illumination.prior: process, found " +
+                      std::to_string(side));
+    }
+  }
   };
   if (problem.image.file.empty()) {
     return fail("image.file", "expected the image to be explained");

@@ -26,6 +26,7 @@ constexpr int kProcessWidth = 128;
 
 // [3][height][width] of a map of log radiance, bilinear between its centres.
 std::vector<float> Resampled(const Image& map, int height, int width) {
+constexpr int kMostProcessSide = 256;
   const size_t texels = static_cast<size_t>(height) * width;
   std::vector<float> out(3 * texels);
   for (size_t t = 0; t < texels; ++t) {
@@ -150,7 +151,13 @@ Status Estimator::EstimateLight(JointState* state) {
   const std::function<bool()> cut_short = StopAfter(kProcessShare);
   IBRDF_RETURN_IF_ERROR(
       EstimateDraw(width, height, of_draw, kProcessShare, state));
-  if (cut_short() && width == problem_.map_width) {
+  if (cut_short() && same) {
+  while (std::max(width, height) > kMostProcessSide) {
+    width = std::max(width / 4 * 2, 8);
+    height = std::max(height / 2, 4);
+  }
+  const bool same =
+      width == problem_.map_width && height == problem_.map_height;
     // What time is left serves the draw better than a network.
     return MapRounds(of_draw, kMapShare, state);
   }
@@ -214,8 +221,10 @@ Status Estimator::EstimateNetwork(JointState* state) {
             o, light_.get(), &state->light);
   Report("network", cells_.get(), *state);
   // A draw of another size is no map to fall back on.
-  const double most_misfit =
-      process->width() == problem_.map_width ? kWorseMisfit * draw_misfit : 0.0;
+  const double most_misfit = process->width() == problem_.map_width &&
+                                     process->height() == problem_.map_height
+                                 ? kWorseMisfit * draw_misfit
+                                 : 0.0;
   IBRDF_RETURN_IF_ERROR(Rounds("network", MethodFor(JointBlocks::kLight),
                                JointBlocks::kLight, kMapShare, state,
                                most_misfit));

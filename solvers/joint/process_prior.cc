@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ibrdf/light/environment_map.h"
@@ -12,12 +13,10 @@ namespace {
 
 constexpr int kColumns = 32;
 
-int BlockSide(int height, int width) {
+// Texels a side, on average: sides need not be multiples of it.
+int BlockSide(int width) {
   int block = 1;
-  while (width / (2 * block) >= kColumns && width % (2 * block) == 0 &&
-         height % (2 * block) == 0) {
-    block *= 2;
-  }
+  while (width / (2 * block) >= kColumns) block *= 2;
   return block;
 }
 
@@ -38,23 +37,30 @@ ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
                            const std::vector<Eigen::Vector3d>& lamps)
     : height_(height),
       width_(width),
-      block_(BlockSide(height, width)),
+      block_rows_(std::max(height / BlockSide(width), 1)),
+      block_columns_(width / BlockSide(width)),
       level_(level) {
+  std::vector<double> row_sum(block_rows_, 0.0);
   for (int r = 0; r < height; ++r) {
-    double sum = 0.0;
-    for (int k = 0; k < block_; ++k) {
-      sum += TexelSolidAngle(r / block_ * block_ + k, height, width);
-    }
-    row_weight_.push_back(TexelSolidAngle(r, height, width) / (sum * block_));
+    row_sum[BlockRow(r)] += TexelSolidAngle(r, height, width);
+  }
+  for (int r = 0; r < height; ++r) {
+    row_weight_.push_back(TexelSolidAngle(r, height, width) /
+                          row_sum[BlockRow(r)]);
+  }
+  std::vector<int> columns(block_columns_, 0);
+  for (int x = 0; x < width; ++x) ++columns[BlockColumn(x)];
+  for (int x = 0; x < width; ++x) {
+    column_weight_.push_back(1.0 / columns[BlockColumn(x)]);
   }
   const RowMatrix correlation =
-      LightCorrelation(height / block_, width / block_, process, scales);
+      LightCorrelation(block_rows_, block_columns_, process, scales);
   const double amplitude = std::exp(scales.log_amplitude);
   Eigen::VectorXd lamp_share = Eigen::VectorXd::Zero(correlation.rows());
   for (const LampTexel& near : NearLamps(lamps, height, width)) {
-    const int row = near.texel / width;
-    const double share = row_weight_[row] * near.weight;
-    lamp_share[BlockOf(row, near.texel % width)] += share * share;
+    const int row = near.texel / width, column = near.texel % width;
+    const double share = WeightOf(row, column) * near.weight;
+    lamp_share[BlockOf(row, column)] += share * share;
   }
   // Along grey the channels add up.
   grey_ = Precision(correlation, 3 * amplitude * process.luminance_variance,
@@ -71,7 +77,7 @@ Eigen::MatrixXd ProcessPrior::Means(const float* log_map) const {
     for (int r = 0; r < height_; ++r) {
       for (int x = 0; x < width_; ++x) {
         means(BlockOf(r, x), c) +=
-            row_weight_[r] *
+            WeightOf(r, x) *
             log_map[(static_cast<size_t>(c) * height_ + r) * width_ + x];
       }
     }
@@ -92,7 +98,7 @@ void ProcessPrior::Spread(const Eigen::MatrixXd& by_mean, float* out) const {
     for (int r = 0; r < height_; ++r) {
       for (int x = 0; x < width_; ++x) {
         out[(static_cast<size_t>(c) * height_ + r) * width_ + x] +=
-            static_cast<float>(row_weight_[r] * by_channel(BlockOf(r, x), c));
+            static_cast<float>(WeightOf(r, x) * by_channel(BlockOf(r, x), c));
       }
     }
   }

@@ -10,7 +10,7 @@
 namespace ibrdf {
 
 // 1/2 (D l - m)^T K^-1 (D l - m): D means of log radiance over blocks that
-// leave some 32 columns, K the covariance of LightProcess between the blocks'
+// leave 32 to 63 columns, K the covariance of LightProcess between the blocks'
 // centres, m one level for all channels. Finer detail is left to others. Blocks
 // at the lamps (unit directions) vary besides by what their texels of NearLamps
 // do, each by itself.
@@ -24,8 +24,14 @@ class ProcessPrior final : public LightPrior {
   void AddProduct(const float* v, float* out) const override;
 
  private:
+  int BlockRow(int row) const { return row * block_rows_ / height_; }
+  int BlockColumn(int column) const { return column * block_columns_ / width_; }
   int BlockOf(int row, int column) const {
-    return row / block_ * (width_ / block_) + column / block_;
+    return BlockRow(row) * block_columns_ + BlockColumn(column);
+  }
+  // Of a texel in the mean of its block.
+  double WeightOf(int row, int column) const {
+    return row_weight_[row] * column_weight_[column];
   }
   // Means over blocks as [blocks][3], in axes of grey and two of chroma.
   Eigen::MatrixXd Means(const float* log_map) const;
@@ -34,8 +40,8 @@ class ProcessPrior final : public LightPrior {
   // out += D^T of them.
   void Spread(const Eigen::MatrixXd& by_mean, float* out) const;
 
-  int height_, width_, block_;
-  std::vector<double> row_weight_;  // of a texel in the mean of its block
+  int height_, width_, block_rows_, block_columns_;
+  std::vector<double> row_weight_, column_weight_;
   double level_;
   RowMatrix grey_, chroma_;  // precisions of the two kinds of axes
 };

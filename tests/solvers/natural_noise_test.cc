@@ -46,6 +46,27 @@ TEST(NaturalNoise, ChannelsAreStandardizedAndDiffer) {
   EXPECT_NE(noise, Noise(4));
 }
 
+// A fine map's is of fewer texels than it: a process of its own size would take
+// minutes.
+TEST(NaturalNoise, OfAFineMapIsStandardizedToo) {
+  IlluminationUnetOptions options;
+  options.width = 1000;
+  options.height = 500;
+  options.noise_channels = 1;
+  const std::vector<float> noise = NaturalNoise(options);
+  ASSERT_EQ(size_t{1000} * 500, noise.size());
+  double mean = 0.0, square = 0.0, along = 0.0;
+  for (size_t t = 0; t < noise.size(); ++t) {
+    mean += noise[t] / static_cast<double>(noise.size());
+    square += noise[t] * noise[t] / static_cast<double>(noise.size());
+    if (t > 0)
+      along = std::max(along, std::abs(double{noise[t]} - noise[t - 1]));
+  }
+  EXPECT_NEAR(0.0, mean, 1e-4);
+  EXPECT_NEAR(1.0, square, 1e-3);
+  EXPECT_LT(along, 1.0);
+}
+
 // Neighbours of white noise differ by a mean square of 2.
 TEST(NaturalNoise, NeighboursAreAlikeAcrossRowsAndTheSeam) {
   const std::vector<float> noise = Noise(5);

@@ -24,8 +24,8 @@ std::vector<float> RandomLogMap(int height, int width, unsigned seed) {
 }
 
 TEST(ProcessPrior, GradientAndProductMatchDifferences) {
-  // Blocks of one texel and of four.
-  for (const int width : {16, 64}) {
+  // Blocks of one texel, of four, and of different sizes.
+  for (const int width : {16, 64, 70}) {
     const int height = width / 2;
     ProcessPrior prior(height, width, LightProcess(), {0.4}, 0.3,
                        {MapDirection(0.4 * height, 5.3, height, width)});
@@ -85,6 +85,24 @@ TEST(ProcessPrior, PrecisionIsOfTheMapsThatAreDrawn) {
   EXPECT_LT((projector - identity).cwiseAbs().maxCoeff(), rounding);
   // A projector can be zero.
   EXPECT_NEAR(n, identity.trace(), std::sqrt(n) * rounding);
+}
+
+// Blocks of sides that do not halve are as few as any other map's.
+TEST(ProcessPrior, CostHardlyDependsOnTheMapsSize) {
+  const auto cost = [](int height, int width) {
+    std::vector<float> map;
+    for (int c = 0; c < 3; ++c) {
+      for (int t = 0; t < height * width; ++t) {
+        map.push_back(static_cast<float>(
+            MapDirection(t / width + 0.5, t % width + 0.5, height, width).y()));
+      }
+    }
+    return ProcessPrior(height, width, LightProcess(), {}, 0.0)
+        .Evaluate(map.data(), nullptr);
+  };
+  const double even = cost(128, 256);
+  EXPECT_GT(even, 0.0);
+  EXPECT_NEAR(even, cost(127, 254), 0.1 * even);
 }
 
 TEST(ProcessPrior, ConstantMapAtTheLevelCostsNothing) {
