@@ -69,14 +69,12 @@ struct LikelihoodSpec {
 enum class Effect {
   kVisibility,
   kInterreflection,
-  kSharpLobes,
-  kPerspective,
   kReflectanceMap,
   kHarmonics,
   kGaussians,
 };
-inline constexpr int kNumEffects = 7;
-// Name in problem files, e.g. "sharp_lobes".
+inline constexpr int kNumEffects = 5;
+// Name in problem files, e.g. "reflectance_map".
 const char* EffectName(Effect effect);
 
 // kAuto: the program decides. kAll: every effect; no approximation of

@@ -374,10 +374,6 @@ const char* EffectName(Effect effect) {
       return "visibility";
     case Effect::kInterreflection:
       return "interreflection";
-    case Effect::kSharpLobes:
-      return "sharp_lobes";
-    case Effect::kPerspective:
-      return "perspective";
     case Effect::kReflectanceMap:
       return "reflectance_map";
     case Effect::kHarmonics:
@@ -449,6 +445,8 @@ StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
   ReadChoice(&reader, "quality", {"preview", "reference"}, &problem.quality);
   if (!context.error.ok()) return context.error;
   return problem;
+}
+
 std::vector<NamedFile> NamedFiles(const Problem& problem) {
   const bool mesh = problem.geometry.kind == GeometryKind::kMesh;
   std::vector<NamedFile> files = {
@@ -467,11 +465,13 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
   return files;
 }
 
-}
-
 Status CheckSolvable(const Problem& problem) {
   const auto fail = [&](const std::string& key, const std::string& what) {
     return InvalidInput(problem.path + ": " + key, what);
+  };
+  if (problem.image.file.empty()) {
+    return fail("image.file", "expected the image to be explained");
+  }
   for (const Effect tier : {Effect::kHarmonics, Effect::kGaussians}) {
     if (problem.effects.Lists(tier)) {
       return fail("effects",
@@ -488,10 +488,6 @@ Status CheckSolvable(const Problem& problem) {
                       " with illumination.prior: process, found " +
                       std::to_string(side));
     }
-  }
-  };
-  if (problem.image.file.empty()) {
-    return fail("image.file", "expected the image to be explained");
   }
   const bool reflectance_known = problem.kind == ProblemKind::kIllumination;
   const bool illumination_known = problem.kind == ProblemKind::kReflectance;

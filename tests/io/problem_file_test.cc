@@ -68,7 +68,7 @@ geometry: {mesh: /abs/bunny.obj, fit: none}
 reflectance: {model: m.ibrdf, lobes: 3, prior_sigma: 0.25}
 illumination: {known: env.hdr, unet_channels: 16}
 likelihood: {scale: 0.02, epsilon: 1e-5}
-effects: [sharp_lobes, perspective]
+effects: [visibility, reflectance_map]
 solver: {method: lbfgs, quadrature: fine, seconds: 5, tolerance: 0, max_iterations: 7, seed: 9}
 truth: {brdf: gt.binary, illumination: gt.exr}
 )");
@@ -88,7 +88,7 @@ truth: {brdf: gt.binary, illumination: gt.exr}
   EXPECT_EQ(0.02, *p.likelihood.scale);
   EXPECT_EQ(1e-5, *p.likelihood.epsilon);
   ASSERT_EQ(2u, p.effects.list.size());
-  EXPECT_EQ(Effect::kPerspective, p.effects.list[1]);
+  EXPECT_EQ(Effect::kReflectanceMap, p.effects.list[1]);
   EXPECT_EQ(SolverMethod::kLbfgs, p.solver.method);
   EXPECT_EQ(QuadratureLevel::kFine, p.solver.quadrature);
   EXPECT_EQ(7, p.solver.max_iterations);
@@ -161,8 +161,8 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {least + "solver: {seconds: 1e400}", "solver.seconds: expected"},
       {least + "likelihood: {scale: many}", "likelihood.scale: expected"},
       {least + "likelihood: {scale: []}", "expected auto or a number"},
-      {least + "effects: [perspectiv]", "the nearest known one is perspective"},
-      {least + "effects: [perspective, perspective]", "listed twice"},
+      {least + "effects: [visibilty]", "the nearest known one is visibility"},
+      {least + "effects: [visibility, visibility]", "listed twice"},
       {least + "effects: [gausians]", "the nearest known one is gaussians"},
       {least + "effects: harmonic", "the nearest known one is harmonics"},
       {least + "effects: [harmonics, visibility]",
@@ -251,6 +251,36 @@ TEST_F(ProblemFile, OverridesAreCheckedAsTheFileIs) {
             ErrorOf(kLeast, {"solver.seconds=x"}).find("found 'x'"));
 }
 
+TEST_F(ProblemFile, EffectsOfRendersAreNoneOfSolves) {
+  for (const std::string effect : {"harmonics", "gaussians"}) {
+    const StatusOr<Problem> read = Read(kLeast, {"effects=[" + effect + "]"});
+    ASSERT_TRUE(read.ok()) << read.status().message();
+    const Status s = CheckSolvable(*read);
+    EXPECT_EQ(StatusCode::kInvalidInput, s.code());
+    EXPECT_NE(std::string::npos, s.message().find("effects: " + effect));
+  }
+  EXPECT_TRUE(CheckSolvable(*Read(kLeast, {"effects=[visibility]"})).ok());
+  // What no program simulates.
+  for (const std::string effect : {"sharp_lobes", "perspective"}) {
+    EXPECT_NE(std::string::npos,
+              ErrorOf(kLeast, {"effects=[" + effect + "]"}).find(effect));
+  }
+}
+
+TEST_F(ProblemFile, DrawsOfTheProcessAreSmall) {
+  const auto check = [&](const std::string& illumination) {
+    return CheckSolvable(*Read(kLeast, {"illumination=" + illumination}));
+  };
+  EXPECT_TRUE(check("{width: 256, prior: process}").ok());
+  EXPECT_TRUE(check("{width: 512}").ok());
+  const Status s = check("{width: 512, prior: process}");
+  EXPECT_EQ(StatusCode::kInvalidInput, s.code());
+  EXPECT_NE(std::string::npos, s.message().find("illumination.width"));
+  EXPECT_NE(std::string::npos, check("{width: 64, height: 512, prior: process}")
+                                   .message()
+                                   .find("illumination.height"));
+}
+
 TEST_F(ProblemFile, KnownPartsMustFitTheKind) {
   const struct {
     const char* kind;
@@ -283,7 +313,7 @@ TEST_F(ProblemFile, MissingAndHugeFilesAreRefused) {
 TEST_F(ProblemFile, DamagedTextNeverCrashes) {
   const std::string text = std::string(kLeast) +
                            "camera: {type: perspective, from: [0, 1, 5]}\n"
-                           "effects: [sharp_lobes]\nsolver: {seconds: 5}\n";
+                           "effects: [visibility]\nsolver: {seconds: 5}\n";
   std::mt19937 rng(5);
   const std::string marks = "{}[]:,*&!'\"-#|> \n\t%@0a\x01\xff";
   for (int i = 0; i < 2000; ++i) {
@@ -301,15 +331,15 @@ TEST_F(ProblemFile, DamagedTextNeverCrashes) {
 TEST_F(ProblemFile, JsonHasTheKeysOfTheFileAndReadsBack) {
   const StatusOr<Problem> read = Read(
       kLeast, {"camera={type: perspective, fov_degrees: 40}",
-               "effects=[perspective, harmonics, gaussians]", "solver.seed=4",
-               "likelihood.scale=0.1", "truth.brdf=b.binary",
+               "effects=[reflectance_map, harmonics, gaussians]",
+               "solver.seed=4", "likelihood.scale=0.1", "truth.brdf=b.binary",
                "geometry={mesh: m.obj, fit: none}"});
   ASSERT_TRUE(read.ok()) << read.status().message();
   const nlohmann::json json = ProblemToJson(*read);
   EXPECT_EQ("joint", json["problem"]);
   EXPECT_EQ(0.1, json["likelihood"]["scale"]);
   EXPECT_EQ("auto", json["likelihood"]["epsilon"]);
-  EXPECT_EQ(nlohmann::json({"perspective", "harmonics", "gaussians"}),
+  EXPECT_EQ(nlohmann::json({"reflectance_map", "harmonics", "gaussians"}),
             json["effects"]);
   EXPECT_EQ(dir_.File("b.binary"), json["truth"]["brdf"]);
   // JSON is YAML: the resolved problem is a problem file.
