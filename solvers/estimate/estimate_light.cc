@@ -199,6 +199,9 @@ bool Estimator::CellsBlur(const JointState& state) {
     const LevelObjective on = ObjectiveOn(level);
     on.objective->Evaluate(state);
     return on.objective->radiance();
+  if (StopAfter(1.0)()) return false;
+  // A dense method was found to take the coarser level.
+  if (MethodFor(JointBlocks::kLight) == JointMethod::kTrustRegion) return false;
   };
   const double error = JoiningError(*pair.pixels, radiance(pair.pixels.get()),
                                     radiance(pair.cells.get()), kMapCells);

@@ -87,21 +87,36 @@ ReflectanceSearchOptions Estimator::SearchOptions(double share) {
     Report(entry);
   };
   if (problem_.transport.emitters != nullptr) {
-    // Of all points, made when it is first asked for.
+    // Slice by slice of all points; the last one's transport is kept, which
+    // spares a small image the making of another.
     o.bounce_gain = [this, shape = o.fine,
-                     transport = std::shared_ptr<Transport>()](
+                     transport = std::shared_ptr<Transport>(), of = size_t{0}](
                         const std::vector<double>& lobes,
                         const std::vector<double>& log_radiance) mutable {
-      if (transport == nullptr) {
-        TransportOptions options = problem_.transport;
-        options.num_threads = problem_.num_threads;
-        transport = std::make_shared<Transport>(
-            problem_.points, shape.map_height, shape.map_width, options);
+      const std::vector<ShadingPoint>& points = problem_.points;
+      const BrdfGrid grid =
+          lobes_unknown() ? lobes_->Grid(lobes.data()) : *problem_.known_brdf;
+      std::vector<double> gain;
+      for (size_t begin = 0; begin < points.size();
+           begin += kPointsAtOnceWithBounces) {
+        if (transport == nullptr || of != begin) {
+          TransportOptions options = problem_.transport;
+          options.num_threads = problem_.num_threads;
+          const size_t end =
+              std::min(begin + kPointsAtOnceWithBounces, points.size());
+          transport.reset();  // the memory of one at a time
+          transport = std::make_shared<Transport>(
+              std::vector<ShadingPoint>(points.begin() + begin,
+                                        points.begin() + end),
+              shape.map_height, shape.map_width, options);
+          of = begin;
+        }
+        const std::vector<double> of_slice =
+            BounceGain(*transport, grid, log_radiance);
+        if (of_slice.empty()) return of_slice;
+        gain.insert(gain.end(), of_slice.begin(), of_slice.end());
       }
-      return BounceGain(
-          *transport,
-          lobes_unknown() ? lobes_->Grid(lobes.data()) : *problem_.known_brdf,
-          log_radiance);
+      return gain;
     };
   }
   return o;

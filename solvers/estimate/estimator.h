@@ -46,6 +46,8 @@ class Estimator {
   // and where the image is as sharp as the map's texels.
   static constexpr int kMapCells = 64;
   static constexpr int kFineMapCells = 128;
+  // Transported at once with bounces: emitters are lit anew by every transport.
+  static constexpr size_t kPointsAtOnceWithBounces = 32768;
 
   // estimator.cc: clock, objective and trace.
   double Elapsed() const;

@@ -30,9 +30,8 @@ Estimator::View Estimator::ViewOf(const JointState& state) {
 void Estimator::RenderPixels(const std::vector<View*>& views) {
   const std::vector<ShadingPoint>& points = full_->points;
   for (View* const view : views) view->radiance.resize(3 * points.size());
-  // Emitters are lit anew by every transport that has them.
   const bool bounces = problem_.transport.emitters != nullptr;
-  const size_t at_once = bounces ? points.size() : kPointsAtOnce;
+  const size_t at_once = bounces ? kPointsAtOnceWithBounces : kPointsAtOnce;
   for (size_t begin = 0; begin < points.size(); begin += at_once) {
     Level slice;
     const size_t end = std::min(begin + at_once, points.size());

@@ -15,6 +15,8 @@ constexpr size_t kThinPoints = 4000;  // about as many are left
 // Of MakeLevelPair: squares of so many pixels a side, one of so many each way.
 constexpr int kBlock = 8;
 constexpr int kOfBlocks = 3;
+// Of these, at most about so many pixels: they are transported at once.
+constexpr size_t kMostPairPoints = 32768;
 
 std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points,
                                  const std::vector<double>& radiance) {
@@ -70,11 +72,17 @@ std::unique_ptr<Level> MakeCellLevel(const InverseProblem& problem,
 }
 
 LevelPair MakeLevelPair(const InverseProblem& problem, int cells_across) {
+  size_t step = 1;  // in squares' pixels, each way
+  while (problem.points.size() >
+         kMostPairPoints * kOfBlocks * kOfBlocks * step * step) {
+    ++step;
+  }
   std::vector<ShadingPoint> some;
   for (const ShadingPoint& p : problem.points) {
-    const int x = p.pixel % problem.image.width;
-    const int y = p.pixel / problem.image.width;
-    if (x / kBlock % kOfBlocks == 0 && y / kBlock % kOfBlocks == 0) {
+    const size_t x = p.pixel % problem.image.width;
+    const size_t y = p.pixel / problem.image.width;
+    if (x / kBlock % kOfBlocks == 0 && y / kBlock % kOfBlocks == 0 &&
+        x % step == 0 && y % step == 0) {
       some.push_back(p);
     }
   }

@@ -29,7 +29,8 @@ std::unique_ptr<Level> MakeFullLevel(const InverseProblem& problem);
 std::unique_ptr<Level> MakeCellLevel(const InverseProblem& problem,
                                      int cells_across);
 
-// A ninth of the image, as MakeCellLevel's and pixel by pixel.
+// A ninth of the image, of a large one less, as MakeCellLevel's and pixel by
+// pixel.
 struct LevelPair {
   std::unique_ptr<Level> cells, pixels;
 };

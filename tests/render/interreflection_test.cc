@@ -112,6 +112,29 @@ TEST(Interreflection, WhiteObjectInConstantLightDisappears) {
   EXPECT_NEAR(1.0, mean, 0.005);
 }
 
+// A large image is transported slice by slice.
+TEST(Interreflection, SlicesOfThePointsHaveTheRadianceOfAll) {
+  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const std::vector<ShadingPoint> all =
+      FindShadingPoints(scene, TorusCamera(), 24, 24, Mask(), 1).value();
+  const Image map = SmoothMap(32, 64);
+  const TransportOptions options = WithBounces(scene, all, 2);
+  const BrdfGrid grid =
+      BrdfGrid::FromFunction(Glossy(0.3, 0.5, 12), options.grid);
+  std::vector<double> E(3 * all.size()), slices;
+  Transport(all, 32, 64, options).Render(grid, map.rgb.data(), E.data());
+  const auto middle = all.begin() + all.size() / 3;
+  for (const auto& [begin, end] :
+       {std::pair(all.begin(), middle), std::pair(middle, all.end())}) {
+    const std::vector<ShadingPoint> some(begin, end);
+    std::vector<double> of_some(3 * some.size());
+    Transport(some, 32, 64, options)
+        .Render(grid, map.rgb.data(), of_some.data());
+    slices.insert(slices.end(), of_some.begin(), of_some.end());
+  }
+  EXPECT_EQ(E, slices);
+}
+
 // Emitters are patches seen from a few sides; brute force knows none. The
 // sharper the lobe, the more of the bounce that misses.
 TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {

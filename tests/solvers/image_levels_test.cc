@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -45,6 +46,19 @@ TEST(LevelPair, IsANinthOfTheImageAndItsCells) {
   ASSERT_EQ(cells.points.size(), pair.cells->points.size());
   EXPECT_LT(3 * cells.points.size(), pair.pixels->points.size());
   EXPECT_EQ(cells.radiance, pair.cells->observed.radiance);
+}
+
+// All pixels of the pair are transported at once.
+TEST(LevelPair, OfALargeImageIsThinner) {
+  InverseProblem problem;
+  problem.points = SpherePoints(700);
+  problem.image = Image(700, 700);
+  std::fill(problem.image.rgb.begin(), problem.image.rgb.end(), 1.0f);
+  ASSERT_GT(problem.points.size() / 9, 40000u);
+  const LevelPair pair = MakeLevelPair(problem, kAcross);
+  EXPECT_LT(pair.pixels->points.size(), 33000u);
+  EXPECT_GT(pair.pixels->points.size(), 8000u);
+  EXPECT_GT(pair.cells->points.size(), 300u);
 }
 
 TEST(JoiningError, IsTheMeanDifferenceOfLogarithms) {
