@@ -57,10 +57,18 @@ std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
   });
   const double reach = std::cos(kReach * kDegree);
   const double rim = std::cos(kRim * kDegree);
-  std::vector<Eigen::Vector3d> lamps;
+  std::vector<Eigen::Vector3d> lamps, looked_at;
   for (const size_t i : order) {
     if (static_cast<int>(lamps.size()) >= most) break;
-    bool top = luminance[i] == brightest[bin[i]];
+    if (luminance[i] != brightest[bin[i]]) continue;
+    // The first of equals stands for them: where a highlight is saturated there
+    // are many, each with a look at all others, and all are one lamp.
+    const bool near = std::any_of(
+        looked_at.begin(), looked_at.end(),
+        [&](const Eigen::Vector3d& d) { return d.dot(mirrored[i]) >= reach; });
+    if (near) continue;
+    looked_at.push_back(mirrored[i]);
+    bool top = true;
     std::vector<double> around;
     for (size_t j = 0; j < mirrored.size() && top; ++j) {
       const double cosine = mirrored[j].dot(mirrored[i]);

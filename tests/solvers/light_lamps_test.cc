@@ -77,6 +77,18 @@ TEST(FindLamps, ShouldersOfAWideHighlightAreNoLamps) {
   EXPECT_EQ(1u, FindLamps(points, radiance, 5).size());
 }
 
+// A facet that mirrors a lamp has pixels of one normal and one radiance.
+TEST(FindLamps, EqualPixelsAreOneLamp) {
+  std::vector<ShadingPoint> points = SpherePoints(64);
+  std::vector<double> radiance = Highlights(points, {});
+  const size_t facet = points.size() / 2 + 10;
+  for (int k = 0; k < 200; ++k) {
+    points.push_back(points[facet]);
+    radiance.insert(radiance.end(), {9.0, 9.0, 9.0});
+  }
+  EXPECT_EQ(1u, FindLamps(points, radiance, 3).size());
+}
+
 TEST(FindLamps, NoiseIsNoLamp) {
   const std::vector<ShadingPoint> points = SpherePoints(64);
   EXPECT_TRUE(FindLamps(points, Highlights(points, {}), 5).empty());
