@@ -111,8 +111,25 @@ Status Estimator::Prepare() {
     materials_ = JointMaterialPrior(problem_.model, problem_.lobes,
                                     problem_.prior_sigma);
   }
+  IBRDF_RETURN_IF_ERROR(CheckMethod());
   PredictFinish();
   return OkStatus();
+}
+
+Status Estimator::CheckMethod() const {
+  const JointMethod method = MethodFor(JointBlocks::kLight);
+  if (!light_unknown() || problem_.solver.max_iterations == 0 ||
+      method != JointMethod::kTrustRegion) {
+    return OkStatus();
+  }
+  const bool draw =
+      problem_.illumination_prior == IlluminationPrior::kProcess &&
+      !joint_maximum();
+  const int64_t texels = int64_t{problem_.map_width} * problem_.map_height;
+  const int64_t unknowns = (draw ? 3 * texels : MakeLight()->num_parameters()) +
+                           (joint_maximum() ? lobes_->num_parameters() : 0);
+  return CheckJointMethod(method, unknowns,
+                          static_cast<int64_t>(3 * cells_->points.size()));
 }
 
 void Estimator::PredictFinish() {

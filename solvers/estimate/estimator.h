@@ -63,6 +63,8 @@ class Estimator {
   std::function<bool()> StopAfter(double share) const;
   // kInvalidInput if no pixel can be used.
   Status Prepare();
+  // Whether solver.method takes a problem of this size, before time is spent.
+  Status CheckMethod() const;
   // Sets finish_seconds_.
   void PredictFinish();
   // Built at first use, for the present map's size.
@@ -139,13 +141,13 @@ class Estimator {
   Eigen::Array3d MatchedLevel(const std::vector<double>& lobes);
   // A constant map at that level; the light's priors are centred there.
   void MatchLight(JointState* state);
+  // The mean material under such a map, which is what there is to say of an
+  // image that no search explains.
+  void StartWithoutSearch(JointState* state);
   // The same at the level that MatchLight found, for the present model.
   void StartAtLevel(JointState* state);
   // Priors of the light centred at a constant map.
   struct LightPriors {
-  // The mean material under such a map, which is what there is to say of an
-  // image that no search explains.
-  void StartWithoutSearch(JointState* state);
     std::vector<float> mean;  // of the light's parameters
     std::vector<std::unique_ptr<LightPrior>> on_map;
   };

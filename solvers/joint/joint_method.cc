@@ -64,8 +64,13 @@ const char* JointMethodName(JointMethod method) {
 }
 
 Status CheckJointMethod(JointMethod method, const JointObjective& objective) {
+  return CheckJointMethod(method, objective.size(), objective.num_residuals());
+}
+
+Status CheckJointMethod(JointMethod method, int64_t unknowns,
+                        int64_t residuals) {
   if (method != JointMethod::kTrustRegion) return OkStatus();
-  const int64_t n = objective.size(), rows = objective.num_residuals();
+  const int64_t n = unknowns, rows = residuals;
   if (n <= kMaxTrustRegionParameters && n * rows <= kMaxTrustRegionEntries) {
     return OkStatus();
   }

@@ -77,6 +77,9 @@ struct JointSummary {
 inline constexpr int kMaxTrustRegionParameters = 2048;
 inline constexpr int64_t kMaxTrustRegionEntries = int64_t{1} << 25;  // 256 MB
 Status CheckJointMethod(JointMethod method, const JointObjective& objective);
+// The same of the objective's size() and num_residuals().
+Status CheckJointMethod(JointMethod method, int64_t unknowns,
+                        int64_t residuals);
 
 // Lowers the objective over its free blocks, in place. The cost never rises:
 // the best iterate is returned. A method that CheckJointMethod refuses is a bug
