@@ -32,6 +32,7 @@ std::vector<RankedMaterial> RankUnderKnownLight(
   for (size_t m = 0; m < prior.materials.size(); ++m) {
     Eigen::VectorXd x = prior.materials[m].parameters;
     double shift[3] = {0.0, 0.0, 0.0};
+    int lit[3] = {0, 0, 0};
     const auto colour = [&](int k, int c) {
       return x[static_cast<Eigen::Index>(k) * lobes.lobe_size() + code_size +
                c];
@@ -44,12 +45,14 @@ std::vector<RankedMaterial> RankUnderKnownLight(
                 kMerlScale[c] *
                 rendered[i / 3 * stride + 3 * (m * num_lobes + k) + c];
       }
-      if (observed.valid[i / 3]) {
-        shift[c] += (std::log(observed.radiance[i] + likelihood.epsilon) -
-                     std::log(E[i] + likelihood.epsilon)) /
-                    std::max(observed.num_valid, 1);
+      // A black point, of which no level is right, tells nothing of it.
+      if (observed.valid[i / 3] && E[i] + likelihood.epsilon > 0.0) {
+        shift[c] += std::log(observed.radiance[i] + likelihood.epsilon) -
+                    std::log(E[i] + likelihood.epsilon);
+        ++lit[c];
       }
     }
+    for (int c = 0; c < 3; ++c) shift[c] /= std::max(lit[c], 1);
     for (size_t i = 0; i < E.size(); ++i) E[i] *= std::exp(shift[i % 3]);
     lobes.ShiftColours(shift, x.data());
     double cost = EvaluateLikelihood(E, observed, likelihood, nullptr).cost +

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/solvers/marginal_testing.h"
 
 namespace ibrdf {
@@ -34,6 +37,33 @@ TEST_F(KnownLightSearchTest, RanksFirstTheMaterialThatMadeTheImage) {
     EXPECT_NEAR(x[4], ranked[0].parameters[4], 1e-3);
     for (size_t k = 1; k < ranked.size(); ++k) {
       EXPECT_LE(ranked[k - 1].cost, ranked[k].cost);
+    }
+  }
+}
+
+// A point that no light reaches has no level, whatever epsilon is.
+TEST_F(KnownLightSearchTest, BlackPointsDoNotMoveColours) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  const FlowLobes lobes(model_, 2, resolution_.grid, 1);
+  TransportOptions options;
+  options.grid = resolution_.grid;
+  options.num_threads = 1;
+  const Transport transport(points_, 8, 16, options);
+  std::vector<float> map(3 * 8 * 16, 0.0f);
+  for (int c = 0; c < 3; ++c) map[3 * (4 * 16 + 4) + c] = 1.0f;
+  std::vector<double> E;
+  ASSERT_TRUE(RenderLobeModel(transport, lobes,
+                              prior.materials[0].parameters.data(), map.data(),
+                              &E, nullptr));
+  ASSERT_EQ(0.0, *std::min_element(E.begin(), E.end()));
+  RobustLogLikelihood likelihood;
+  likelihood.scale = 0.02;
+  likelihood.epsilon = 0.0;
+  for (const RankedMaterial& ranked : RankUnderKnownLight(
+           transport, lobes, prior, map,
+           MakeObservations(std::vector<double>(E.size(), 1.0)), likelihood)) {
+    for (const double x : ranked.parameters) {
+      EXPECT_TRUE(std::isfinite(x)) << ranked.name;
     }
   }
 }
