@@ -21,12 +21,15 @@ constexpr double kMapShare = 0.9;
 constexpr double kWorseMisfit = 1.02;
 // Of the misfit of an image of joined pixels, what joining them leaves out.
 constexpr double kBlurredShare = 0.2;
-// Maps are first found at this size or below.
+// Radiance under a map of 1 that no material leaves.
+constexpr double kBlack = 1e-12;
+// Maps are first found at this size or below, where their sides halve; in no
+// case at a larger one than the most.
 constexpr int kProcessWidth = 128;
+constexpr int kMostProcessSide = 256;
 
 // [3][height][width] of a map of log radiance, bilinear between its centres.
 std::vector<float> Resampled(const Image& map, int height, int width) {
-constexpr int kMostProcessSide = 256;
   const size_t texels = static_cast<size_t>(height) * width;
   std::vector<float> out(3 * texels);
   for (size_t t = 0; t < texels; ++t) {
@@ -70,13 +73,16 @@ Eigen::Array3d Estimator::MatchedLevel(const std::vector<double>& lobes) {
   const std::vector<double>& E = on.objective->radiance();
   const Observations& o = cells_->observed;
   Eigen::Array3d level = Eigen::Array3d::Zero();
+  Eigen::Array3d lit = Eigen::Array3d::Zero();
   for (size_t i = 0; i < E.size(); ++i) {
-    if (!o.valid[i / 3]) continue;
-    level[static_cast<Eigen::Index>(i % 3)] +=
-        (std::log(o.radiance[i]) - std::log(std::max(E[i], 0.0) + 1e-30)) /
-        o.num_valid;
+    // What reflects nothing says nothing of the light.
+    if (!o.valid[i / 3] || !(E[i] > kBlack)) continue;
+    const auto c = static_cast<Eigen::Index>(i % 3);
+    level[c] += std::log(o.radiance[i]) - std::log(E[i]);
+    lit[c] += 1.0;
   }
-  return level;
+  const double of_all = level.sum() / std::max(lit.sum(), 1.0);
+  return (lit > 0.0).select(level / lit.max(1.0), of_all);
 }
 
 Estimator::LightPriors Estimator::PriorsAt(const Eigen::Array3d& level) const {
@@ -100,13 +106,6 @@ void Estimator::StartAtLevel(JointState* state) {
   state->light = light_priors_.mean;
 }
 
-void Estimator::StartFirstLight() {
-  first_priors_ = PriorsAt(MatchedLevel(first_.lobes));
-  first_.light = first_priors_.mean;
-}
-
-Status Estimator::EstimateBoth(JointState* state) {
-  StartAtMeanMaterial(state);
 void Estimator::StartWithoutSearch(JointState* state) {
   StartAtMeanMaterial(state);
   first_.lobes = state->lobes;
@@ -116,6 +115,13 @@ void Estimator::StartWithoutSearch(JointState* state) {
   StartFirstLight();
 }
 
+void Estimator::StartFirstLight() {
+  first_priors_ = PriorsAt(MatchedLevel(first_.lobes));
+  first_.light = first_priors_.mean;
+}
+
+Status Estimator::EstimateBoth(JointState* state) {
+  StartAtMeanMaterial(state);
   SetLight(MakeLight(), true);
   MatchLight(state);
   FixGauge(state);
@@ -146,18 +152,18 @@ Status Estimator::EstimateLight(JointState* state) {
     width /= 2;
     height /= 2;
   }
-  // solver.method is the network's.
-  const JointMethod of_draw = JointMethod::kGaussNewton;
-  const std::function<bool()> cut_short = StopAfter(kProcessShare);
-  IBRDF_RETURN_IF_ERROR(
-      EstimateDraw(width, height, of_draw, kProcessShare, state));
-  if (cut_short() && same) {
   while (std::max(width, height) > kMostProcessSide) {
     width = std::max(width / 4 * 2, 8);
     height = std::max(height / 2, 4);
   }
   const bool same =
       width == problem_.map_width && height == problem_.map_height;
+  // solver.method is the network's.
+  const JointMethod of_draw = JointMethod::kGaussNewton;
+  const std::function<bool()> cut_short = StopAfter(kProcessShare);
+  IBRDF_RETURN_IF_ERROR(
+      EstimateDraw(width, height, of_draw, kProcessShare, state));
+  if (cut_short() && same) {
     // What time is left serves the draw better than a network.
     return MapRounds(of_draw, kMapShare, state);
   }
@@ -193,15 +199,15 @@ bool Estimator::CellsBlur(const JointState& state) {
   // Points in shadow are not joined. And what pixels tell beyond cells of an
   // estimated reflectance is as much its errors as the map.
   if (problem_.transport.visibility != nullptr || lobes_unknown()) return false;
+  if (StopAfter(1.0)()) return false;
+  // A dense method was found to take the coarser level.
+  if (MethodFor(JointBlocks::kLight) == JointMethod::kTrustRegion) return false;
   LevelPair pair = MakeLevelPair(problem_, kMapCells);
   if (pair.cells->observed.num_valid == 0) return false;
   const auto radiance = [&](Level* level) {
     const LevelObjective on = ObjectiveOn(level);
     on.objective->Evaluate(state);
     return on.objective->radiance();
-  if (StopAfter(1.0)()) return false;
-  // A dense method was found to take the coarser level.
-  if (MethodFor(JointBlocks::kLight) == JointMethod::kTrustRegion) return false;
   };
   const double error = JoiningError(*pair.pixels, radiance(pair.pixels.get()),
                                     radiance(pair.cells.get()), kMapCells);
