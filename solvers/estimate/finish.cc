@@ -65,6 +65,10 @@ StatusOr<Estimate> Estimator::Finish(JointState best) {
     last = std::move(first);
     end = start;
     end.stage = "end";
+    // They are of what was turned down.
+    covariance_.resize(0, 0);
+    map_std_ = Image();
+    tried_.clear();
     estimate.status = Status(StatusCode::kNoImprovement,
                              "the solver could not improve on its start");
   }

@@ -200,6 +200,10 @@ TEST_P(InverseRenderingTest, NoIterationsKeepTheStart) {
   const Estimate e = Solve();
   ExpectWhole(e);
   EXPECT_EQ(StatusCode::kNoImprovement, e.status.code());
+  // What was found of another end says nothing of the start.
+  EXPECT_TRUE(e.map_std.rgb.empty());
+  EXPECT_TRUE(e.lobe_covariance.empty());
+  EXPECT_TRUE(e.alternatives.empty());
 }
 
 // More pixels than are transported at once.
@@ -375,6 +379,44 @@ TEST_F(InverseRenderingTest, MirrorsMapsAreFoundFromFinerPixels) {
         });
     EXPECT_EQ(mirror, fine);
     EXPECT_LT(e.misfit, 0.05);
+  }
+}
+
+// No material explains the image, and the start is what there is to write.
+TEST_F(InverseRenderingTest, ASearchWithoutAnEndKeepsTheStart) {
+  for (float& colour : problem_.model.log_colours) colour = -1e4f;
+  const Estimate e = Solve();
+  ExpectWhole(e);
+  EXPECT_EQ(StatusCode::kNoImprovement, e.status.code());
+  EXPECT_FALSE(e.start.empty());
+}
+
+// A channel in which nothing is reflected says nothing of the light there.
+TEST_F(InverseRenderingTest, ABlackChannelTakesTheLevelOfTheOthers) {
+  SetKind(ProblemKind::kIllumination);
+  problem_.solver.max_iterations = 0;
+  const size_t nodes = problem_.known_brdf->values.size() / 3;
+  std::fill_n(problem_.known_brdf->values.begin(), nodes, 0.0f);
+  const Estimate e = Solve();
+  const float* rgb = e.map.rgb.data();
+  EXPECT_NEAR(std::log(rgb[0]), 0.5 * (std::log(rgb[1]) + std::log(rgb[2])),
+              1e-4);
+}
+
+TEST_F(InverseRenderingTest, AMethodThatIsTooDenseIsRefusedAtOnce) {
+  problem_.illumination_prior = IlluminationPrior::kUNet;
+  problem_.solver.method = SolverMethod::kTrustRegion;
+  for (const auto estimator :
+       {SolverEstimator::kMarginal, SolverEstimator::kMaximum}) {
+    problem_.solver.estimator = estimator;
+    int reports = 0;
+    const Status s =
+        SolveInverseRendering(
+            problem_, [&](const TraceEntry&, double) { ++reports; }, nullptr)
+            .status();
+    EXPECT_EQ(StatusCode::kInvalidInput, s.code());
+    EXPECT_NE(std::string::npos, s.message().find("solver.method"));
+    EXPECT_EQ(0, reports);
   }
 }
 
