@@ -71,7 +71,6 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
       parameters.data(), noise_, ScalesOf(y), mode_tolerance_, &mode,
       gradient != nullptr ? &by_parameter : nullptr);
   if (!value.ok) return false;
-  last_value_ = value;
   const Eigen::Map<const Eigen::VectorXd> whitened(y, all);
   Eigen::VectorXd wall = Eigen::VectorXd::Zero(n);
   *cost = value.cost + 0.5 * whitened.squaredNorm() +
@@ -81,6 +80,7 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
     trial_mode_ = std::move(mode);
   } else {
     *mode_ = std::move(mode);
+    last_value_ = value;
     wall += Eigen::Map<const Eigen::VectorXd>(by_parameter.data(), n);
     Eigen::Map<Eigen::VectorXd> out(gradient, all);
     out = whitened;

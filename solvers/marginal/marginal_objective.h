@@ -42,7 +42,8 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   LightScales ScalesOf(const double* y) const;
   std::vector<double> Whitened(const Eigen::VectorXd& parameters,
                                const LightScales& scales) const;
-  // Of the last evaluation that succeeded.
+  // Of the last evaluation with a gradient that succeeded: not of a trial that
+  // a line search turned down.
   const MarginalValue& last_value() const { return last_value_; }
 
  private:

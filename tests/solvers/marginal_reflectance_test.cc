@@ -8,6 +8,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "solvers/marginal/marginal_descent.h"
 #include "solvers/marginal/marginal_objective.h"
+#include "tests/render/shadow_testing.h"
 #include "tests/solvers/marginal_testing.h"
 
 namespace ibrdf {
@@ -87,6 +88,64 @@ TEST_F(MarginalReflectanceTest, GradientOfCookTorranceMatchesDifferences) {
     x.insert(x.end(), {0.02, -0.03, 0.0, 0.04});
     ExpectGradient(reflectance, x, {0, 2, 4, 5, 6, 7, 9, 10, 11, 12, 13});
   }
+}
+
+// Outside a cube, and in it, where no light of the map comes.
+TEST_F(MarginalReflectanceTest, CellsThatSeeNoLightAreLeftOut) {
+  const Scene scene = Scene::FromMesh(CubeMesh()).value();
+  Camera camera;
+  camera.type = CameraType::kPerspective;
+  camera.from = {4.0, 3.0, 5.0};
+  std::vector<ShadingPoint> points =
+      FindShadingPoints(scene, camera, 12, 12, Mask(), 1).value();
+  camera.from = {0.0, 0.0, 0.5};
+  camera.to = {0.1, 0.2, -1.0};
+  const std::vector<ShadingPoint> inside =
+      FindShadingPoints(scene, camera, 12, 12, Mask(), 1).value();
+  points.insert(points.end(), inside.begin(), inside.end());
+  for (size_t i = 0; i < points.size(); ++i) {
+    points[i].index = static_cast<int>(i);
+  }
+  const std::vector<double> radiance(3 * points.size(), 1.0);
+  resolution_.visibility =
+      std::make_shared<Visibility>(scene, points, VisibilityOptions());
+  const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
+                                        points, radiance, LightProcess(),
+                                        resolution_, 1);
+  const int kept = reflectance.cells().num_cells();
+  EXPECT_GT(kept, 1);
+  EXPECT_LT(kept,
+            GroupByNormal(points, radiance, resolution_.cells).num_cells());
+  ASSERT_EQ(3 * kept,
+            static_cast<int>(reflectance.cells().log_radiance.size()));
+  LightMode mode;
+  EXPECT_TRUE(reflectance
+                  .Evaluate(truth_.data(),
+                            Eigen::VectorXd::Constant(3 * kept, 0.01), {}, 1e-6,
+                            &mode, nullptr)
+                  .ok);
+}
+
+// A trial leaves what is said of the last point as it is.
+TEST_F(MarginalReflectanceTest, LastValueIsOfTheLastGradient) {
+  const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
+                                        points_, radiance_, LightProcess(),
+                                        resolution_, 1);
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  LightMode mode;
+  const MarginalObjective objective(
+      &reflectance, &prior,
+      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.01),
+      &mode);
+  std::vector<double> y(objective.NumParameters(), 0.1), gradient(y.size());
+  double cost = 0.0;
+  ASSERT_TRUE(objective.Evaluate(y.data(), &cost, gradient.data()));
+  const double kept = objective.last_value().cost;
+  y[0] += 1.0;
+  ASSERT_TRUE(objective.Evaluate(y.data(), &cost, nullptr));
+  EXPECT_EQ(kept, objective.last_value().cost);
+  ASSERT_TRUE(objective.Evaluate(y.data(), &cost, gradient.data()));
+  EXPECT_NE(kept, objective.last_value().cost);
 }
 
 TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
