@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -91,6 +93,50 @@ Status WithoutRow(const SolverRun& run, const std::string& message) {
   return Status(StatusCode::kInvalidInput,
                 message + "; " + run.of.name + " " + run.estimate +
                     " has no row, the same command goes on there");
+}
+
+// What all rows of a table share and none of them says; text.
+std::map<std::string, std::string> SharedSettings(
+    const SolverSweepOptions& options, const SolverSweep& sweep) {
+  std::map<std::string, std::string> settings = {
+      {"budget_seconds", NumberCell(options.solver_seconds)},
+      {"method", options.method},
+      {"noise", NumberCell(options.noise)},
+      {"seed", std::to_string(options.seed)},
+      {"size", std::to_string(options.size)}};
+  const auto keys_end = sweep.columns->begin() + sweep.key_columns;
+  for (auto s = settings.begin(); s != settings.end();) {
+    const bool said =
+        std::find(sweep.columns->begin(), keys_end, s->first) != keys_end;
+    s = said ? settings.erase(s) : std::next(s);
+  }
+  return settings;
+}
+
+// Whether the rows that are there, or that others write, have these settings;
+// the first run writes them down.
+Status CheckSettings(const SolverSweepOptions& options,
+                     const SolverSweep& sweep) {
+  const std::string path = options.out + "/settings.json";
+  const std::map<std::string, std::string> settings =
+      SharedSettings(options, sweep);
+  if (!fs::exists(path)) {
+    return WriteFileAtomically(path, nlohmann::json(settings).dump(2) + "\n");
+  }
+  const StatusOr<std::string> text = ReadFile(path, kMaxJsonBytes);
+  if (!text.ok()) return text.status();
+  const nlohmann::json begun = nlohmann::json::parse(*text, nullptr, false);
+  for (const auto& [name, value] : settings) {
+    const bool there =
+        begun.is_object() && begun.contains(name) && begun[name].is_string();
+    const std::string before =
+        there ? begun[name].get<std::string>() : "nothing";
+    if (before == value) continue;
+    return InvalidInput(path + ": " + name,
+                        "the sweep was begun with " + before + ", found " +
+                            value + "; expected the same or another --out");
+  }
+  return OkStatus();
 }
 
 Status RunOne(const SolverSweepOptions& options, const SolverSweep& sweep,
@@ -193,6 +239,7 @@ Status RunSolverSweep(const SolverSweepOptions& options,
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) return InvalidInput(options.out, error.message());
+  IBRDF_RETURN_IF_ERROR(CheckSettings(options, sweep));
   const std::string results = options.out + "/results.csv";
   const StatusOr<std::vector<ResultsRow>> present =
       ReadResults(results, *sweep.columns);

@@ -65,7 +65,9 @@ Status SetConstantMap(const Image& truth, NamedRow* row);
 // writes out/results.md. A solver that fails gets a row whose `status` says
 // how; one that was interrupted gets none and ends the sweep (kInterrupted).
 // So does one that misses a file which has gone since the sweep began, or that
-// cannot write its results (kInvalidInput): the next call runs it again.
+// cannot write its results (kInvalidInput): the next call runs it again. A
+// sweep begun with another size, noise, seed, budget or method, as
+// out/settings.json says, is refused (kInvalidInput).
 Status RunSolverSweep(const SolverSweepOptions& options,
                       const SolverSweep& sweep);
 

@@ -121,6 +121,34 @@ TEST_F(JointSweepTest, FilesThatGoOrCannotBeWrittenEndTheSweep) {
   EXPECT_EQ("ok", Cell(Rows()[1], "status"));
 }
 
+// Rows do not say what they were made with.
+TEST_F(JointSweepTest, OtherSettingsDoNotResumeASweep) {
+  options_.map_names = {"a"};
+  ASSERT_TRUE(Run().ok());
+  const auto expect_refused = [&](const std::string& setting) {
+    options_.map_names = {"a", "b"};
+    const Status s = Run();
+    EXPECT_EQ(StatusCode::kInvalidInput, s.code()) << setting;
+    EXPECT_NE(std::string::npos, s.message().find("settings.json: " + setting))
+        << s.message();
+    Apply(&options_);
+  };
+  options_.size = 9;
+  expect_refused("size");
+  options_.noise *= 2.0;
+  expect_refused("noise");
+  options_.noise /= 2.0;
+  ++options_.seed;
+  expect_refused("seed");
+  --options_.seed;
+  options_.solver_seconds += 1.0;
+  expect_refused("budget_seconds");
+  options_.solver_seconds -= 1.0;
+  EXPECT_EQ(1u, Calls());
+  ASSERT_TRUE(Run().ok());
+  EXPECT_EQ(2u, Calls());
+}
+
 TEST_F(JointSweepTest, ListsCases) {
   EXPECT_EQ(3u, JointSweep(options_).value().runs.size());
   options_.only_index = 2;
