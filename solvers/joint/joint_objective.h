@@ -59,7 +59,10 @@ class JointObjective {
   const JointTerms& terms() const { return terms_; }
   bool lobes_unknown() const { return lobes_.has_value(); }
   bool light_unknown() const { return light_.has_value(); }
-  void set_likelihood(const RobustLogLikelihood& l) { terms_.likelihood = l; }
+  void set_likelihood(const RobustLogLikelihood& l) {
+    terms_.likelihood = l;
+    has_point_ = false;
+  }
   void set_light_mean(std::vector<float> mean);
 
   // Which unknown blocks derivatives are taken in and solvers move; at first

@@ -286,5 +286,15 @@ TEST(JointObjective, MeanAndScaleMayChange) {
   EXPECT_EQ(after.misfit, before.misfit);
 }
 
+// Its weights would be of the other likelihood.
+TEST(JointObjectiveDeathTest, AnotherLikelihoodLeavesNoPoint) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  JointScene scene(true);
+  JointObjective objective(scene.Terms(false));
+  objective.Linearise(scene.State(0.3));
+  objective.set_likelihood(objective.terms().likelihood);
+  EXPECT_DEATH(objective.Product(Eigen::VectorXd::Zero(objective.size())), "");
+}
+
 }  // namespace
 }  // namespace ibrdf
