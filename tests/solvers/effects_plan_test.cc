@@ -103,7 +103,7 @@ TEST_F(EffectsPlanTest, PredictionIsTheErrorOfTheImage) {
 }
 
 TEST_F(EffectsPlanTest, TheUserOverrules) {
-  EXPECT_FALSE(Render({"effects=[perspective]"})->effects.visibility);
+  EXPECT_FALSE(Render({"effects=[reflectance_map]"})->effects.visibility);
   const RenderedScene shadows = Render({"effects=[visibility]"}).value();
   EXPECT_TRUE(shadows.effects.visibility);
   EXPECT_EQ(0, shadows.effects.bounces);
