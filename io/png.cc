@@ -204,4 +204,12 @@ Status WritePng(const Rgb8Image& image, const std::string& path) {
   return WriteFileAtomically(path, *bytes);
 }
 
+Status WriteMask(const Mask& mask, const std::string& path) {
+  Rgb8Image picture(mask.width, mask.height);
+  for (size_t k = 0; k < picture.rgb.size(); ++k) {
+    picture.rgb[k] = mask.inside[k / 3] != 0 ? 255 : 0;
+  }
+  return WritePng(picture, path);
+}
+
 }  // namespace ibrdf

@@ -25,4 +25,7 @@ StatusOr<std::string> EncodePng(const Rgb8Image& image);
 // Writes them. Whole or absent.
 Status WritePng(const Rgb8Image& image, const std::string& path);
 
+// White inside, black elsewhere.
+Status WriteMask(const Mask& mask, const std::string& path);
+
 }  // namespace ibrdf

@@ -13,7 +13,6 @@
 #include "solvers/quadrature_level.h"
 #include "solvers/render_scene.h"
 #include "solvers/solve_problem.h"
-#include "solvers/stopwatch.h"
 
 namespace ibrdf {
 namespace {
@@ -71,7 +70,6 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
                                             uint64_t default_seed,
                                             int num_threads) {
   IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
-  const Stopwatch clock;
   InverseProblem inverse;
   inverse.kind = problem.kind;
   inverse.lobes = problem.reflectance.lobes;
@@ -161,7 +159,6 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
           *scene, inverse.points, inverse.transport.visibility, emitters);
     }
   }
-  inverse.seconds_spent = clock.Seconds();
   return inverse;
 }
 

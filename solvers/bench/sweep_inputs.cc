@@ -39,11 +39,7 @@ Status WriteInput(const SweepOptions& options, const SweepCase& c,
   fs::remove(SettingsPath(options, c), error);
   AddNoise(options.noise, options.seed, &image);
   IBRDF_RETURN_IF_ERROR(WriteImage(image, folder + "/input.exr"));
-  Rgb8Image picture(mask.width, mask.height);
-  for (size_t i = 0; i < picture.rgb.size(); ++i) {
-    picture.rgb[i] = mask.inside[i / 3] != 0 ? 255 : 0;
-  }
-  IBRDF_RETURN_IF_ERROR(WritePng(picture, folder + "/mask.png"));
+  IBRDF_RETURN_IF_ERROR(WriteMask(mask, folder + "/mask.png"));
   return WriteFileAtomically(SettingsPath(options, c),
                              InputSettings(options, c));
 }

@@ -3,7 +3,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -34,21 +33,12 @@ int BrightSamplesPerSide(int map_height) {
   return 2 * static_cast<int>(std::ceil(texel / kBrightSpacing));
 }
 
-double Now() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 }  // namespace
 
 Estimator::Estimator(const InverseProblem& problem,
                      const SolveProgress& progress,
                      const std::atomic<bool>* stop)
-    : problem_(problem),
-      progress_(progress),
-      stop_(stop),
-      start_(Now() - problem.seconds_spent) {}
+    : problem_(problem), progress_(progress), stop_(stop) {}
 
 StatusOr<Estimate> Estimator::Run() {
   IBRDF_RETURN_IF_ERROR(Prepare());
@@ -72,7 +62,9 @@ StatusOr<Estimate> Estimator::Run() {
   return Finish(state);
 }
 
-double Estimator::Elapsed() const { return Now() - start_; }
+double Estimator::Elapsed() const {
+  return problem_.seconds_spent + clock_.Seconds();
+}
 
 std::function<bool()> Estimator::StopAfter(double share) const {
   const double now = Elapsed();

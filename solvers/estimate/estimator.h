@@ -19,6 +19,7 @@
 #include "solvers/marginal/reflectance_search.h"
 #include "solvers/material_prior.h"
 #include "solvers/reflectance_spread.h"
+#include "solvers/stopwatch.h"
 
 namespace ibrdf {
 
@@ -216,7 +217,7 @@ class Estimator {
   const InverseProblem& problem_;
   const SolveProgress& progress_;
   const std::atomic<bool>* stop_;
-  const double start_;
+  const Stopwatch clock_;
   RobustLogLikelihood likelihood_;
   // Every pixel; pixels of like normals joined, for the light; some pixels, for
   // the reflectance under known light.

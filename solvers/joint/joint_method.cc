@@ -2,31 +2,15 @@
 
 #include <glog/logging.h>
 
-#include <chrono>
-
 #include "solvers/joint/method_run.h"
 
 namespace ibrdf {
-namespace {
-
-double Now() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-}  // namespace
 
 MethodRun::MethodRun(JointObjective* objective, const JointState& start,
                      const JointMethodOptions& options)
-    : objective_(objective),
-      options_(options),
-      start_time_(Now()),
-      best_(start) {
+    : objective_(objective), options_(options), best_(start) {
   start_cost_ = best_cost_ = objective->Evaluate(start);
 }
-
-double MethodRun::Seconds() const { return Now() - start_time_; }
 
 bool MethodRun::Stop() {
   stopped_ = stopped_ || Seconds() >= options_.seconds ||
@@ -45,22 +29,6 @@ void MethodRun::Report() {
   if (options_.callback) {
     options_.callback({iterations_, Seconds(), best_cost_});
   }
-}
-
-const char* JointMethodName(JointMethod method) {
-  switch (method) {
-    case JointMethod::kAlternating:
-      return "alternating";
-    case JointMethod::kGaussNewton:
-      return "gauss_newton";
-    case JointMethod::kLbfgs:
-      return "lbfgs";
-    case JointMethod::kAdam:
-      return "adam";
-    case JointMethod::kTrustRegion:
-      return "trust_region";
-  }
-  LOG(FATAL) << "no such method";
 }
 
 Status CheckJointMethod(JointMethod method, const JointObjective& objective) {

@@ -25,8 +25,6 @@ enum class JointMethod {
   kTrustRegion,
 };
 
-const char* JointMethodName(JointMethod method);
-
 // One line of progress.
 struct JointIteration {
   int iteration = 0;     // from 1

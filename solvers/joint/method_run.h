@@ -2,6 +2,7 @@
 // best iterate. Internal.
 #pragma once
 #include "solvers/joint/joint_method.h"
+#include "solvers/stopwatch.h"
 
 namespace ibrdf {
 
@@ -18,7 +19,7 @@ class MethodRun {
   const JointCost& start_cost() const { return start_cost_; }
   int iterations() const { return iterations_; }
   bool stopped() const { return stopped_; }
-  double Seconds() const;
+  double Seconds() const { return clock_.Seconds(); }
 
   // Whether to end now, by the clock or the caller's wish.
   bool Stop();
@@ -30,7 +31,7 @@ class MethodRun {
  private:
   JointObjective* objective_;
   const JointMethodOptions& options_;
-  const double start_time_;
+  const Stopwatch clock_;
   JointState best_;
   JointCost start_cost_, best_cost_;
   int iterations_ = 0;

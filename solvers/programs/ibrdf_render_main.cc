@@ -73,14 +73,6 @@ Rgb8Image Preview(const Image& image, const Mask& mask) {
   return out;
 }
 
-Rgb8Image MaskImage(const Mask& mask) {
-  Rgb8Image out(mask.width, mask.height);
-  for (size_t k = 0; k < out.rgb.size(); ++k) {
-    out.rgb[k] = mask.inside[k / 3] != 0 ? 255 : 0;
-  }
-  return out;
-}
-
 Status RequireExtension(const std::string& path, const std::string& wanted,
                         const std::string& option) {
   if (path.empty() || FileExtension(path) == wanted) return OkStatus();
@@ -160,7 +152,7 @@ Status Run(const std::string& scene, const std::vector<std::string>& overrides,
         WritePng(Preview(rendered->image, rendered->mask), preview));
   }
   if (!out.mask.empty()) {
-    IBRDF_RETURN_IF_ERROR(WritePng(MaskImage(rendered->mask), out.mask));
+    IBRDF_RETURN_IF_ERROR(WriteMask(rendered->mask, out.mask));
   }
   if (!out.illumination.empty()) {
     IBRDF_RETURN_IF_ERROR(WriteExr(rendered->illumination, out.illumination));

@@ -5,12 +5,29 @@
 #include <vector>
 
 #include "ibrdf/brdf/flow_lobes.h"
+#include "solvers/joint/joint_method.h"
 #include "solvers/joint/joint_objective.h"
 #include "solvers/joint/process_prior.h"
 #include "tests/solvers/solver_testing.h"
 
 namespace ibrdf {
 namespace testing {
+
+inline const char* JointMethodName(JointMethod method) {
+  switch (method) {
+    case JointMethod::kAlternating:
+      return "alternating";
+    case JointMethod::kGaussNewton:
+      return "gauss_newton";
+    case JointMethod::kLbfgs:
+      return "lbfgs";
+    case JointMethod::kAdam:
+      return "adam";
+    case JointMethod::kTrustRegion:
+      return "trust_region";
+  }
+  return "";
+}
 
 // So few weights that dense matrices of them take no time.
 inline IlluminationUnetOptions TiniestUnetOptions() {
