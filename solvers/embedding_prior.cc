@@ -27,7 +27,6 @@ std::vector<MaterialCode> MaterialCodes(const NeuralBrdfModel& model) {
       for (int k = 0; k < size; ++k) {
         m.code[k] += model.codes[static_cast<size_t>(i + c) * size + k] / 3.0;
       }
-      m.log_colour += model.log_colours[i + c] / 3.0;
     }
     materials.push_back(std::move(m));
   }

@@ -9,11 +9,10 @@
 
 namespace ibrdf {
 
-// A training material: mean code and mean log colour of its channels.
+// A training material: mean code of its channels.
 struct MaterialCode {
   std::string name;
   std::vector<double> code;  // [code_size], in the unit ball
-  double log_colour = 0.0;
 };
 std::vector<MaterialCode> MaterialCodes(const NeuralBrdfModel& model);
 

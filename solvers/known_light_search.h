@@ -1,6 +1,5 @@
 // Where a reflectance's estimate under known light begins.
 #pragma once
-#include <functional>
 #include <string>
 #include <vector>
 

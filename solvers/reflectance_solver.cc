@@ -61,17 +61,6 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
   return summary.final_cost;
 }
 
-double LobePriorCostValue(const LobeModel& lobes, const LobePrior& prior,
-                          const std::vector<double>& parameters) {
-  const LobePriorCost cost(lobes.num_lobes(), lobes.code_size(), prior);
-  std::vector<double> residuals(cost.num_residuals());
-  const double* blocks[] = {parameters.data()};
-  cost.Evaluate(blocks, residuals.data(), nullptr);
-  double sum = 0.0;
-  for (const double r : residuals) sum += r * r;
-  return sum / 2;
-}
-
 std::vector<double> GaugeShift(const LobeModel& lobes, const LobePrior& prior,
                                const std::vector<double>& parameters,
                                const double* mean_log_radiance,

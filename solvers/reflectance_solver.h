@@ -32,10 +32,6 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
                         const ReflectanceStepOptions& options,
                         std::vector<double>* parameters);
 
-// 1/2 sum of squared residuals of the prior.
-double LobePriorCostValue(const LobeModel& lobes, const LobePrior& prior,
-                          const std::vector<double>& parameters);
-
 // The gauge (s R, L / s), one s per channel, leaves the image as it is and is
 // fixed by the colours' prior and by natural light being nearly grey:
 // minimises, over shifts d_c of the lobes' log colours (and -d_c of the map's

@@ -18,7 +18,6 @@ class LightBlock {
              std::vector<LightPrior*> priors);
 
   int num_parameters() const { return model_->num_parameters(); }
-  int num_texel_values() const { return model_->num_outputs(); }
   const std::vector<double>& inverse_variance() const {
     return inverse_variance_;
   }

@@ -20,9 +20,6 @@ class LobeBlock {
             const LobePrior& prior);
 
   int num_parameters() const { return lobes_->num_parameters(); }
-  const LobeModel& lobes() const { return *lobes_; }
-  const Transport& transport() const { return *transport_; }
-  const LobePrior& prior() const { return prior_; }
   // Of the Gaussians of codes and colours.
   const std::vector<double>& inverse_variance() const {
     return inverse_variance_;

@@ -11,6 +11,18 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
+// 1/2 sum of squared residuals of the prior.
+double LobePriorCostValue(const LobeModel& lobes, const LobePrior& prior,
+                          const std::vector<double>& parameters) {
+  const LobePriorCost cost(lobes.num_lobes(), lobes.code_size(), prior);
+  std::vector<double> residuals(cost.num_residuals());
+  const double* blocks[] = {parameters.data()};
+  cost.Evaluate(blocks, residuals.data(), nullptr);
+  double sum = 0.0;
+  for (const double r : residuals) sum += r * r;
+  return sum / 2;
+}
+
 class ReflectanceSolverTest : public ::testing::Test {
  protected:
   ReflectanceSolverTest() {
