@@ -20,7 +20,7 @@ class IlluminationModel {
 
   // A constant map of the given log radiance per channel.
   virtual std::vector<float> ConstantMap(const double* log_radiance) const = 0;
-  // Standard deviation of each parameter under its prior, about PriorMean.
+  // Standard deviation of each parameter under its prior, about its mean.
   virtual std::vector<float> PriorStd() const = 0;
 
   virtual void Forward(const float* parameters, float* log_radiance) = 0;

@@ -57,7 +57,7 @@ struct TraceEntry {
   std::string stage;
   double seconds = 0.0;     // with those spent before
   double scale = 0.0;       // b of the likelihood then
-  int64_t pixels = 0;       // that took part: the first stages thin them
+  int64_t pixels = 0;  // that took part, joined ones as one
   double cost = 0.0;        // likelihood + priors, nats
   double likelihood = 0.0;  // sum |log E - log I| / b, smoothed
   double reflectance_prior = 0.0;
@@ -82,7 +82,8 @@ struct Estimate {
   double spread = std::numeric_limits<double>::quiet_NaN();
   std::vector<Alternative> alternatives;  // joint problems
   // Standard deviation of log radiance given the reflectance, at the
-  // resolution of the search; joint problems with SolverEstimator::kMarginal.
+  // resolution of the search; empty where there was none or its end was not
+  // kept.
   Image map_std;
   MerlTable brdf;      // empty if known
   Image map;           // [H, W]; the known one if known

@@ -24,8 +24,9 @@ std::vector<double> RadianceOf(const Image& image,
 std::unique_ptr<Level> MakeFullLevel(const InverseProblem& problem);
 
 // Points of like normals joined, cells_across > 0 of the diameter of the disc
-// of normals; all pixels where the image has too few away from the limb. Points
-// in shadow have no like: they are thinned by rows and columns.
+// of normals; all pixels where the image has none away from the limb. With
+// shadows, which points of like normals do not share, some pixels as they are:
+// every so many rows and columns.
 std::unique_ptr<Level> MakeCellLevel(const InverseProblem& problem,
                                      int cells_across);
 
