@@ -352,8 +352,8 @@ TEST_F(InverseRenderingTest, MirrorsMapsAreFoundFromFinerPixels) {
   problem_.illumination_prior = IlluminationPrior::kProcess;
   problem_.points = SpherePoints(96);
   problem_.image = Image(96, 96);
-  problem_.solver.max_iterations = 12;
-  problem_.solver.tolerance = 3e-3;
+  problem_.solver.max_iterations = 30;
+  problem_.solver.tolerance = 1e-4;
   problem_.transport.grid.h = 24;
   Image map = map_;
   for (int t = 0; t < 128; t += 5) map.rgb[3 * t + 1] *= 20.0f;
