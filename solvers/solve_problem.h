@@ -33,11 +33,11 @@ Status CheckNothingReplaced(const Problem& problem,
                             const std::vector<std::string>& paths);
 
 // Writes result.json, brdf.binary, brdf.json, illumination.exr,
-// illumination_log_std.exr (where a search found it), render.exr, residual.exr, the PNG
-// previews and, last, report.html into `folder`, making it; each file whole or
-// absent. result.json and report.html of an earlier run go first: where one is,
-// all else is of its run. `metrics_text`, where given, receives the metrics,
-// one a line.
+// illumination_log_std.exr (where a search found it), render.exr, residual.exr,
+// the PNG previews and, last, report.html into `folder`, making it; each file
+// whole or absent. result.json and report.html of an earlier run go first:
+// where one is, all else is of its run. `metrics_text`, where given, receives
+// the metrics, one a line.
 Status WriteResults(const Problem& problem, const InverseProblem& inverse,
                     const Truth& truth, const Estimate& estimate,
                     const std::string& folder, std::string* metrics_text);

@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "ibrdf/image/rgb8_image.h"
 #include "io/exr.h"
