@@ -16,7 +16,7 @@ constexpr size_t kThinPoints = 4000;  // about as many are left
 constexpr int kBlock = 8;
 constexpr int kOfBlocks = 3;
 // Of these, at most about so many pixels: they are transported at once.
-constexpr size_t kMostPairPoints = 32768;
+constexpr size_t kMostPairPoints = 8192;
 
 std::unique_ptr<Level> MakeLevel(std::vector<ShadingPoint> points,
                                  const std::vector<double>& radiance) {

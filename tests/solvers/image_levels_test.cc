@@ -56,8 +56,8 @@ TEST(LevelPair, OfALargeImageIsThinner) {
   std::fill(problem.image.rgb.begin(), problem.image.rgb.end(), 1.0f);
   ASSERT_GT(problem.points.size() / 9, 40000u);
   const LevelPair pair = MakeLevelPair(problem, kAcross);
-  EXPECT_LT(pair.pixels->points.size(), 33000u);
-  EXPECT_GT(pair.pixels->points.size(), 8000u);
+  EXPECT_LT(pair.pixels->points.size(), 9000u);
+  EXPECT_GT(pair.pixels->points.size(), 4000u);
   EXPECT_GT(pair.cells->points.size(), 300u);
 }
 
