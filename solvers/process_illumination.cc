@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "solvers/marginal/light_lamps.h"
@@ -13,6 +14,9 @@ namespace {
 
 // Of a factor's diagonal: rounding of the highest frequencies at the poles.
 constexpr double kJitter = 1e-10;
+
+// Texels: a process of more would take minutes and gigabytes.
+constexpr int kMostSide = 256;
 
 class ProcessIllumination final : public IlluminationModel {
  public:
@@ -158,6 +162,14 @@ std::unique_ptr<IlluminationModel> MakeProcessIllumination(
     const LightScales& scales, const std::vector<Eigen::Vector3d>& lamps) {
   return std::make_unique<ProcessIllumination>(width, height, process, scales,
                                                lamps);
+}
+
+MapSize ProcessSize(MapSize size) {
+  while (std::max(size.width, size.height) > kMostSide) {
+    size.width = std::max(size.width / 4 * 2, 8);
+    size.height = std::max(size.height / 2, 4);
+  }
+  return size;
 }
 
 }  // namespace ibrdf

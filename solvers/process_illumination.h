@@ -6,6 +6,7 @@
 
 #include "solvers/illumination_model.h"
 #include "solvers/marginal/light_process.h"
+#include "solvers/resample_planes.h"
 
 namespace ibrdf {
 
@@ -22,5 +23,9 @@ namespace ibrdf {
 std::unique_ptr<IlluminationModel> MakeProcessIllumination(
     int width, int height, const LightProcess& process,
     const LightScales& scales, const std::vector<Eigen::Vector3d>& lamps = {});
+
+// The size of a draw for a map of `size`: that, or halved until no side is
+// above 256; width even.
+MapSize ProcessSize(MapSize size);
 
 }  // namespace ibrdf

@@ -3,7 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "ibrdf/light/environment_map.h"
 #include "solvers/estimate/estimator.h"
 #include "solvers/joint/process_prior.h"
 #include "solvers/log_map_fit.h"
@@ -24,24 +23,8 @@ constexpr double kBlurredShare = 0.2;
 // Radiance under a map of 1 that no material leaves.
 constexpr double kBlack = 1e-12;
 // Maps are first found at this size or below, where their sides halve; in no
-// case at a larger one than the most.
+// case at a larger one than a process's (ProcessSize).
 constexpr int kProcessWidth = 128;
-constexpr int kMostProcessSide = 256;
-
-// [3][height][width] of a map of log radiance, bilinear between its centres.
-std::vector<float> Resampled(const Image& map, int height, int width) {
-  const size_t texels = static_cast<size_t>(height) * width;
-  std::vector<float> out(3 * texels);
-  for (size_t t = 0; t < texels; ++t) {
-    const Eigen::Array3d value = LookUpMap(
-        map, MapDirection(static_cast<double>(t / width) + 0.5,
-                          static_cast<double>(t % width) + 0.5, height, width));
-    for (size_t c = 0; c < 3; ++c) {
-      out[c * texels + t] = static_cast<float>(value[c]);
-    }
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -144,44 +127,41 @@ Status Estimator::EstimateLight(JointState* state) {
     return MapRounds(method, kMapShare, state);
   }
   if (!lobes_unknown()) SearchLight();
-  int width = problem_.map_width, height = problem_.map_height;
+  const MapSize asked = {problem_.map_width, problem_.map_height};
   if (problem_.illumination_prior == IlluminationPrior::kProcess) {
-    return EstimateDraw(width, height, method, kMapShare, state);
+    return EstimateDraw(asked, method, kMapShare, state);
   }
-  while (width > kProcessWidth && width % 4 == 0 && height % 2 == 0) {
-    width /= 2;
-    height /= 2;
+  MapSize size = asked;
+  while (size.width > kProcessWidth && size.width % 4 == 0 &&
+         size.height % 2 == 0) {
+    size.width /= 2;
+    size.height /= 2;
   }
-  while (std::max(width, height) > kMostProcessSide) {
-    width = std::max(width / 4 * 2, 8);
-    height = std::max(height / 2, 4);
-  }
-  const bool same =
-      width == problem_.map_width && height == problem_.map_height;
+  size = ProcessSize(size);
   // solver.method is the network's.
   const JointMethod of_draw = JointMethod::kGaussNewton;
   const std::function<bool()> cut_short = StopAfter(kProcessShare);
-  IBRDF_RETURN_IF_ERROR(
-      EstimateDraw(width, height, of_draw, kProcessShare, state));
-  if (cut_short() && same) {
+  IBRDF_RETURN_IF_ERROR(EstimateDraw(size, of_draw, kProcessShare, state));
+  if (cut_short() && size == asked) {
     // What time is left serves the draw better than a network.
     return MapRounds(of_draw, kMapShare, state);
   }
   return EstimateNetwork(state);
 }
 
-Status Estimator::EstimateDraw(int width, int height, JointMethod method,
-                               double share, JointState* state) {
-  SetLight(MakeProcessIllumination(width, height, LightProcess(), light_scales_,
-                                   lamps_),
+Status Estimator::EstimateDraw(MapSize size, JointMethod method, double share,
+                               JointState* state) {
+  SetLight(MakeProcessIllumination(size.width, size.height, LightProcess(),
+                                   light_scales_, lamps_),
            false);
   MatchLight(state);
   StartFirstLight();
   Report("constant map", cells_.get(), *state);
-  if (mode_.num_pixels() > 0) {
+  if (!mode_.empty()) {
     LogMapFitOptions o;
     o.should_stop = StopAfter(kProcessShare / 2);
-    FitLogMap(Resampled(mode_, height, width), o, light_.get(), &state->light);
+    FitLogMap(ResamplePlanes(mode_, mode_size_, size), o, light_.get(),
+              &state->light);
   }
   return MapRounds(method, share, state);
 }
@@ -225,15 +205,13 @@ Status Estimator::EstimateNetwork(JointState* state) {
   StartFirstLight();
   LogMapFitOptions o;
   o.should_stop = StopAfter(kMapShare / 2);
-  FitLogMap(Resampled(FromPlanes(log_map, process->width(), process->height()),
-                      light_->height(), light_->width()),
-            o, light_.get(), &state->light);
+  const MapSize size = {light_->width(), light_->height()};
+  const MapSize drawn = {process->width(), process->height()};
+  FitLogMap(ResamplePlanes(log_map, drawn, size), o, light_.get(),
+            &state->light);
   Report("network", cells_.get(), *state);
   // A draw of another size is no map to fall back on.
-  const double most_misfit = process->width() == problem_.map_width &&
-                                     process->height() == problem_.map_height
-                                 ? kWorseMisfit * draw_misfit
-                                 : 0.0;
+  const double most_misfit = drawn == size ? kWorseMisfit * draw_misfit : 0.0;
   IBRDF_RETURN_IF_ERROR(Rounds("network", MethodFor(JointBlocks::kLight),
                                JointBlocks::kLight, kMapShare, state,
                                most_misfit));

@@ -141,9 +141,11 @@ std::vector<double> Estimator::SearchRadiance() const {
 void Estimator::KeepLight(const ReflectanceSearchResult& found, double level) {
   light_scales_ = found.scales;
   lamps_ = found.lamps;
-  std::vector<double> log_radiance = found.log_radiance;
-  for (double& v : log_radiance) v -= level;
-  mode_ = FromPlanes(log_radiance, found.map_width, found.map_height);
+  mode_.clear();
+  for (const double v : found.log_radiance) {
+    mode_.push_back(static_cast<float>(v - level));
+  }
+  mode_size_ = {found.map_width, found.map_height};
   map_std_ =
       FromPlanes(found.log_radiance_std, found.map_width, found.map_height);
 }

@@ -19,6 +19,7 @@
 #include "solvers/marginal/reflectance_search.h"
 #include "solvers/material_prior.h"
 #include "solvers/reflectance_spread.h"
+#include "solvers/resample_planes.h"
 #include "solvers/stopwatch.h"
 
 namespace ibrdf {
@@ -162,7 +163,7 @@ class Estimator {
   Status EstimateLight(JointState* state);
   // As a draw of the light's process, whose parameters are as good as whitened
   // and take a tenth of the time of a network's.
-  Status EstimateDraw(int width, int height, JointMethod method, double share,
+  Status EstimateDraw(MapSize size, JointMethod method, double share,
                       JointState* state);
   // The map on joined pixels, and on those of a finer joining where that tells
   // more.
@@ -241,7 +242,10 @@ class Estimator {
   std::string start_name_;
   std::vector<TriedMaterial> tried_;
   Eigen::MatrixXd covariance_;
-  Image mode_, map_std_;  // of log radiance, at the search's resolution
+  // Of log radiance, at the search's resolution.
+  std::vector<float> mode_;  // [3][height][width]
+  MapSize mode_size_;
+  Image map_std_;
   std::vector<TraceEntry> trace_;
   int iterations_ = 0;
 };
