@@ -1,15 +1,16 @@
 # Install and export, so that another project can find_package(ibrdf).
 include(CMakePackageConfigHelpers)
 
-install(TARGETS ibrdf_core ibrdf_io ibrdf_solvers ibrdf_training
-        EXPORT ibrdfTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/ibrdf
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/io ${PROJECT_SOURCE_DIR}/solvers
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
-        PATTERN "solvers/bench" EXCLUDE)
+# One include root, ibrdf/: src/ibrdf has links to io and solvers in its place.
+foreach(folder src/ibrdf/ io solvers)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ibrdf
+          FILES_MATCHING PATTERN "*.h"
+          PATTERN src/ibrdf/io EXCLUDE
+          PATTERN src/ibrdf/solvers EXCLUDE
+          PATTERN solvers/bench EXCLUDE
+          PATTERN solvers/programs EXCLUDE)
+endforeach()
 install(EXPORT ibrdfTargets NAMESPACE ibrdf::
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ibrdf)
 configure_package_config_file(cmake/ibrdf-config.cmake.in

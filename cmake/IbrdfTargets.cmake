@@ -1,5 +1,5 @@
-# What every target of this project shares: warnings, sanitizers, and kernels
-# compiled once per instruction set.
+# What every target of this project shares: warnings, sanitizers, a library per
+# folder, a test program per folder, kernels compiled once per instruction set.
 
 add_library(ibrdf_warnings INTERFACE)
 target_compile_options(ibrdf_warnings INTERFACE -Wall -Wextra -Wpedantic
@@ -30,14 +30,79 @@ if(IBRDF_BUILD_FUZZERS)
 endif()
 add_compile_definitions($<$<CONFIG:Debug>:EIGEN_INITIALIZE_MATRICES_BY_NAN>)
 
-# The headers that most files of `target` read, in place of once for each file,
-# where half of the time to compile it goes. Files include what they use all the
+# Headers that many files read are read once for all targets of a group (half of
+# the time to compile a file goes there). Files include what they use all the
 # same: the preset `tidy` compiles them without.
-function(ibrdf_precompile_headers target)
-  if(IBRDF_PRECOMPILE_HEADERS)
+#   group  name of the group, which its first target owns
+#   ARGN   headers
+function(ibrdf_precompile_headers target group)
+  if(NOT IBRDF_PRECOMPILE_HEADERS)
+    return()
+  endif()
+  if(TARGET ibrdf_headers_of_${group})
+    get_target_property(owner ibrdf_headers_of_${group} OWNER)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  else()
     target_precompile_headers(${target} PRIVATE <algorithm> <cmath>
       <functional> <map> <memory> <optional> <string> <vector> ${ARGN})
+    add_library(ibrdf_headers_of_${group} INTERFACE)
+    set_target_properties(ibrdf_headers_of_${group} PROPERTIES OWNER ${target})
   endif()
+endfunction()
+
+# The library ibrdf::<name> of the folder it is called in.
+#   SOURCES      its files, all of them
+#   KERNELS      those compiled once per instruction set
+#   PUBLIC       what its headers include
+#   PRIVATE      what its sources include besides
+#   NO_INSTALL   for the project's own programs alone
+# A library without sources is its headers.
+function(ibrdf_add_library name)
+  cmake_parse_arguments(arg "NO_INSTALL" "" "SOURCES;KERNELS;PUBLIC;PRIVATE"
+                        ${ARGN})
+  set(target ibrdf_lib_${name})
+  if(NOT arg_SOURCES)
+    add_library(${target} INTERFACE)
+    target_compile_features(${target} INTERFACE cxx_std_17)
+    target_link_libraries(${target} INTERFACE ${arg_PUBLIC})
+    set(scope INTERFACE)
+  else()
+    add_library(${target} STATIC ${arg_SOURCES})
+    target_compile_features(${target} PUBLIC cxx_std_17)
+    target_link_libraries(${target} PUBLIC ${arg_PUBLIC}
+      PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:ibrdf_warnings>)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    set(scope PUBLIC)
+    if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/solvers/")
+      ibrdf_precompile_headers(${target} solvers <Eigen/Dense>
+                               <ceres/ceres.h> <glog/logging.h>)
+    else()
+      ibrdf_precompile_headers(${target} core <Eigen/Dense> <glog/logging.h>)
+    endif()
+    if(arg_KERNELS)
+      ibrdf_add_simd_kernels(${target} ${arg_KERNELS})
+    endif()
+  endif()
+  add_library(ibrdf::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name}
+                        OUTPUT_NAME ibrdf_${name})
+  target_include_directories(${target} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  if(NOT arg_NO_INSTALL)
+    install(TARGETS ${target} EXPORT ibrdfTargets
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  endif()
+endfunction()
+
+# The libraries ARGN under one name, for users of many of them.
+function(ibrdf_add_umbrella name)
+  list(TRANSFORM ARGN PREPEND ibrdf:: OUTPUT_VARIABLE parts)
+  add_library(ibrdf_all_${name} INTERFACE)
+  add_library(ibrdf::${name} ALIAS ibrdf_all_${name})
+  set_target_properties(ibrdf_all_${name} PROPERTIES EXPORT_NAME ${name})
+  target_link_libraries(ibrdf_all_${name} INTERFACE ${parts})
+  install(TARGETS ibrdf_all_${name} EXPORT ibrdfTargets)
 endfunction()
 
 # Compiles each file of ARGN (named *_kernels.cc) into `target` once per
@@ -67,24 +132,26 @@ function(ibrdf_add_simd_kernels target)
       IBRDF_SIMD_NAMESPACE=${level} IBRDF_SIMD_WIDTH=${width_${level}})
     set_target_properties(${object} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_link_libraries(${object} PRIVATE ibrdf_warnings)
+    set_target_properties(${object} PROPERTIES UNITY_BUILD OFF)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
   endforeach()
 endfunction()
 
-# One executable tests/<folder> from its *_test.cc, each TEST a ctest case.
+# The program ibrdf_<folder>_test of tests/<folder>, each TEST a ctest case.
+#   SOURCES    its files, all of them
+#   LIBRARIES  what they test and use
 function(ibrdf_add_tests folder)
-  file(GLOB sources CONFIGURE_DEPENDS
-       ${PROJECT_SOURCE_DIR}/tests/${folder}/*_test.cc)
-  if(NOT sources)
-    return()
-  endif()
+  cmake_parse_arguments(arg "" "" "SOURCES;LIBRARIES;PROPERTIES" ${ARGN})
+  list(TRANSFORM arg_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/tests/${folder}/)
   set(name ibrdf_${folder}_test)
-  add_executable(${name} ${sources})
-  target_link_libraries(${name} PRIVATE ${ARGN} GTest::gtest GTest::gtest_main
-                        ibrdf_warnings)
-  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gtest
+                        GTest::gtest_main ibrdf_warnings)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}
+                             ${PROJECT_SOURCE_DIR}/src)
   target_compile_definitions(${name} PRIVATE
     IBRDF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  ibrdf_precompile_headers(${name} <Eigen/Dense> <gtest/gtest.h>)
-  gtest_discover_tests(${name} TEST_PREFIX ${folder}/ DISCOVERY_TIMEOUT 60)
+  ibrdf_precompile_headers(${name} tests <Eigen/Dense> <gtest/gtest.h>)
+  gtest_discover_tests(${name} TEST_PREFIX ${folder}/ DISCOVERY_TIMEOUT 60
+                       PROPERTIES ${arg_PROPERTIES})
 endfunction()

@@ -1,4 +1,4 @@
-#include "io/config_reader.h"
+#include "ibrdf/io/config_reader.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/config_tree.h"
+#include "ibrdf/io/config_tree.h"
 
 namespace ibrdf {
 

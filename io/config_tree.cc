@@ -1,4 +1,4 @@
-#include "io/config_tree.h"
+#include "ibrdf/io/config_tree.h"
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>

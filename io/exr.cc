@@ -1,4 +1,4 @@
-#include "io/exr.h"
+#include "ibrdf/io/exr.h"
 
 #include <ImathBox.h>
 #include <ImfChannelList.h>
@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/atomic_file.h"
+#include "ibrdf/io/atomic_file.h"
 
 namespace ibrdf {
 namespace {

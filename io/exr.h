@@ -4,7 +4,7 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
-#include "io/image_limits.h"
+#include "ibrdf/io/image_limits.h"
 
 namespace ibrdf {
 

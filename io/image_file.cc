@@ -1,8 +1,8 @@
-#include "io/image_file.h"
+#include "ibrdf/io/image_file.h"
 
-#include "io/exr.h"
-#include "io/file_extension.h"
-#include "io/radiance_hdr.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/file_extension.h"
+#include "ibrdf/io/radiance_hdr.h"
 
 namespace ibrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/image_limits.h"
+#include "ibrdf/io/image_limits.h"
 
 namespace ibrdf {
 

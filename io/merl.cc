@@ -1,10 +1,10 @@
-#include "io/merl.h"
+#include "ibrdf/io/merl.h"
 
 #include <cmath>
 #include <cstring>
 #include <utility>
 
-#include "io/atomic_file.h"
+#include "ibrdf/io/atomic_file.h"
 
 namespace ibrdf {
 namespace {

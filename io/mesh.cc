@@ -1,4 +1,4 @@
-#include "io/mesh.h"
+#include "ibrdf/io/mesh.h"
 
 #include <Eigen/Geometry>
 #include <array>
@@ -9,9 +9,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "io/atomic_file.h"
-#include "io/file_extension.h"
-#include "io/polygon_mesh.h"
+#include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/file_extension.h"
+#include "ibrdf/io/polygon_mesh.h"
 
 namespace ibrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/model_file.h"
+#include "ibrdf/io/model_file.h"
 
 #include <sys/stat.h>
 
@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "io/atomic_file.h"
-#include "io/checksum.h"
+#include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/checksum.h"
 
 namespace ibrdf {
 namespace {

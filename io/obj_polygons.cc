@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/polygon_mesh.h"
+#include "ibrdf/io/polygon_mesh.h"
 
 namespace ibrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/png.h"
+#include "ibrdf/io/png.h"
 
 #include <png.h>
 
@@ -9,7 +9,7 @@
 #include <new>
 #include <vector>
 
-#include "io/atomic_file.h"
+#include "ibrdf/io/atomic_file.h"
 
 namespace ibrdf {
 namespace {

@@ -5,7 +5,7 @@
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
-#include "io/image_limits.h"
+#include "ibrdf/io/image_limits.h"
 
 namespace ibrdf {
 

@@ -1,12 +1,12 @@
-#include "io/problem_file.h"
+#include "ibrdf/io/problem_file.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <utility>
 
-#include "io/atomic_file.h"
-#include "io/config_reader.h"
-#include "io/image_limits.h"
+#include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/config_reader.h"
+#include "ibrdf/io/image_limits.h"
 
 namespace ibrdf {
 namespace {

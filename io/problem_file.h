@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "io/problem.h"
+#include "ibrdf/io/problem.h"
 
 namespace ibrdf {
 

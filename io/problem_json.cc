@@ -1,4 +1,4 @@
-#include "io/problem_json.h"
+#include "ibrdf/io/problem_json.h"
 
 #include <Eigen/Core>
 #include <optional>

@@ -2,7 +2,7 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "io/problem.h"
+#include "ibrdf/io/problem.h"
 
 namespace ibrdf {
 

@@ -1,4 +1,4 @@
-#include "io/radiance_hdr.h"
+#include "ibrdf/io/radiance_hdr.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "io/atomic_file.h"
+#include "ibrdf/io/atomic_file.h"
 
 namespace ibrdf {
 namespace {

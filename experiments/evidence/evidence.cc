@@ -15,19 +15,19 @@
 #include <utility>
 #include <vector>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/brdf/cook_torrance_lobes.h"
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/io/problem_file.h"
 #include "ibrdf/metrics/brdf_metrics.h"
-#include "io/problem_file.h"
-#include "solvers/baselines/cook_torrance_prior.h"
-#include "solvers/eigen_vectors.h"
-#include "solvers/estimate/image_levels.h"
-#include "solvers/level_gauge.h"
-#include "solvers/lobe_table_fit.h"
-#include "solvers/marginal/marginal_descent.h"
-#include "solvers/marginal/reflectance_search.h"
-#include "solvers/reflectance_spread.h"
-#include "solvers/solve_problem.h"
+#include "ibrdf/solvers/baselines/cook_torrance_prior.h"
+#include "ibrdf/solvers/estimation/level_gauge.h"
+#include "ibrdf/solvers/estimation/reflectance_spread.h"
+#include "ibrdf/solvers/marginal/marginal_descent.h"
+#include "ibrdf/solvers/marginal/reflectance_search.h"
+#include "ibrdf/solvers/observation/observation.h"
+#include "ibrdf/solvers/problem/load_problem.h"
+#include "ibrdf/solvers/training/lobe_table_fit.h"
 
 namespace ibrdf {
 namespace {

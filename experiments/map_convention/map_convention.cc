@@ -9,8 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "ibrdf/io/png.h"
 #include "ibrdf/light/environment_map.h"
-#include "io/png.h"
 
 namespace ibrdf {
 namespace {

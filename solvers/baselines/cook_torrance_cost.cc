@@ -1,4 +1,4 @@
-#include "solvers/baselines/cook_torrance_cost.h"
+#include "ibrdf/solvers/baselines/cook_torrance_cost.h"
 
 #include <glog/logging.h>
 

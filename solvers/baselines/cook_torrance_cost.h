@@ -8,7 +8,7 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/cook_torrance_lobes.h"
 #include "ibrdf/image/image.h"
-#include "ibrdf/render/transport.h"
+#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 

@@ -1,4 +1,4 @@
-#include "solvers/baselines/cook_torrance_fit.h"
+#include "ibrdf/solvers/baselines/cook_torrance_fit.h"
 
 #include <ceres/ceres.h>
 #include <ceres/normal_prior.h>
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "ibrdf/light/environment_map.h"
-#include "solvers/baselines/cook_torrance_cost.h"
+#include "ibrdf/solvers/baselines/cook_torrance_cost.h"
 
 namespace ibrdf {
 namespace {

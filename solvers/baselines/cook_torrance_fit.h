@@ -6,7 +6,7 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/metrics/illumination_metrics.h"
-#include "ibrdf/render/scene.h"
+#include "ibrdf/scene/scene.h"
 
 namespace ibrdf {
 

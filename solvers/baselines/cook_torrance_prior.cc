@@ -1,14 +1,14 @@
-#include "solvers/baselines/cook_torrance_prior.h"
+#include "ibrdf/solvers/baselines/cook_torrance_prior.h"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/brdf/cook_torrance_lobes.h"
 #include "ibrdf/brdf/flow_lobes.h"
-#include "solvers/baselines/table_fit.h"
-#include "solvers/eigen_vectors.h"
+#include "ibrdf/solvers/baselines/table_fit.h"
 
 namespace ibrdf {
 namespace {

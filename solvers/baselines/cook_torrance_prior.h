@@ -2,7 +2,7 @@
 #pragma once
 #include "ibrdf/base/status.h"
 #include "ibrdf/flow/neural_brdf_model.h"
-#include "solvers/material_prior.h"
+#include "ibrdf/solvers/priors/material_prior.h"
 
 namespace ibrdf {
 

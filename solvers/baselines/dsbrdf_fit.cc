@@ -1,4 +1,4 @@
-#include "solvers/baselines/dsbrdf_fit.h"
+#include "ibrdf/solvers/baselines/dsbrdf_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "solvers/baselines/table_samples.h"
+#include "ibrdf/solvers/baselines/table_samples.h"
 
 namespace ibrdf {
 namespace {

@@ -3,7 +3,7 @@
 #include "ibrdf/base/status.h"
 #include "ibrdf/brdf/dsbrdf.h"
 #include "ibrdf/brdf/merl_table.h"
-#include "solvers/baselines/table_cost.h"
+#include "ibrdf/solvers/baselines/table_cost.h"
 
 namespace ibrdf {
 

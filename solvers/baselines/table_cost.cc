@@ -1,4 +1,4 @@
-#include "solvers/baselines/table_cost.h"
+#include "ibrdf/solvers/baselines/table_cost.h"
 
 #include <ceres/ceres.h>
 #include <glog/logging.h>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/merl_table.h"
-#include "solvers/baselines/table_samples.h"
+#include "ibrdf/solvers/baselines/table_samples.h"
 
 namespace ibrdf {
 

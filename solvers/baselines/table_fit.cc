@@ -1,4 +1,4 @@
-#include "solvers/baselines/table_fit.h"
+#include "ibrdf/solvers/baselines/table_fit.h"
 
 #include <glog/logging.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "solvers/baselines/table_samples.h"
+#include "ibrdf/solvers/baselines/table_samples.h"
 
 namespace ibrdf {
 namespace {

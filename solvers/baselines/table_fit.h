@@ -7,7 +7,7 @@
 #include "ibrdf/brdf/disney.h"
 #include "ibrdf/brdf/lambertian.h"
 #include "ibrdf/brdf/merl_table.h"
-#include "solvers/baselines/table_cost.h"
+#include "ibrdf/solvers/baselines/table_cost.h"
 
 namespace ibrdf {
 

@@ -1,4 +1,4 @@
-#include "solvers/baselines/table_samples.h"
+#include "ibrdf/solvers/baselines/table_samples.h"
 
 #include <glog/logging.h>
 

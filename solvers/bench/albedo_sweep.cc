@@ -1,4 +1,4 @@
-#include "solvers/bench/albedo_sweep.h"
+#include "ibrdf/solvers/bench/albedo_sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,13 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/brdf/brdf_sampler.h"
+#include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/merl.h"
 #include "ibrdf/metrics/albedo.h"
-#include "io/atomic_file.h"
-#include "io/merl.h"
-#include "solvers/bench/model_materials.h"
-#include "solvers/bench/results_table.h"
-#include "solvers/bench/sweep_files.h"
-#include "solvers/open_model.h"
+#include "ibrdf/solvers/bench/model_materials.h"
+#include "ibrdf/solvers/bench/results_table.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
+#include "ibrdf/solvers/problem/open_model.h"
 
 namespace ibrdf {
 namespace {

@@ -1,13 +1,13 @@
-#include "solvers/bench/baseline_fitters.h"
+#include "ibrdf/solvers/bench/baseline_fitters.h"
 
 #include <functional>
 #include <utility>
 
+#include "ibrdf/base/stopwatch.h"
 #include "ibrdf/brdf/bivariate.h"
-#include "solvers/baselines/dsbrdf_fit.h"
-#include "solvers/baselines/table_fit.h"
-#include "solvers/baselines/table_samples.h"
-#include "solvers/stopwatch.h"
+#include "ibrdf/solvers/baselines/dsbrdf_fit.h"
+#include "ibrdf/solvers/baselines/table_fit.h"
+#include "ibrdf/solvers/baselines/table_samples.h"
 
 namespace ibrdf {
 namespace {

@@ -1,6 +1,6 @@
 // The methods of the sweep `merl-fit` that need no trained weights.
 #pragma once
-#include "solvers/bench/table_fitter.h"
+#include "ibrdf/solvers/bench/table_fitter.h"
 
 namespace ibrdf {
 

@@ -1,4 +1,4 @@
-#include "solvers/bench/child_process.h"
+#include "ibrdf/solvers/bench/child_process.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -16,7 +16,7 @@
 #include <fstream>
 #include <thread>
 
-#include "solvers/stopwatch.h"
+#include "ibrdf/base/stopwatch.h"
 
 namespace ibrdf {
 namespace {

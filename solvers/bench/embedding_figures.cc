@@ -1,4 +1,4 @@
-#include "solvers/bench/embedding_figures.h"
+#include "ibrdf/solvers/bench/embedding_figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +9,16 @@
 #include "ibrdf/base/format.h"
 #include "ibrdf/brdf/flow_brdf.h"
 #include "ibrdf/brdf/flow_lobes.h"
-#include "io/atomic_file.h"
-#include "io/merl.h"
-#include "io/png.h"
-#include "solvers/bench/embedding_map.h"
-#include "solvers/bench/embedding_pages.h"
-#include "solvers/bench/model_materials.h"
-#include "solvers/bench/results_table.h"
-#include "solvers/bench/sphere_studio.h"
-#include "solvers/bench/sweep_files.h"
-#include "solvers/open_model.h"
+#include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/merl.h"
+#include "ibrdf/io/png.h"
+#include "ibrdf/solvers/bench/embedding_map.h"
+#include "ibrdf/solvers/bench/embedding_pages.h"
+#include "ibrdf/solvers/bench/model_materials.h"
+#include "ibrdf/solvers/bench/results_table.h"
+#include "ibrdf/solvers/bench/sphere_studio.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
+#include "ibrdf/solvers/problem/open_model.h"
 
 namespace ibrdf {
 namespace {

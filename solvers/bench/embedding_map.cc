@@ -1,4 +1,4 @@
-#include "solvers/bench/embedding_map.h"
+#include "ibrdf/solvers/bench/embedding_map.h"
 
 #include <glog/logging.h>
 

@@ -1,10 +1,10 @@
-#include "solvers/bench/embedding_pages.h"
+#include "ibrdf/solvers/bench/embedding_pages.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "ibrdf/base/format.h"
-#include "io/picture.h"
+#include "ibrdf/solvers/report/picture.h"
 
 namespace ibrdf {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
-#include "solvers/bench/embedding_map.h"
+#include "ibrdf/solvers/bench/embedding_map.h"
 
 namespace ibrdf {
 

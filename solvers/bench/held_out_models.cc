@@ -1,11 +1,11 @@
-#include "solvers/bench/held_out_models.h"
+#include "ibrdf/solvers/bench/held_out_models.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <utility>
 
-#include "io/model_file.h"
-#include "solvers/bench/sweep_cases.h"
+#include "ibrdf/io/model_file.h"
+#include "ibrdf/solvers/bench/sweep_cases.h"
 
 namespace ibrdf {
 namespace {

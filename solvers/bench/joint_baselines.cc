@@ -1,16 +1,17 @@
-#include "solvers/bench/joint_baselines.h"
+#include "ibrdf/solvers/bench/joint_baselines.h"
 
 #include <nlohmann/json.hpp>
 
 #include "ibrdf/brdf/sample_merl.h"
+#include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/image_file.h"
+#include "ibrdf/io/merl.h"
+#include "ibrdf/io/png.h"
 #include "ibrdf/metrics/brdf_metrics.h"
-#include "io/atomic_file.h"
-#include "io/image_file.h"
-#include "io/merl.h"
-#include "io/png.h"
-#include "solvers/bench/solver_sweep.h"
-#include "solvers/bench/sweep_inputs.h"
-#include "solvers/render_scene.h"
+#include "ibrdf/solvers/bench/solver_sweep.h"
+#include "ibrdf/solvers/bench/sweep_inputs.h"
+#include "ibrdf/solvers/forward/render_scene.h"
+#include "ibrdf/solvers/problem/load_scene.h"
 
 namespace ibrdf {
 namespace {

@@ -1,9 +1,9 @@
 // What the sweep `joint` holds its estimates against.
 #pragma once
 #include "ibrdf/base/status.h"
-#include "solvers/baselines/cook_torrance_fit.h"
-#include "solvers/bench/results_table.h"
-#include "solvers/bench/sweep_cases.h"
+#include "ibrdf/solvers/baselines/cook_torrance_fit.h"
+#include "ibrdf/solvers/bench/results_table.h"
+#include "ibrdf/solvers/bench/sweep_cases.h"
 
 namespace ibrdf {
 

@@ -1,7 +1,7 @@
-#include "solvers/bench/joint_sweep.h"
+#include "ibrdf/solvers/bench/joint_sweep.h"
 
-#include "solvers/bench/joint_baselines.h"
-#include "solvers/bench/sphere_columns.h"
+#include "ibrdf/solvers/bench/joint_baselines.h"
+#include "ibrdf/solvers/bench/sphere_columns.h"
 
 namespace ibrdf {
 

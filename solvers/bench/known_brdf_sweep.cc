@@ -1,9 +1,9 @@
-#include "solvers/bench/known_brdf_sweep.h"
+#include "ibrdf/solvers/bench/known_brdf_sweep.h"
 
 #include <memory>
 
-#include "io/image_file.h"
-#include "solvers/bench/sphere_columns.h"
+#include "ibrdf/io/image_file.h"
+#include "ibrdf/solvers/bench/sphere_columns.h"
 
 namespace ibrdf {
 namespace {

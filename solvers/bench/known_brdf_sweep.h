@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/bench/solver_sweep.h"
+#include "ibrdf/solvers/bench/solver_sweep.h"
 
 namespace ibrdf {
 

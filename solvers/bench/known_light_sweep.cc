@@ -1,6 +1,6 @@
-#include "solvers/bench/known_light_sweep.h"
+#include "ibrdf/solvers/bench/known_light_sweep.h"
 
-#include "solvers/bench/sphere_columns.h"
+#include "ibrdf/solvers/bench/sphere_columns.h"
 
 namespace ibrdf {
 

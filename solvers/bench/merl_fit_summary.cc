@@ -1,4 +1,4 @@
-#include "solvers/bench/merl_fit_summary.h"
+#include "ibrdf/solvers/bench/merl_fit_summary.h"
 
 #include <glog/logging.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "ibrdf/base/format.h"
-#include "solvers/bench/merl_fit_sweep.h"
+#include "ibrdf/solvers/bench/merl_fit_sweep.h"
 
 namespace ibrdf {
 namespace {

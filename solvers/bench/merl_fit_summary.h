@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/bench/results_table.h"
+#include "ibrdf/solvers/bench/results_table.h"
 
 namespace ibrdf {
 

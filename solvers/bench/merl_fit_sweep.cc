@@ -1,4 +1,4 @@
-#include "solvers/bench/merl_fit_sweep.h"
+#include "ibrdf/solvers/bench/merl_fit_sweep.h"
 
 #include <glog/logging.h>
 
@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
+#include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/merl.h"
 #include "ibrdf/metrics/brdf_metrics.h"
-#include "io/atomic_file.h"
-#include "io/merl.h"
-#include "solvers/bench/merl_fit_summary.h"
-#include "solvers/bench/sweep_files.h"
+#include "ibrdf/solvers/bench/merl_fit_summary.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
 
 namespace ibrdf {
 namespace {

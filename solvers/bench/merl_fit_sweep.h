@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/bench/results_table.h"
-#include "solvers/bench/table_fitter.h"
+#include "ibrdf/solvers/bench/results_table.h"
+#include "ibrdf/solvers/bench/table_fitter.h"
 
 namespace ibrdf {
 

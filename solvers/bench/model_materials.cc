@@ -1,4 +1,4 @@
-#include "solvers/bench/model_materials.h"
+#include "ibrdf/solvers/bench/model_materials.h"
 
 #include <algorithm>
 

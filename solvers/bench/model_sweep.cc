@@ -1,4 +1,4 @@
-#include "solvers/bench/model_sweep.h"
+#include "ibrdf/solvers/bench/model_sweep.h"
 
 namespace ibrdf {
 

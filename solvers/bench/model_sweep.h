@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/bench/held_out_models.h"
-#include "solvers/bench/solver_sweep.h"
+#include "ibrdf/solvers/bench/held_out_models.h"
+#include "ibrdf/solvers/bench/solver_sweep.h"
 
 namespace ibrdf {
 

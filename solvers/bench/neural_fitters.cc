@@ -1,9 +1,9 @@
-#include "solvers/bench/neural_fitters.h"
+#include "ibrdf/solvers/bench/neural_fitters.h"
 
+#include "ibrdf/base/stopwatch.h"
 #include "ibrdf/brdf/flow_brdf.h"
 #include "ibrdf/brdf/flow_lobes.h"
-#include "solvers/stopwatch.h"
-#include "solvers/trainer/flow_trainer.h"
+#include "ibrdf/solvers/training/flow_trainer.h"
 
 namespace ibrdf {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "ibrdf/flow/neural_brdf_model.h"
-#include "solvers/bench/table_fitter.h"
-#include "solvers/lobe_table_fit.h"
+#include "ibrdf/solvers/bench/table_fitter.h"
+#include "ibrdf/solvers/training/lobe_table_fit.h"
 
 namespace ibrdf {
 

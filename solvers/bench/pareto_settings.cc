@@ -1,4 +1,4 @@
-#include "solvers/bench/pareto_settings.h"
+#include "ibrdf/solvers/bench/pareto_settings.h"
 
 #include <tuple>
 

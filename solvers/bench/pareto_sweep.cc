@@ -1,13 +1,13 @@
-#include "solvers/bench/pareto_sweep.h"
+#include "ibrdf/solvers/bench/pareto_sweep.h"
 
 #include <algorithm>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/io/image_file.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/metrics/illumination_metrics.h"
-#include "io/image_file.h"
-#include "solvers/bench/pareto_settings.h"
-#include "solvers/bench/solver_trace.h"
+#include "ibrdf/solvers/bench/pareto_settings.h"
+#include "ibrdf/solvers/bench/solver_trace.h"
 
 namespace ibrdf {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/bench/model_sweep.h"
+#include "ibrdf/solvers/bench/model_sweep.h"
 
 namespace ibrdf {
 

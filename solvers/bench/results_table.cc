@@ -1,4 +1,4 @@
-#include "solvers/bench/results_table.h"
+#include "ibrdf/solvers/bench/results_table.h"
 
 #include <fcntl.h>
 #include <glog/logging.h>
@@ -12,7 +12,7 @@
 #include <filesystem>
 
 #include "ibrdf/base/format.h"
-#include "io/atomic_file.h"
+#include "ibrdf/io/atomic_file.h"
 
 namespace ibrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "solvers/bench/solver_sweep.h"
+#include "ibrdf/solvers/bench/solver_sweep.h"
 
 #include <glog/logging.h>
 
@@ -9,12 +9,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "ibrdf/io/atomic_file.h"
 #include "ibrdf/light/environment_map.h"
-#include "io/atomic_file.h"
-#include "solvers/baselines/cook_torrance_fit.h"
-#include "solvers/bench/child_process.h"
-#include "solvers/bench/sweep_inputs.h"
-#include "solvers/render_scene.h"
+#include "ibrdf/solvers/baselines/cook_torrance_fit.h"
+#include "ibrdf/solvers/bench/child_process.h"
+#include "ibrdf/solvers/bench/sweep_inputs.h"
+#include "ibrdf/solvers/forward/render_scene.h"
+#include "ibrdf/solvers/problem/load_scene.h"
 
 namespace ibrdf {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/bench/results_table.h"
-#include "solvers/bench/sweep_cases.h"
+#include "ibrdf/solvers/bench/results_table.h"
+#include "ibrdf/solvers/bench/sweep_cases.h"
 
 namespace ibrdf {
 

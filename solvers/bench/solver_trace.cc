@@ -1,9 +1,9 @@
-#include "solvers/bench/solver_trace.h"
+#include "ibrdf/solvers/bench/solver_trace.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "io/atomic_file.h"
+#include "ibrdf/io/atomic_file.h"
 
 namespace ibrdf {
 namespace {

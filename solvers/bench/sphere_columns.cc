@@ -1,11 +1,11 @@
-#include "solvers/bench/sphere_columns.h"
+#include "ibrdf/solvers/bench/sphere_columns.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "io/image_file.h"
-#include "io/merl.h"
-#include "solvers/bench/sweep_files.h"
+#include "ibrdf/io/image_file.h"
+#include "ibrdf/io/merl.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
 
 namespace ibrdf {
 namespace {

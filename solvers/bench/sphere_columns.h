@@ -3,8 +3,8 @@
 #include <string>
 
 #include "ibrdf/base/status.h"
-#include "solvers/bench/solver_sweep.h"
-#include "solvers/bench/sphere_metrics.h"
+#include "ibrdf/solvers/bench/solver_sweep.h"
+#include "ibrdf/solvers/bench/sphere_metrics.h"
 
 namespace ibrdf {
 

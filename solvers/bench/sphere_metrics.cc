@@ -1,4 +1,4 @@
-#include "solvers/bench/sphere_metrics.h"
+#include "ibrdf/solvers/bench/sphere_metrics.h"
 
 #include <glog/logging.h>
 

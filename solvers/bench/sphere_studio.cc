@@ -1,11 +1,11 @@
-#include "solvers/bench/sphere_studio.h"
+#include "ibrdf/solvers/bench/sphere_studio.h"
 
 #include <glog/logging.h>
 
 #include "ibrdf/brdf/lambertian.h"
-#include "ibrdf/render/brdf_sphere.h"
 #include "ibrdf/render/reference_renderer.h"
-#include "io/tone_map.h"
+#include "ibrdf/solvers/report/brdf_sphere.h"
+#include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/image/image.h"
-#include "ibrdf/render/transport.h"
+#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 

@@ -1,10 +1,10 @@
-#include "solvers/bench/sweep_cases.h"
+#include "ibrdf/solvers/bench/sweep_cases.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "solvers/bench/sweep_files.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
 
 namespace ibrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "solvers/bench/sweep_files.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
 
 #include <algorithm>
 #include <filesystem>

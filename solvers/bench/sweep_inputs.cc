@@ -1,4 +1,4 @@
-#include "solvers/bench/sweep_inputs.h"
+#include "ibrdf/solvers/bench/sweep_inputs.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -7,13 +7,14 @@
 #include <utility>
 
 #include "ibrdf/image/rgb8_image.h"
+#include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/image_file.h"
+#include "ibrdf/io/merl.h"
+#include "ibrdf/io/png.h"
 #include "ibrdf/render/reference_batch.h"
 #include "ibrdf/render/reference_renderer.h"
-#include "io/atomic_file.h"
-#include "io/image_file.h"
-#include "io/merl.h"
-#include "io/png.h"
-#include "solvers/render_scene.h"
+#include "ibrdf/solvers/forward/render_scene.h"
+#include "ibrdf/solvers/problem/load_scene.h"
 
 namespace ibrdf {
 namespace {

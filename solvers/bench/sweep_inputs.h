@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/bench/sweep_cases.h"
+#include "ibrdf/solvers/bench/sweep_cases.h"
 
 namespace ibrdf {
 

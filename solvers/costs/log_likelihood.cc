@@ -1,4 +1,4 @@
-#include "solvers/costs/log_likelihood.h"
+#include "ibrdf/solvers/costs/log_likelihood.h"
 
 #include <glog/logging.h>
 

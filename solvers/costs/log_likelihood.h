@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "solvers/costs/robust_log_residual.h"
+#include "ibrdf/solvers/costs/robust_log_residual.h"
 
 namespace ibrdf {
 

@@ -1,9 +1,9 @@
-#include "solvers/costs/log_radiance_cost.h"
+#include "ibrdf/solvers/costs/log_radiance_cost.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/illumination_model.h"
+#include "ibrdf/solvers/illumination/illumination_model.h"
 
 namespace ibrdf {
 namespace {

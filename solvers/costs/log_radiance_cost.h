@@ -8,8 +8,8 @@
 
 #include "ibrdf/brdf/lobe_model.h"
 #include "ibrdf/light/illumination_unet.h"
-#include "ibrdf/render/transport.h"
-#include "solvers/costs/log_likelihood.h"
+#include "ibrdf/solvers/costs/log_likelihood.h"
+#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 

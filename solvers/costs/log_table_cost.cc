@@ -1,4 +1,4 @@
-#include "solvers/costs/log_table_cost.h"
+#include "ibrdf/solvers/costs/log_table_cost.h"
 
 #include <algorithm>
 #include <cmath>

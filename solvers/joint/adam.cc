@@ -1,10 +1,10 @@
 // Adam, one block at a time on a fixed schedule (Chen et al. 2020): the
 // reference that the other methods are measured against.
-#include "solvers/adam.h"
+#include "ibrdf/solvers/optim/adam.h"
 
 #include <cmath>
 
-#include "solvers/joint/method_run.h"
+#include "ibrdf/solvers/joint/method_run.h"
 
 namespace ibrdf {
 namespace {

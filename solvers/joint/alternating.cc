@@ -1,7 +1,7 @@
 // One block at a time: Gauss-Newton on the light, then Ceres' trust region on
 // the lobes.
-#include "solvers/joint/method_run.h"
-#include "solvers/reflectance_solver.h"
+#include "ibrdf/solvers/joint/method_run.h"
+#include "ibrdf/solvers/joint/reflectance_solver.h"
 
 namespace ibrdf {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include <ceres/iteration_callback.h>
 
-#include "solvers/joint/method_run.h"
+#include "ibrdf/solvers/joint/method_run.h"
 
 namespace ibrdf {
 

@@ -1,4 +1,4 @@
-#include "solvers/joint/compressed_cost.h"
+#include "ibrdf/solvers/joint/compressed_cost.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

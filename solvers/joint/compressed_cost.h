@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "solvers/joint/joint_objective.h"
+#include "ibrdf/solvers/joint/joint_objective.h"
 
 namespace ibrdf {
 

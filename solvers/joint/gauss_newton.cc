@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/conditioning.h"
-#include "solvers/conjugate_gradients.h"
-#include "solvers/joint/method_run.h"
+#include "ibrdf/solvers/joint/method_run.h"
+#include "ibrdf/solvers/optim/conditioning.h"
+#include "ibrdf/solvers/optim/conjugate_gradients.h"
 
 namespace ibrdf {
 namespace {

@@ -1,8 +1,8 @@
-#include "solvers/joint/joint_method.h"
+#include "ibrdf/solvers/joint/joint_method.h"
 
 #include <glog/logging.h>
 
-#include "solvers/joint/method_run.h"
+#include "ibrdf/solvers/joint/method_run.h"
 
 namespace ibrdf {
 

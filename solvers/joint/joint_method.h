@@ -5,7 +5,7 @@
 #include <string>
 
 #include "ibrdf/base/status.h"
-#include "solvers/joint/joint_objective.h"
+#include "ibrdf/solvers/joint/joint_objective.h"
 
 namespace ibrdf {
 

@@ -1,4 +1,4 @@
-#include "solvers/joint/joint_objective.h"
+#include "ibrdf/solvers/joint/joint_objective.h"
 
 #include <glog/logging.h>
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "solvers/costs/log_likelihood.h"
-#include "solvers/joint/light_block.h"
-#include "solvers/joint/lobe_block.h"
+#include "ibrdf/solvers/costs/log_likelihood.h"
+#include "ibrdf/solvers/joint/light_block.h"
+#include "ibrdf/solvers/joint/lobe_block.h"
 
 namespace ibrdf {
 

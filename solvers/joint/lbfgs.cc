@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "solvers/joint/ceres_progress.h"
-#include "solvers/joint/method_run.h"
+#include "ibrdf/solvers/joint/ceres_progress.h"
+#include "ibrdf/solvers/joint/method_run.h"
 
 namespace ibrdf {
 namespace {

@@ -1,4 +1,4 @@
-#include "solvers/joint/light_block.h"
+#include "ibrdf/solvers/joint/light_block.h"
 
 #include <glog/logging.h>
 

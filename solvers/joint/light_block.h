@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "solvers/illumination_model.h"
-#include "solvers/joint/light_prior.h"
+#include "ibrdf/solvers/illumination/illumination_model.h"
+#include "ibrdf/solvers/priors/light_prior.h"
 
 namespace ibrdf {
 

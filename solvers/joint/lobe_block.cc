@@ -1,9 +1,9 @@
-#include "solvers/joint/lobe_block.h"
+#include "ibrdf/solvers/joint/lobe_block.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/costs/log_radiance_cost.h"
+#include "ibrdf/solvers/costs/log_radiance_cost.h"
 
 namespace ibrdf {
 

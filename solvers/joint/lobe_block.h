@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "ibrdf/brdf/lobe_model.h"
-#include "ibrdf/render/transport.h"
-#include "solvers/costs/prior_costs.h"
+#include "ibrdf/solvers/priors/prior_costs.h"
+#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 

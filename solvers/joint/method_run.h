@@ -1,8 +1,8 @@
 // What the methods of MinimiseJoint share: clock, stopping, progress and the
 // best iterate. Internal.
 #pragma once
-#include "solvers/joint/joint_method.h"
-#include "solvers/stopwatch.h"
+#include "ibrdf/base/stopwatch.h"
+#include "ibrdf/solvers/joint/joint_method.h"
 
 namespace ibrdf {
 

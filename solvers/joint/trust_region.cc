@@ -1,9 +1,9 @@
 // Ceres' trust region on the dense Jacobian, compressed exactly.
 #include <ceres/ceres.h>
 
-#include "solvers/joint/ceres_progress.h"
-#include "solvers/joint/compressed_cost.h"
-#include "solvers/joint/method_run.h"
+#include "ibrdf/solvers/joint/ceres_progress.h"
+#include "ibrdf/solvers/joint/compressed_cost.h"
+#include "ibrdf/solvers/joint/method_run.h"
 
 namespace ibrdf {
 

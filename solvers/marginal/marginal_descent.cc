@@ -1,4 +1,4 @@
-#include "solvers/marginal/marginal_descent.h"
+#include "ibrdf/solvers/marginal/marginal_descent.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "solvers/marginal/marginal_objective.h"
+#include "ibrdf/solvers/marginal/marginal_objective.h"
 
 namespace ibrdf {
 

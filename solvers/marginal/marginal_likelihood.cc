@@ -1,4 +1,4 @@
-#include "solvers/marginal/marginal_likelihood.h"
+#include "ibrdf/solvers/marginal/marginal_likelihood.h"
 
 #include <glog/logging.h>
 

@@ -13,9 +13,9 @@
 #include <memory>
 #include <vector>
 
-#include "solvers/marginal/dense_algebra.h"
-#include "solvers/marginal/light_process.h"
-#include "solvers/marginal/light_spectrum.h"
+#include "ibrdf/solvers/optim/dense_algebra.h"
+#include "ibrdf/solvers/priors/light_process.h"
+#include "ibrdf/solvers/priors/light_spectrum.h"
 
 namespace ibrdf {
 

@@ -1,11 +1,11 @@
-#include "solvers/marginal/marginal_objective.h"
+#include "ibrdf/solvers/marginal/marginal_objective.h"
 
 #include <glog/logging.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "solvers/eigen_vectors.h"
+#include "ibrdf/base/eigen_vectors.h"
 
 namespace ibrdf {
 

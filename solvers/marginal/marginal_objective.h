@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "solvers/marginal/marginal_reflectance.h"
-#include "solvers/material_prior.h"
+#include "ibrdf/solvers/marginal/marginal_reflectance.h"
+#include "ibrdf/solvers/priors/material_prior.h"
 
 namespace ibrdf {
 

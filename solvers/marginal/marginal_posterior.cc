@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "solvers/marginal/marginal_likelihood.h"
+#include "ibrdf/solvers/marginal/marginal_likelihood.h"
 
 namespace ibrdf {
 

@@ -1,4 +1,4 @@
-#include "solvers/marginal/marginal_reflectance.h"
+#include "ibrdf/solvers/marginal/marginal_reflectance.h"
 
 #include <glog/logging.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "ibrdf/light/environment_map.h"
-#include "solvers/marginal/light_lamps.h"
+#include "ibrdf/solvers/priors/directional_lights.h"
 
 namespace ibrdf {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "ibrdf/brdf/lobe_model.h"
-#include "ibrdf/render/transport.h"
-#include "solvers/marginal/image_cells.h"
-#include "solvers/marginal/lamp_responses.h"
-#include "solvers/marginal/marginal_likelihood.h"
+#include "ibrdf/solvers/marginal/directional_responses.h"
+#include "ibrdf/solvers/marginal/marginal_likelihood.h"
+#include "ibrdf/solvers/observation/normal_bins.h"
+#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 

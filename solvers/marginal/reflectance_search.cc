@@ -1,4 +1,4 @@
-#include "solvers/marginal/reflectance_search.h"
+#include "ibrdf/solvers/marginal/reflectance_search.h"
 
 #include <glog/logging.h>
 
@@ -9,12 +9,12 @@
 #include <memory>
 #include <tuple>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/base/parallel_for.h"
-#include "solvers/conditioning.h"
-#include "solvers/eigen_vectors.h"
-#include "solvers/marginal/light_lamps.h"
-#include "solvers/marginal/marginal_descent.h"
-#include "solvers/marginal/marginal_objective.h"
+#include "ibrdf/solvers/marginal/marginal_descent.h"
+#include "ibrdf/solvers/marginal/marginal_objective.h"
+#include "ibrdf/solvers/optim/conditioning.h"
+#include "ibrdf/solvers/priors/directional_lights.h"
 
 namespace ibrdf {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "ibrdf/render/scene.h"
-#include "solvers/marginal/marginal_reflectance.h"
-#include "solvers/material_prior.h"
+#include "ibrdf/scene/scene.h"
+#include "ibrdf/solvers/marginal/marginal_reflectance.h"
+#include "ibrdf/solvers/priors/material_prior.h"
 
 namespace ibrdf {
 

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "solvers/bench/albedo_sweep.h"
-#include "solvers/programs/bench_session.h"
+#include "ibrdf/solvers/bench/albedo_sweep.h"
+#include "ibrdf/solvers/programs/bench_session.h"
 
 namespace ibrdf {
 

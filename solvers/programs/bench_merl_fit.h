@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "solvers/bench/baseline_fitters.h"
-#include "solvers/bench/merl_fit_sweep.h"
-#include "solvers/bench/neural_fitters.h"
-#include "solvers/open_model.h"
-#include "solvers/programs/bench_session.h"
+#include "ibrdf/solvers/bench/baseline_fitters.h"
+#include "ibrdf/solvers/bench/merl_fit_sweep.h"
+#include "ibrdf/solvers/bench/neural_fitters.h"
+#include "ibrdf/solvers/problem/open_model.h"
+#include "ibrdf/solvers/programs/bench_session.h"
 
 namespace ibrdf {
 

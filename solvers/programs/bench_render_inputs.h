@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "solvers/bench/sweep_inputs.h"
-#include "solvers/programs/bench_sweep_flags.h"
+#include "ibrdf/solvers/bench/sweep_inputs.h"
+#include "ibrdf/solvers/programs/bench_sweep_flags.h"
 
 namespace ibrdf {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "ibrdf/base/status.h"
-#include "solvers/programs/common_flags.h"
+#include "ibrdf/solvers/programs/common_flags.h"
 
 namespace ibrdf {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <type_traits>
 
-#include "solvers/bench/joint_sweep.h"
-#include "solvers/bench/known_brdf_sweep.h"
-#include "solvers/bench/known_light_sweep.h"
-#include "solvers/bench/pareto_sweep.h"
-#include "solvers/programs/bench_sweep_flags.h"
+#include "ibrdf/solvers/bench/joint_sweep.h"
+#include "ibrdf/solvers/bench/known_brdf_sweep.h"
+#include "ibrdf/solvers/bench/known_light_sweep.h"
+#include "ibrdf/solvers/bench/pareto_sweep.h"
+#include "ibrdf/solvers/programs/bench_sweep_flags.h"
 
 namespace ibrdf {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "solvers/bench/held_out_models.h"
-#include "solvers/bench/solver_sweep.h"
-#include "solvers/programs/bench_session.h"
+#include "ibrdf/solvers/bench/held_out_models.h"
+#include "ibrdf/solvers/bench/solver_sweep.h"
+#include "ibrdf/solvers/programs/bench_session.h"
 
 namespace ibrdf {
 

@@ -1,11 +1,11 @@
-#include "solvers/programs/evaluate_files.h"
+#include "ibrdf/solvers/programs/evaluate_files.h"
 
+#include "ibrdf/io/image_file.h"
+#include "ibrdf/io/merl.h"
+#include "ibrdf/io/png.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/metrics/illumination_metrics.h"
 #include "ibrdf/metrics/image_metrics.h"
-#include "io/image_file.h"
-#include "io/merl.h"
-#include "io/png.h"
 
 namespace ibrdf {
 namespace {

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "solvers/programs/bench_albedo.h"
-#include "solvers/programs/bench_embedding.h"
-#include "solvers/programs/bench_merl_fit.h"
-#include "solvers/programs/bench_render_inputs.h"
-#include "solvers/programs/bench_session.h"
-#include "solvers/programs/bench_solver_sweeps.h"
+#include "ibrdf/solvers/programs/bench_albedo.h"
+#include "ibrdf/solvers/programs/bench_embedding.h"
+#include "ibrdf/solvers/programs/bench_merl_fit.h"
+#include "ibrdf/solvers/programs/bench_render_inputs.h"
+#include "ibrdf/solvers/programs/bench_session.h"
+#include "ibrdf/solvers/programs/bench_solver_sweeps.h"
 
 namespace ibrdf {
 namespace {

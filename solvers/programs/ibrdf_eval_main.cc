@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "solvers/programs/common_flags.h"
-#include "solvers/programs/evaluate_files.h"
+#include "ibrdf/solvers/programs/common_flags.h"
+#include "ibrdf/solvers/programs/evaluate_files.h"
 
 namespace ibrdf {
 namespace {

@@ -12,15 +12,16 @@
 #include <string>
 #include <vector>
 
-#include "io/exr.h"
-#include "io/file_extension.h"
-#include "io/merl.h"
-#include "io/png.h"
-#include "io/problem_file.h"
-#include "io/tone_map.h"
-#include "solvers/programs/common_flags.h"
-#include "solvers/render_scene.h"
-#include "solvers/solve_problem.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/file_extension.h"
+#include "ibrdf/io/merl.h"
+#include "ibrdf/io/output_paths.h"
+#include "ibrdf/io/png.h"
+#include "ibrdf/io/problem_file.h"
+#include "ibrdf/solvers/forward/render_scene.h"
+#include "ibrdf/solvers/problem/load_scene.h"
+#include "ibrdf/solvers/programs/common_flags.h"
+#include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
 namespace {

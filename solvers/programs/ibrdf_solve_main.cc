@@ -9,11 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "io/problem_file.h"
-#include "solvers/programs/blas_memory.h"
-#include "solvers/programs/common_flags.h"
-#include "solvers/solve_problem.h"
-#include "solvers/stopwatch.h"
+#include "ibrdf/base/stopwatch.h"
+#include "ibrdf/io/output_paths.h"
+#include "ibrdf/io/problem_file.h"
+#include "ibrdf/solvers/estimation/inverse_rendering.h"
+#include "ibrdf/solvers/optim/blas_memory.h"
+#include "ibrdf/solvers/problem/load_problem.h"
+#include "ibrdf/solvers/programs/common_flags.h"
+#include "ibrdf/solvers/report/write_results.h"
 
 namespace ibrdf {
 namespace {
@@ -57,7 +60,7 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
   };
   inverse->seconds_spent = clock.Seconds();
   inverse->seconds_reserved = PredictWriteSeconds(*inverse);
-  const StatusOr<Estimate> estimate =
+  const StatusOr<Solution> estimate =
       SolveInverseRendering(*inverse, progress, &stop_requested);
   if (!estimate.ok()) return estimate.status();
   std::string metrics;

@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "ibrdf/base/format.h"
-#include "io/model_file.h"
-#include "solvers/programs/common_flags.h"
-#include "solvers/solve_problem.h"
-#include "solvers/trainer/analytic_materials.h"
-#include "solvers/trainer/flow_trainer.h"
-#include "solvers/trainer/material_lobes.h"
+#include "ibrdf/io/model_file.h"
+#include "ibrdf/io/output_paths.h"
+#include "ibrdf/solvers/programs/common_flags.h"
+#include "ibrdf/solvers/training/analytic_materials.h"
+#include "ibrdf/solvers/training/flow_trainer.h"
+#include "ibrdf/solvers/training/material_lobes.h"
 
 namespace ibrdf {
 namespace {

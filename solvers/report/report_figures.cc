@@ -1,10 +1,10 @@
-#include "solvers/report/report_figures.h"
+#include "ibrdf/solvers/report/report_figures.h"
 
 #include "ibrdf/base/format.h"
-#include "io/html.h"
-#include "io/png.h"
-#include "io/preview.h"
-#include "io/tone_map.h"
+#include "ibrdf/io/png.h"
+#include "ibrdf/solvers/report/html.h"
+#include "ibrdf/solvers/report/preview.h"
+#include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
 namespace {

@@ -6,7 +6,7 @@
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
-#include "io/result_preview.h"
+#include "ibrdf/solvers/report/result_preview.h"
 
 namespace ibrdf {
 

@@ -1,11 +1,11 @@
-#include "solvers/report/report_metrics.h"
+#include "ibrdf/solvers/report/report_metrics.h"
 
 #include <algorithm>
 #include <set>
 #include <vector>
 
-#include "io/html.h"
-#include "solvers/report/json_values.h"
+#include "ibrdf/solvers/report/html.h"
+#include "ibrdf/solvers/report/json_values.h"
 
 namespace ibrdf {
 namespace {

@@ -1,15 +1,15 @@
-#include "solvers/report/report_page.h"
+#include "ibrdf/solvers/report/report_page.h"
 
 #include <utility>
 
-#include "io/html.h"
-#include "io/svg_plot.h"
-#include "solvers/report/json_values.h"
-#include "solvers/report/report_metrics.h"
-#include "solvers/report/report_plots.h"
-#include "solvers/report/report_posterior.h"
-#include "solvers/report/report_style.h"
-#include "solvers/report/report_warnings.h"
+#include "ibrdf/solvers/report/html.h"
+#include "ibrdf/solvers/report/json_values.h"
+#include "ibrdf/solvers/report/report_metrics.h"
+#include "ibrdf/solvers/report/report_plots.h"
+#include "ibrdf/solvers/report/report_posterior.h"
+#include "ibrdf/solvers/report/report_style.h"
+#include "ibrdf/solvers/report/report_warnings.h"
+#include "ibrdf/solvers/report/svg_plot.h"
 
 namespace ibrdf {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
-#include "solvers/report/report_figures.h"
+#include "ibrdf/solvers/report/report_figures.h"
 
 namespace ibrdf {
 

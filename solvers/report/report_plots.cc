@@ -1,10 +1,10 @@
-#include "solvers/report/report_plots.h"
+#include "ibrdf/solvers/report/report_plots.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "solvers/report/json_values.h"
+#include "ibrdf/solvers/report/json_values.h"
 
 namespace ibrdf {
 namespace {

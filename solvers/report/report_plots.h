@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "io/svg_plot.h"
+#include "ibrdf/solvers/report/svg_plot.h"
 
 namespace ibrdf {
 

@@ -1,10 +1,10 @@
-#include "solvers/report/report_posterior.h"
+#include "ibrdf/solvers/report/report_posterior.h"
 
 #include <cmath>
 #include <vector>
 
-#include "io/html.h"
-#include "solvers/report/json_values.h"
+#include "ibrdf/solvers/report/html.h"
+#include "ibrdf/solvers/report/json_values.h"
 
 namespace ibrdf {
 namespace {

@@ -1,8 +1,8 @@
-#include "solvers/report/report_warnings.h"
+#include "ibrdf/solvers/report/report_warnings.h"
 
 #include <cmath>
 
-#include "solvers/report/json_values.h"
+#include "ibrdf/solvers/report/json_values.h"
 
 namespace ibrdf {
 namespace {

@@ -1,5 +1,5 @@
-// Holds derivatives to the errors that experiments/derivatives measured: the
-// same comparisons with long double at fewer points.
+// Holds derivatives to the errors that experiments/validation/derivatives
+// measured: the same comparisons with long double at fewer points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/derivatives/studies.h"
-#include "solvers/open_model.h"
+#include "experiments/validation/derivatives/studies.h"
+#include "ibrdf/solvers/problem/open_model.h"
 #include "tests/support/tiny_model.h"
 
 namespace ibrdf {

@@ -11,7 +11,7 @@
 
 #include "ibrdf/base/dual.h"
 #include "ibrdf/flow/triangular_reference.h"
-#include "tests/flow/triangular_testing.h"
+#include "tests/support/triangular_testing.h"
 
 namespace ibrdf {
 namespace {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "ibrdf/flow/merl_columns.h"
+#include "ibrdf/brdf/merl_columns.h"
 #include "ibrdf/flow/triangular_flow.h"
 #include "ibrdf/flow/triangular_reference.h"
-#include "tests/flow/triangular_testing.h"
+#include "tests/support/triangular_testing.h"
 
 namespace ibrdf {
 namespace {

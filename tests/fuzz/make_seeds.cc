@@ -14,10 +14,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "io/exr.h"
-#include "io/model_file.h"
-#include "io/radiance_hdr.h"
-#include "solvers/bench/results_table.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/model_file.h"
+#include "ibrdf/io/radiance_hdr.h"
+#include "ibrdf/solvers/bench/results_table.h"
 #include "tests/fuzz/parsers.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/tiny_model.h"

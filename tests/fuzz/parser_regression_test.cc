@@ -6,11 +6,11 @@
 #include <cstring>
 #include <filesystem>
 
-#include "io/exr.h"
-#include "io/mesh.h"
-#include "io/png.h"
-#include "io/problem_file.h"
-#include "io/radiance_hdr.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/mesh.h"
+#include "ibrdf/io/png.h"
+#include "ibrdf/io/problem_file.h"
+#include "ibrdf/io/radiance_hdr.h"
 #include "tests/fuzz/parsers.h"
 #include "tests/support/png_crc.h"
 #include "tests/support/temp_dir.h"

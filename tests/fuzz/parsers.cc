@@ -6,18 +6,18 @@
 #include <cstring>
 #include <functional>
 
-#include "io/checksum.h"
-#include "io/exr.h"
-#include "io/image_limits.h"
-#include "io/merl.h"
-#include "io/mesh.h"
-#include "io/model_file.h"
-#include "io/png.h"
-#include "io/problem_file.h"
-#include "io/radiance_hdr.h"
-#include "solvers/bench/results_table.h"
-#include "solvers/bench/solver_trace.h"
-#include "solvers/trainer/checkpoint.h"
+#include "ibrdf/io/checksum.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/image_limits.h"
+#include "ibrdf/io/merl.h"
+#include "ibrdf/io/mesh.h"
+#include "ibrdf/io/model_file.h"
+#include "ibrdf/io/png.h"
+#include "ibrdf/io/problem_file.h"
+#include "ibrdf/io/radiance_hdr.h"
+#include "ibrdf/solvers/bench/results_table.h"
+#include "ibrdf/solvers/bench/solver_trace.h"
+#include "ibrdf/solvers/training/checkpoint.h"
 #include "tests/support/png_crc.h"
 
 namespace ibrdf {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solvers/trainer/checkpoint.h"
+#include "ibrdf/solvers/training/checkpoint.h"
 
 namespace ibrdf {
 

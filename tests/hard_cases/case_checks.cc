@@ -10,8 +10,8 @@
 #include <regex>
 #include <vector>
 
-#include "io/exr.h"
-#include "io/merl.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/merl.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {

@@ -1,4 +1,4 @@
-#include "io/atomic_file.h"
+#include "ibrdf/io/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

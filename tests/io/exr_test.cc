@@ -1,4 +1,4 @@
-#include "io/exr.h"
+#include "ibrdf/io/exr.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

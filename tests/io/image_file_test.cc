@@ -1,4 +1,4 @@
-#include "io/image_file.h"
+#include "ibrdf/io/image_file.h"
 
 #include <gtest/gtest.h>
 

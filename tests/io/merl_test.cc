@@ -1,4 +1,4 @@
-#include "io/merl.h"
+#include "ibrdf/io/merl.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "io/mesh.h"
+#include "ibrdf/io/mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "io/model_file.h"
+#include "ibrdf/io/model_file.h"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "io/png.h"
+#include "ibrdf/io/png.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

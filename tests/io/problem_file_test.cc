@@ -1,4 +1,4 @@
-#include "io/problem_file.h"
+#include "ibrdf/io/problem_file.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/problem_json.h"
+#include "ibrdf/io/problem_json.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {

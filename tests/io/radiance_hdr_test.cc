@@ -1,4 +1,4 @@
-#include "io/radiance_hdr.h"
+#include "ibrdf/io/radiance_hdr.h"
 
 #include <gtest/gtest.h>
 

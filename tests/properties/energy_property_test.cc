@@ -20,10 +20,10 @@
 #include "ibrdf/brdf/lambertian.h"
 #include "ibrdf/metrics/albedo.h"
 #include "ibrdf/render/reference_renderer.h"
-#include "ibrdf/render/surface_emitters.h"
-#include "ibrdf/render/transport.h"
+#include "ibrdf/transport/transport.h"
+#include "ibrdf/visibility/radiosity_patches.h"
 #include "tests/properties/generators.h"
-#include "tests/render/shadow_testing.h"
+#include "tests/support/shadow_testing.h"
 
 namespace ibrdf {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/flow_lobes.h"
-#include "ibrdf/render/transport.h"
-#include "solvers/inverse_rendering.h"
+#include "ibrdf/solvers/estimation/inverse_rendering.h"
+#include "ibrdf/transport/transport.h"
 #include "tests/properties/generators.h"
-#include "tests/solvers/solver_testing.h"
+#include "tests/support/solver_testing.h"
 
 namespace ibrdf {
 namespace {
@@ -83,8 +83,8 @@ InverseProblem SmallProblem(ProblemKind kind, int materials, int iterations) {
   return p;
 }
 
-Estimate Solve(const InverseProblem& problem) {
-  StatusOr<Estimate> e = SolveInverseRendering(problem, nullptr, nullptr);
+Solution Solve(const InverseProblem& problem) {
+  StatusOr<Solution> e = SolveInverseRendering(problem, nullptr, nullptr);
   RC_ASSERT(e.ok());
   return *std::move(e);
 }
@@ -109,7 +109,7 @@ double LogDifference(const Values& a, const Values& b, double s) {
 // solves of like problems. A unit that is lost shows as log s, some nats.
 constexpr double kPassedOn = 0.03;
 
-void AssertScaled(const Estimate& one, const Estimate& scaled, double s) {
+void AssertScaled(const Solution& one, const Solution& scaled, double s) {
   RC_ASSERT(one.start == scaled.start);
   RC_ASSERT(LogDifference(scaled.brdf.raw, one.brdf.raw, 1.0) <= kPassedOn);
   RC_ASSERT(LogDifference(scaled.map.rgb, one.map.rgb, s) <= kPassedOn);
@@ -125,7 +125,7 @@ TEST(ExposureProperty, KnownLightInTheImagesUnitGivesTheSameReflectance) {
   CheckSome(3, [] {
     InverseProblem p = SmallProblem(ProblemKind::kReflectance, 3, 2);
     const double s = *Magnitude(1e-6, 1e6);
-    const Estimate one = Solve(p);
+    const Solution one = Solve(p);
     RC_ASSERT(one.misfit <= 0.1);
     p.image = Times(p.image, s);
     p.known_map = Times(*p.known_map, s);
@@ -137,7 +137,7 @@ TEST(ExposureProperty, UnknownLightUnderAKnownReflectanceScales) {
   CheckSome(10, [] {
     InverseProblem p = SmallProblem(ProblemKind::kIllumination, 3, 8);
     const double s = *Magnitude(1e-6, 1e6);
-    const Estimate one = Solve(p);
+    const Solution one = Solve(p);
     RC_ASSERT(one.misfit <= 0.1);
     p.image = Times(p.image, s);
     AssertScaled(one, Solve(p), s);
@@ -151,7 +151,7 @@ void CheckBothUnknown(SolverEstimator estimator, int percent) {
     InverseProblem p = SmallProblem(ProblemKind::kJoint, 1, 1);
     p.solver.estimator = estimator;
     const double s = *Magnitude(1e-6, 1e6);
-    const Estimate one = Solve(p);
+    const Solution one = Solve(p);
     RC_ASSERT(one.misfit <= 0.1);
     p.image = Times(p.image, s);
     AssertScaled(one, Solve(p), s);

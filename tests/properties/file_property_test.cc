@@ -6,9 +6,9 @@
 #include <cstring>
 #include <limits>
 
-#include "io/exr.h"
-#include "io/merl.h"
-#include "io/model_file.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/merl.h"
+#include "ibrdf/io/model_file.h"
 #include "tests/properties/generators.h"
 #include "tests/support/temp_dir.h"
 

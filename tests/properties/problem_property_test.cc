@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "io/config_tree.h"
-#include "io/problem_file.h"
-#include "io/problem_json.h"
+#include "ibrdf/io/config_tree.h"
+#include "ibrdf/io/problem_file.h"
+#include "ibrdf/io/problem_json.h"
 #include "tests/properties/generators.h"
 
 namespace ibrdf {

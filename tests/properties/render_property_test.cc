@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "ibrdf/brdf/cook_torrance.h"
-#include "ibrdf/render/transport.h"
+#include "ibrdf/transport/transport.h"
 #include "tests/properties/generators.h"
 
 namespace ibrdf {

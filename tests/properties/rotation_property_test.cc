@@ -8,9 +8,9 @@
 #include <functional>
 
 #include "ibrdf/brdf/cook_torrance.h"
-#include "ibrdf/render/transport.h"
+#include "ibrdf/transport/transport.h"
 #include "tests/properties/generators.h"
-#include "tests/render/shadow_testing.h"
+#include "tests/support/shadow_testing.h"
 
 namespace ibrdf {
 namespace {

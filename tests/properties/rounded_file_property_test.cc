@@ -7,11 +7,11 @@
 #include <cmath>
 #include <limits>
 
-#include "io/exr.h"
-#include "io/png.h"
-#include "io/preview.h"
-#include "io/radiance_hdr.h"
-#include "io/tone_map.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/png.h"
+#include "ibrdf/io/radiance_hdr.h"
+#include "ibrdf/solvers/report/preview.h"
+#include "ibrdf/solvers/report/tone_map.h"
 #include "tests/properties/generators.h"
 #include "tests/support/temp_dir.h"
 

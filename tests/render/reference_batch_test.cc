@@ -6,7 +6,7 @@
 
 #include "ibrdf/base/simd_dispatch.h"
 #include "ibrdf/render/reference_renderer.h"
-#include "tests/render/render_testing.h"
+#include "tests/support/render_testing.h"
 
 namespace ibrdf {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/render/render_testing.h"
+#include "tests/support/render_testing.h"
 
 namespace ibrdf {
 namespace {

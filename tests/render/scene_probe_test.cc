@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "tests/render/render_testing.h"
-#include "tests/render/shadow_testing.h"
+#include "tests/support/render_testing.h"
+#include "tests/support/shadow_testing.h"
 
 namespace ibrdf {
 namespace {

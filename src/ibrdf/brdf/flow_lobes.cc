@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ibrdf/base/parallel_for.h"
-#include "ibrdf/flow/merl_columns.h"
+#include "ibrdf/brdf/merl_columns.h"
 #include "ibrdf/flow/reference_flow.h"
 
 namespace ibrdf {

@@ -12,9 +12,9 @@
 
 #include "ibrdf/image/image.h"
 #include "ibrdf/render/merl_table_stack.h"
-#include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/reference_parts.h"
-#include "ibrdf/render/scene.h"
+#include "ibrdf/scene/scene.h"
+#include "ibrdf/transport/quadrature.h"
 
 namespace ibrdf {
 

@@ -9,11 +9,11 @@
 
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
-#include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/reference_kernels.h"
-#include "ibrdf/render/scene.h"
-#include "ibrdf/render/surface_emitters.h"
-#include "ibrdf/render/visibility_grid.h"
+#include "ibrdf/scene/scene.h"
+#include "ibrdf/transport/quadrature.h"
+#include "ibrdf/visibility/radiosity_patches.h"
+#include "ibrdf/visibility/visibility_grid.h"
 
 namespace ibrdf {
 

@@ -11,7 +11,7 @@
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
-#include "ibrdf/render/lobe_bundles.h"
+#include "ibrdf/transport/lobe_bundles.h"
 
 namespace ibrdf {
 namespace {

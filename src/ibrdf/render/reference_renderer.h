@@ -12,10 +12,10 @@
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
-#include "ibrdf/render/bright_texels.h"
-#include "ibrdf/render/quadrature.h"
 #include "ibrdf/render/reference_parts.h"
-#include "ibrdf/render/scene.h"
+#include "ibrdf/scene/scene.h"
+#include "ibrdf/transport/bright_texels.h"
+#include "ibrdf/transport/quadrature.h"
 
 namespace ibrdf {
 

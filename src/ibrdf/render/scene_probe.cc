@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "ibrdf/base/parallel_for.h"
-#include "ibrdf/render/transport.h"
+#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/image/image.h"
-#include "ibrdf/render/scene.h"
+#include "ibrdf/scene/scene.h"
 
 namespace ibrdf {
 

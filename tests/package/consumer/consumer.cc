@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/io/merl.h"
 #include "ibrdf/light/illumination_unet.h"
-#include "io/merl.h"
-#include "solvers/programs/evaluate_files.h"
+#include "ibrdf/solvers/programs/evaluate_files.h"
 
 // The network reaches the kernels, compiled once per instruction set.
 bool InitialMapIsConstant() {

@@ -1,0 +1,185 @@
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/benchmarks/render_speed/scenes.h"
+#include "experiments/benchmarks/render_speed/studies.h"
+#include "ibrdf/approximation/gaussian_transport.h"
+#include "ibrdf/approximation/harmonic_transport.h"
+#include "ibrdf/approximation/reflectance_map.h"
+#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
+#include "ibrdf/render/reference_renderer.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kPreviewError = 3e-3;
+constexpr int kRounds = 2;
+// Points that errors are found at, others than those that RenderByNormal holds
+// out; points whose time stands for all.
+constexpr size_t kFew = 200, kTimed = 1024;
+constexpr int kOrders[] = {2, 4, 8};
+constexpr int kSpreads[] = {64, 128, 256};
+
+// Points of 128x128 pixels, one each, seen from far away or from 4 radii.
+std::vector<ShadingPoint> Points(const Scene& scene, bool perspective) {
+  if (!perspective) return PointsByAngle(scene, 128, 1);
+  Camera camera;
+  camera.type = CameraType::kPerspective;
+  return FindShadingPoints(scene, camera, 128, 128, Mask(), 1).value();
+}
+
+// One thread.
+class Tiers {
+ public:
+  Tiers(const Light& light, const Look& look)
+      : map_(light.map), table_(look.table) {
+    ReferenceOptions options = Coarser({});
+    options.num_threads = 1;
+    preview_ = std::make_unique<ReferenceRenderer>(map_, options);
+    grid_ = BrdfGrid::FromMerl(table_, {});
+  }
+
+  void Quadrature(const std::vector<ShadingPoint>& points, double* E) const {
+    preview_->Render(points, table_, E);
+  }
+  void ByNormal(const std::vector<ShadingPoint>& points, double* E) const {
+    ReflectanceMapOptions options;
+    options.log_error = kPreviewError;
+    RenderByNormal(
+        points,
+        [&](const std::vector<ShadingPoint>& some, double* out) {
+          Quadrature(some, out);
+          return true;
+        },
+        options, E)
+        .value();
+  }
+  void Harmonics(int order, const std::vector<ShadingPoint>& points,
+                 double* E) const {
+    HarmonicOptions options;
+    options.order = order;
+    options.view_angles = 24;
+    options.num_threads = 1;
+    HarmonicTransport(points, map_.height, map_.width, options)
+        .Render(grid_, map_.rgb.data(), E);
+  }
+  // The fit, the tables and the points.
+  void Gaussians(int spread, const std::vector<ShadingPoint>& points,
+                 double* E) const {
+    GaussianFitOptions fit;
+    fit.spread = spread;
+    GaussianOptions options;
+    options.num_threads = 1;
+    const GaussianLight light(map_, fit);
+    const GaussianTransport transport(light.lobes(), options);
+    const GaussianTransport::Tables tables = transport.Tabulate(
+        [this](double theta_h, double theta_d, double phi_d) {
+          return InterpolateMerl(table_, theta_h, theta_d, phi_d);
+        });
+    transport.Render(points, tables, light.Fit(map_.rgb.data()), E);
+  }
+
+ private:
+  const Image& map_;
+  const MerlTable& table_;
+  std::unique_ptr<const ReferenceRenderer> preview_;
+  BrdfGrid grid_;
+};
+
+void StudyImage(const std::string& name,
+                const std::vector<ShadingPoint>& points, const Light& light,
+                const Look& look, bool perspective) {
+  const auto row = [&](const std::string& quantity, double value) {
+    Row("gaussians", name, quantity, value);
+  };
+  struct Way {
+    std::string name;
+    std::function<void(const std::vector<ShadingPoint>&, double*)> render;
+    double seconds = 1e300;
+  };
+  const Tiers tiers(light, look);
+  std::vector<Way> ways = {{"quadrature", [&](const auto& some, double* E) {
+                              tiers.Quadrature(some, E);
+                            }}};
+  if (!perspective) {
+    ways.push_back({"by_normal", [&](const auto& some, double* E) {
+                      tiers.ByNormal(some, E);
+                    }});
+  }
+  for (const int order : kOrders) {
+    ways.push_back({"order_" + std::to_string(order),
+                    [&tiers, order](const auto& some, double* E) {
+                      tiers.Harmonics(order, some, E);
+                    }});
+  }
+  for (const int spread : kSpreads) {
+    ways.push_back({"gaussians_" + std::to_string(spread),
+                    [&tiers, spread](const auto& some, double* E) {
+                      tiers.Gaussians(spread, some, E);
+                    }});
+  }
+
+  const std::vector<ShadingPoint> few = SpreadPoints(points, kFew);
+  std::vector<double> truth(3 * few.size()), at_few(truth.size());
+  ReferenceRenderer(light.map, {}).Render(few, look.table, truth.data());
+  std::vector<double> E(3 * points.size());
+  // In turn. The quadrature takes every point alike.
+  const std::vector<ShadingPoint> timed = SpreadPoints(points, kTimed);
+  for (int round = 0; round < kRounds; ++round) {
+    for (Way& way : ways) {
+      const bool all = way.name != "quadrature";
+      const double seconds =
+          Seconds([&] { way.render(all ? points : timed, E.data()); });
+      way.seconds = std::min(
+          way.seconds, all ? seconds
+                           : seconds * static_cast<double>(points.size()) /
+                                 static_cast<double>(timed.size()));
+    }
+  }
+  row("points", static_cast<double>(points.size()));
+  for (const Way& way : ways) {
+    if (way.name == "by_normal") {
+      // Few points are not interpolated.
+      way.render(points, E.data());
+      std::vector<double> whole(E);
+      const std::vector<ShadingPoint> spread = SpreadPoints(points, kFew);
+      for (size_t k = 0, i = 0; k < spread.size(); ++k) {
+        while (points[i].index != spread[k].index) ++i;
+        std::copy_n(&whole[3 * i], 3, &at_few[3 * k]);
+      }
+    } else {
+      way.render(few, at_few.data());
+    }
+    row(way.name + "_log_error", LogError(at_few, truth));
+    row(way.name + "_ms", 1e3 * way.seconds);
+  }
+}
+
+}  // namespace
+
+void GaussianStudy(const std::string& meshes) {
+  std::vector<Look> looks = Materials();
+  CookTorrance rough;
+  rough.roughness = Eigen::Array3d::Constant(0.4);
+  looks.insert(looks.begin() + 1, {"rough_0.4", SampleMerl(rough.Function())});
+  for (const char* shape : {"sphere", "spot_low_resolution"}) {
+    const Scene scene = LoadShape(meshes, shape);
+    for (const bool perspective : {false, true}) {
+      const std::vector<ShadingPoint> points = Points(scene, perspective);
+      for (const Light& light : Lights()) {
+        for (const Look& look : looks) {
+          StudyImage(std::string(shape) +
+                         (perspective ? " perspective " : " orthographic ") +
+                         look.name + " " + light.name,
+                     points, light, look, perspective);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace ibrdf

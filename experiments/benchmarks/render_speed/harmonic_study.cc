@@ -1,0 +1,95 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "experiments/benchmarks/render_speed/scenes.h"
+#include "experiments/benchmarks/render_speed/studies.h"
+#include "ibrdf/approximation/harmonic_transport.h"
+#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/sample_merl.h"
+#include "ibrdf/render/reference_renderer.h"
+#include "ibrdf/transport/transport.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kProbeOrder = 20;
+
+// Rough surfaces beside those of the other studies.
+std::vector<Look> MatteToMirror() {
+  std::vector<Look> looks;
+  for (const double roughness : {0.8, 0.4}) {
+    CookTorrance brdf;
+    brdf.roughness = Eigen::Array3d::Constant(roughness);
+    looks.push_back(
+        {"rough_0." + std::to_string(static_cast<int>(10 * roughness + 0.5)),
+         SampleMerl(brdf.Function())});
+  }
+  for (Look& look : Materials()) looks.push_back(std::move(look));
+  return looks;
+}
+
+}  // namespace
+
+void HarmonicStudy(const std::string&) {
+  const Scene scene = Scene::UnitSphere();
+  const std::vector<ShadingPoint> few = PointsByAngle(scene, 16, 1);
+  for (const Light& light : Lights()) {
+    const int height = light.map.height, width = light.map.width;
+    const ReferenceRenderer renderer(light.map, {});
+    for (const Look& look : MatteToMirror()) {
+      const BrdfGrid grid = BrdfGrid::FromMerl(look.table, {});
+      std::vector<double> truth(3 * few.size()), E(truth.size());
+      renderer.Render(few, look.table, truth.data());
+      HarmonicOptions options;
+      options.order = kProbeOrder;
+      const std::vector<double> predicted =
+          HarmonicTransport(few, height, width, options)
+              .PredictLogErrors(grid, light.map.rgb.data());
+      const std::string name = look.name + " " + light.name;
+      for (const int order : {2, 3, 4, 6, 8, 12, 16}) {
+        options.order = order;
+        HarmonicTransport(few, height, width, options)
+            .Render(grid, light.map.rgb.data(), E.data());
+        const std::string at = "_order_" + std::to_string(order);
+        Row("harmonics", name, "log_error" + at, LogError(E, truth));
+        Row("harmonics", name, "predicted" + at, predicted[order]);
+      }
+    }
+  }
+
+  // Speed, one thread: both transports' three products in turn.
+  const std::vector<ShadingPoint> points = PointsByAngle(scene, 128, 1);
+  const Light light = Lights()[0];
+  const float* const map = light.map.rgb.data();
+  const BrdfGrid grid = BrdfGrid::FromMerl(Materials()[0].table, {});
+  TransportOptions direct_options;
+  direct_options.num_threads = 1;
+  const Transport direct(points, 128, 256, direct_options);
+  std::vector<double> E(3 * points.size());
+  std::vector<float> by_grid(grid.values.size()), by_map(light.map.rgb.size());
+  for (const int order : {2, 4, 8}) {
+    HarmonicOptions options;
+    options.order = order;
+    options.num_threads = 1;
+    const HarmonicTransport harmonic(points, 128, 256, options);
+    double seconds[4] = {1e300, 1e300, 1e300, 1e300};
+    const auto least = [&](int k, const auto& call) {
+      seconds[k] = std::min(seconds[k], Seconds(call));
+    };
+    for (int round = 0; round < 3; ++round) {
+      least(0, [&] { direct.Render(grid, map, E.data()); });
+      least(1, [&] { harmonic.Render(grid, map, E.data()); });
+      least(2, [&] { harmonic.GridGradient(map, E.data(), by_grid.data()); });
+      least(3, [&] { harmonic.MapGradient(grid, E.data(), by_map.data()); });
+    }
+    const std::string name = "sphere 128 order " + std::to_string(order);
+    Row("harmonics", name, "transport_render_ms", 1e3 * seconds[0]);
+    Row("harmonics", name, "render_ms", 1e3 * seconds[1]);
+    Row("harmonics", name, "grid_gradient_ms", 1e3 * seconds[2]);
+    Row("harmonics", name, "map_gradient_ms", 1e3 * seconds[3]);
+    Row("harmonics", name, "times_faster", seconds[0] / seconds[1]);
+  }
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,277 @@
+// Radiance by BRDF and by light: E is linear in both, so that derivatives are
+// entries of two matrices.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "experiments/validation/derivatives/reference_transport.h"
+#include "experiments/validation/derivatives/studies.h"
+#include "tests/support/render_testing.h"
+#include "tests/support/shadow_testing.h"
+
+namespace ibrdf {
+namespace derivatives {
+namespace {
+
+using testing::PointAt;
+using testing::SmoothMap;
+
+// A point's reference takes all emitters'.
+constexpr size_t kBouncePoints = 6;
+
+BrdfGridShape SmallGrid() { return {12, 8, 6}; }
+
+// Signed, as tangents are.
+BrdfGrid RandomGrid(std::mt19937_64* rng) {
+  std::normal_distribution<float> normal;
+  BrdfGrid grid(SmallGrid());
+  for (float& v : grid.values) v = normal(*rng);
+  return grid;
+}
+
+// Of a point's radiance, channel c by channel c of the light and of the BRDF.
+struct PointGradients {
+  std::vector<float> map;   // [texels, 3]
+  std::vector<float> grid;  // [3, nodes]
+};
+
+PointGradients GradientsOf(const Transport& transport,
+                           const LightOperator& by_light, const BrdfGrid& grid,
+                           const Image& map, size_t point) {
+  std::vector<double> adjoint(size_t{3} * transport.num_points(), 0.0);
+  for (int c = 0; c < 3; ++c) adjoint[3 * point + c] = 1.0;
+  PointGradients by{std::vector<float>(map.rgb.size()),
+                    std::vector<float>(grid.values.size())};
+  by_light.ApplyTranspose(adjoint.data(), by.map.data());
+  transport.GridGradient(grid, map.rgb.data(), adjoint.data(), by.grid.data());
+  return by;
+}
+
+void AddScene(const std::string& kind, const std::vector<ShadingPoint>& points,
+              const Image& map, const BrdfGrid& grid,
+              const TransportOptions& options, ErrorTable* table) {
+  const Transport transport(points, map.height, map.width, options);
+  const ReferenceTransport reference(points, map.height, map.width, options);
+  const size_t nodes = reference.num_nodes(), texels = reference.num_texels();
+  const std::vector<Real> light(map.rgb.begin(), map.rgb.end());
+  const LightOperator by_light = transport.ByLight(grid);
+  const ReflectanceOperator stored = transport.ByReflectance(map.rgb.data());
+  const float* const fields[] = {grid.Channel(0), grid.Channel(1),
+                                 grid.Channel(2)};
+  std::vector<float> lobes(points.size() * 9), lobes_stored(lobes.size());
+  transport.RenderLobes(fields, 3, map.rgb.data(), lobes.data());
+  stored.Apply(fields, 3, lobes_stored.data());
+  const bool small =
+      FarBlockSize(map.height, map.width, options.quadrature.far_width) == 1;
+  std::vector<float> matrix(small ? points.size() * texels : 0);
+  if (small) transport.LightMatrix(grid.Channel(0), matrix.data());
+
+  for (size_t i = 0; i < points.size(); ++i) {
+    const int point = static_cast<int>(i);
+    const std::string where = "point " + std::to_string(i) +
+                              ", cosine of view " +
+                              Coordinates({points[i].normal.dot(points[i].wo)});
+    const std::vector<Real> gathered = reference.Gather(point, light);
+    const PointGradients by = GradientsOf(transport, by_light, grid, map, i);
+    std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
+    for (int c = 0; c < 3; ++c) {
+      const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
+      const std::vector<Real> row = reference.MapRow(point, field);
+      for (size_t t = 0; t < texels; ++t) map_row[3 * t + c] = row[t];
+      for (size_t n = 0; n < nodes; ++n) {
+        grid_row[c * nodes + n] = gathered[3 * n + c];
+      }
+      if (c == 0 && small) {
+        table->Add(
+            "transport: light matrix", kind, where,
+            {matrix.begin() + i * texels, matrix.begin() + (i + 1) * texels},
+            row);
+        std::vector<float> m(points.size() * texels, 0.0f), by_field(nodes);
+        for (size_t t = 0; t < texels; ++t) {
+          m[i * texels + t] = map.rgb[3 * t];
+        }
+        transport.LightMatrixGradient(m.data(), by_field.data());
+        std::vector<Real> expected(nodes);
+        for (size_t n = 0; n < nodes; ++n) expected[n] = gathered[3 * n];
+        table->Add("transport: light matrix by BRDF", kind, where,
+                   ToDoubles(by_field), expected);
+      }
+    }
+    table->Add("transport: radiance by map", kind, where, ToDoubles(by.map),
+               map_row);
+    table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by.grid),
+               grid_row);
+    // Entry by entry: radiance of signed fields cancels.
+    std::vector<Real> exact(9, 0);
+    std::vector<double> found(9), found_stored(9);
+    Real size = 0;
+    for (int k = 0; k < 3; ++k) {
+      for (int c = 0; c < 3; ++c) {
+        Real magnitude = 0;
+        for (size_t n = 0; n < nodes; ++n) {
+          const Real term = fields[k][n] * gathered[3 * n + c];
+          exact[3 * k + c] += term;
+          magnitude += std::abs(term);
+        }
+        size = std::max(size, magnitude);
+        found[3 * k + c] = lobes[9 * i + 3 * k + c];
+        found_stored[3 * k + c] = lobes_stored[9 * i + 3 * k + c];
+      }
+    }
+    // Relative to the sum of magnitudes: 1 + the error, of 1.
+    for (int k = 0; k < 9 && size > 0; ++k) {
+      const auto add = [&](const std::string& name, double value) {
+        table->Add(name, kind, where,
+                   {static_cast<double>(1 + (value - exact[k]) / size)}, {1});
+      };
+      add("transport: radiance of fields / sum of magnitudes", found[k]);
+      add("transport: the same by the stored operator", found_stored[k]);
+    }
+  }
+}
+
+// E is linear in the light and a polynomial in the BRDF. At a few of the points
+// that see emitters.
+void AddBounces(const std::string& kind,
+                const std::vector<ShadingPoint>& points, const Image& map,
+                const BrdfGrid& grid, const TransportOptions& options,
+                ErrorTable* table) {
+  const Transport transport(points, map.height, map.width, options);
+  const ReferenceBounces reference(points, map.height, map.width, options);
+  const std::vector<Real> light(map.rgb.begin(), map.rgb.end());
+  const LightOperator by_light = transport.ByLight(grid);
+  const size_t nodes = grid.shape.num_nodes(), texels = map.num_pixels();
+  std::vector<size_t> seeing;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (!options.emitters->SeenFrom(points[i]).empty()) seeing.push_back(i);
+  }
+  const size_t few = std::min(seeing.size(), kBouncePoints);
+  for (size_t k = 0; k < few; ++k) {
+    const size_t i = seeing[k * seeing.size() / few];
+    const std::string where = "point " + std::to_string(i);
+    const PointGradients by = GradientsOf(transport, by_light, grid, map, i);
+    std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
+    for (int c = 0; c < 3; ++c) {
+      const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
+      const ReferenceBounces::Rows rows =
+          reference.Derivatives(static_cast<int>(i), c, light, field);
+      for (size_t t = 0; t < texels; ++t) map_row[3 * t + c] = rows.by_map[t];
+      std::copy(rows.by_grid.begin(), rows.by_grid.end(),
+                grid_row.begin() + c * nodes);
+    }
+    table->Add("transport: radiance by map", kind, where, ToDoubles(by.map),
+               map_row);
+    table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by.grid),
+               grid_row);
+  }
+}
+
+// <a, A x> against <A^T a, x>, of the two operators of the library alone.
+void AddAdjoints(const std::string& kind,
+                 const std::vector<ShadingPoint>& points, const Image& map,
+                 const BrdfGrid& grid, const TransportOptions& options,
+                 std::mt19937_64* rng, ErrorTable* table) {
+  const Transport transport(points, map.height, map.width, options);
+  const LightOperator light = transport.ByLight(grid);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 10; ++trial) {
+    std::vector<double> a(3 * points.size()), E(a.size());
+    for (double& v : a) v = normal(*rng);
+    std::vector<float> tangent(map.rgb.size()), by_map(tangent.size());
+    for (float& v : tangent) v = static_cast<float>(normal(*rng));
+    light.Apply(tangent.data(), E.data());
+    light.ApplyTranspose(a.data(), by_map.data());
+    Real left = 0, right = 0, size = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+      left += Real(a[i]) * E[i];
+      size += std::abs(Real(a[i]) * E[i]);
+    }
+    for (size_t t = 0; t < tangent.size(); ++t) {
+      right += Real(by_map[t]) * tangent[t];
+    }
+    table->Add("transport: adjoint identity by map", kind,
+               "trial " + std::to_string(trial),
+               {static_cast<double>(1 + (left - right) / size)}, {1});
+    transport.Render(grid, map.rgb.data(), E.data());
+    std::vector<float> by_grid(grid.values.size());
+    transport.GridGradient(grid, map.rgb.data(), a.data(), by_grid.data());
+    left = right = size = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+      left += Real(a[i]) * E[i];
+      size += std::abs(Real(a[i]) * E[i]);
+    }
+    for (size_t n = 0; n < by_grid.size(); ++n) {
+      right += Real(by_grid[n]) * grid.values[n];
+    }
+    table->Add("transport: adjoint identity by BRDF", kind,
+               "trial " + std::to_string(trial),
+               {static_cast<double>(1 + (left - right) / size)}, {1});
+  }
+}
+
+}  // namespace
+
+void StudyTransport(const StudyOptions& options, ErrorTable* table) {
+  std::mt19937_64 rng(options.seed);
+  TransportOptions plain;
+  plain.grid = SmallGrid();
+  const int side = std::clamp(options.points / 25, 4, 8);
+  const std::vector<ShadingPoint> sphere = testing::SpherePoints(side);
+  std::vector<ShadingPoint> grazing;
+  for (const double degrees : {89.0, 89.9, 89.94, 89.9427}) {
+    grazing.push_back(PointAt(degrees * testing::kPi / 180, 40));
+  }
+  const BrdfGrid matte =
+      BrdfGrid::FromFunction(testing::Glossy(0.3, 0.2, 20), SmallGrid());
+  const BrdfGrid glossy =
+      BrdfGrid::FromFunction(testing::Glossy(0.05, 0.6, 3), SmallGrid());
+  Image sun = SmoothMap(32, 64);
+  std::fill_n(sun.At(40, 9), 3, 1e6f);
+  Image lamp = testing::ConstantMap(32, 64, 0.0f);
+  std::fill_n(lamp.At(40, 9), 3, 1e6f);
+
+  AddScene("sphere", sphere, SmoothMap(32, 64), matte, plain, table);
+  AddScene("signed BRDF", sphere, SmoothMap(8, 16), RandomGrid(&rng), plain,
+           table);
+  AddScene("map in blocks", sphere, SmoothMap(64, 128), glossy, plain, table);
+  AddScene("sun of one texel", sphere, sun, glossy, plain, table);
+  AddScene("sun alone", sphere, lamp, glossy, plain, table);
+  AddScene("grazing", grazing, SmoothMap(32, 64), glossy, plain, table);
+
+  const Scene torus = Scene::FromMesh(testing::TorusMesh(32, 16)).value();
+  const std::vector<ShadingPoint> points =
+      FindShadingPoints(torus, testing::TorusCamera(), side, side, Mask(), 1)
+          .value();
+  TransportOptions shadowed = plain;
+  shadowed.visibility =
+      std::make_shared<Visibility>(torus, points, VisibilityOptions());
+  AddScene("shadows", points, SmoothMap(32, 64), glossy, shadowed, table);
+  AddScene("shadows, map in blocks", points, SmoothMap(64, 128), glossy,
+           shadowed, table);
+
+  for (const int bounces : {1, 3}) {
+    SurfaceEmitterOptions how;
+    how.bounces = bounces;
+    how.max_emitters = 200;
+    TransportOptions lit = shadowed;
+    lit.emitters = std::make_shared<SurfaceEmitters>(torus, points,
+                                                     shadowed.visibility, how);
+    const std::string name =
+        std::to_string(bounces) + (bounces == 1 ? " bounce" : " bounces");
+    AddBounces(name, points, SmoothMap(16, 32), matte, lit, table);
+    AddBounces(name + ", glossy, sun of one texel", points, sun, glossy, lit,
+               table);
+  }
+
+  AddAdjoints("sphere", sphere, SmoothMap(32, 64), RandomGrid(&rng), plain,
+              &rng, table);
+  AddAdjoints("sun of one texel", sphere, sun, RandomGrid(&rng), plain, &rng,
+              table);
+  AddAdjoints("shadows, map in blocks", points, SmoothMap(64, 128),
+              RandomGrid(&rng), shadowed, &rng, table);
+}
+
+}  // namespace derivatives
+}  // namespace ibrdf

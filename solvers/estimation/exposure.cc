@@ -1,0 +1,48 @@
+#include "ibrdf/solvers/estimation/exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ibrdf/solvers/costs/log_likelihood.h"
+#include "ibrdf/solvers/observation/observation.h"
+
+namespace ibrdf {
+namespace {
+
+void Scale(double factor, Image* image) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  for (float& v : image->rgb) {
+    if (!std::isfinite(v)) continue;  // bad pixels stay bad
+    v = static_cast<float>(std::clamp(v * factor, -kMost, kMost));
+  }
+}
+
+}  // namespace
+
+double ExposureOf(const InverseProblem& problem) {
+  const Observations observed =
+      MakeObservations(RadianceOf(problem.image, problem.points));
+  if (observed.num_valid == 0) return 1.0;
+  double sum = 0.0;
+  for (size_t i = 0; i < observed.radiance.size(); ++i) {
+    if (observed.valid[i / 3]) sum += std::log2(observed.radiance[i]);
+  }
+  return std::exp2(std::round(sum / (3.0 * observed.num_valid)));
+}
+
+InverseProblem InUnitsOf(double exposure, const InverseProblem& problem) {
+  InverseProblem out = problem;
+  Scale(1.0 / exposure, &out.image);
+  if (out.known_map) Scale(1.0 / exposure, &*out.known_map);
+  if (out.epsilon) *out.epsilon /= exposure;
+  return out;
+}
+
+void RestoreUnits(double exposure, Solution* estimate) {
+  Scale(exposure, &estimate->map);
+  Scale(exposure, &estimate->render);
+  estimate->epsilon *= exposure;
+}
+
+}  // namespace ibrdf

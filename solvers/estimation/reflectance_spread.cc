@@ -1,0 +1,113 @@
+#include "ibrdf/solvers/estimation/reflectance_spread.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ibrdf/base/eigen_vectors.h"
+#include "ibrdf/base/normal_source.h"
+#include "ibrdf/geometry/half_diff.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr BrdfGridShape kGrid = {36, 16, 24};
+constexpr double kFloor = 1e-6;  // raw units, as of CompareBrdfs
+// Errors over spreads: the median and the 90th percentile.
+constexpr double kMedianRatio = 2.1;
+constexpr double kMostRatio = 3.8;
+
+// Into the unit ball where they are outside.
+void ClampCodes(const LobeModel& lobes, Eigen::VectorXd* parameters) {
+  for (int k = 0; k < lobes.num_lobes(); ++k) {
+    auto code = parameters->segment(k * lobes.lobe_size(), lobes.code_size());
+    code /= std::max(code.norm(), 1.0);
+  }
+}
+
+}  // namespace
+
+LobeDistance::LobeDistance(const LobeFactory& lobes)
+    : lobes_(lobes(kGrid)), weights_(kGrid.num_nodes()) {
+  // Bins are spaced evenly in sqrt(theta_h), nodes between 0 and the bound of
+  // it. Nodes at an end stand for half as much.
+  double sum = 0.0;
+  for (int node = 0; node < kGrid.num_nodes(); ++node) {
+    const Eigen::Vector3d x = kGrid.NodePoint(node);
+    const double bound = ThetaHBound(M_PI / 2 * x[1], M_PI * x[2]);
+    double w = std::sqrt(std::max(bound, 0.0));
+    for (const double end : {x[0], x[1]}) {
+      if (end == 0.0 || end == 1.0) w *= 0.5;
+    }
+    weights_[node] = w;
+    sum += w;
+  }
+  for (double& w : weights_) w /= sum;
+}
+
+std::vector<double> LobeDistance::LogValues(
+    const std::vector<double>& parameters) const {
+  const BrdfGrid grid = lobes_->Grid(parameters.data());
+  std::vector<double> values(grid.values.size());
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double raw = grid.values[i] / kMerlScale[i / weights_.size()];
+    values[i] = std::log(std::max(raw, 0.0) + kFloor);
+  }
+  return values;
+}
+
+double LobeDistance::Aligned(const std::vector<double>& a,
+                             const std::vector<double>& b) const {
+  CHECK_EQ(3 * weights_.size(), a.size());
+  CHECK_EQ(a.size(), b.size());
+  double squares = 0.0;
+  for (size_t c = 0; c < 3; ++c) {
+    const size_t first = c * weights_.size();
+    double mean = 0.0, square = 0.0;
+    for (size_t i = 0; i < weights_.size(); ++i) {
+      const double d = a[first + i] - b[first + i];
+      mean += weights_[i] * d;
+      square += weights_[i] * d * d;
+    }
+    squares += std::max(square - mean * mean, 0.0);
+  }
+  return std::sqrt(squares / 3.0);
+}
+
+double ReflectanceSpread(const LobeDistance& distance,
+                         const std::vector<double>& parameters,
+                         const std::vector<double>& covariance, int draws,
+                         uint64_t seed) {
+  const auto n = static_cast<Eigen::Index>(parameters.size());
+  CHECK_EQ(parameters.size() * parameters.size(), covariance.size());
+  CHECK_GT(draws, 0);
+  const Eigen::Map<const Eigen::MatrixXd> matrix(covariance.data(), n, n);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  if (!matrix.allFinite()) return nan;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  if (solver.info() != Eigen::Success) return nan;
+  const Eigen::VectorXd deviations =
+      solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const std::vector<double> at = distance.LogValues(parameters);
+  NormalSource normal(seed);
+  double squares = 0.0;
+  for (int k = 0; k < draws; ++k) {
+    Eigen::VectorXd z(n);
+    for (Eigen::Index i = 0; i < n; ++i) z[i] = normal.Next();
+    Eigen::VectorXd drawn = ToEigen(parameters) +
+                            solver.eigenvectors() * deviations.cwiseProduct(z);
+    ClampCodes(distance.lobes(), &drawn);
+    const double d = distance.Aligned(distance.LogValues(ToVector(drawn)), at);
+    squares += d * d;
+  }
+  return std::sqrt(squares / draws);
+}
+
+ErrorToExpect ExpectError(double spread) {
+  return {kMedianRatio * spread, kMostRatio * spread};
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,66 @@
+// What a solve returns: the estimate, how it was found and how far to trust it.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/image/image.h"
+
+namespace ibrdf {
+
+// One line of the trace: the best state after a step. Costs of lines with
+// another scale or another number of pixels do not compare; misfits do.
+struct TraceEntry {
+  std::string stage;
+  double seconds = 0.0;     // with those spent before
+  double scale = 0.0;       // b of the likelihood then
+  int64_t pixels = 0;       // that took part, joined ones as one
+  double cost = 0.0;        // likelihood + priors, nats
+  double likelihood = 0.0;  // sum |log E - log I| / b, smoothed
+  double reflectance_prior = 0.0;
+  double illumination_prior = 0.0;
+  double misfit = 0.0;  // mean |log E - log I|
+};
+
+// A reflectance that explains the image too: where it began, and how far it
+// lies from the estimate.
+struct Alternative {
+  std::string start;  // training material
+  double cost = 0.0;  // -log posterior, nats, above the best one's
+  double brdf_log_difference = 0.0;  // as ibrdf_eval's aligned log-RMSE
+};
+
+struct Solution {
+  std::vector<double> lobe_parameters;  // as LobeModel; empty if known
+  // Posterior covariance of those (Laplace, light integrated out), row-major;
+  // empty where it was not found.
+  std::vector<double> lobe_covariance;
+  // Of that posterior, see reflectance_spread.h; NaN where it was not found.
+  double spread = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Alternative> alternatives;  // joint problems
+  // Standard deviation of log radiance given the reflectance, at the
+  // resolution of the search; empty where there was none or its end was not
+  // kept.
+  Image map_std;
+  MerlTable brdf;      // empty if known
+  Image map;           // [H, W]; the known one if known
+  Image render;        // radiance at the object's pixels, else 0
+  double scale = 0.0;  // b used at the end
+  double epsilon = 0.0;
+  double misfit = 0.0;
+  // Of the start and of this estimate, both with `scale` on all pixels:
+  // end_cost <= start_cost.
+  double start_cost = 0.0, end_cost = 0.0;
+  double seconds = 0.0;  // with those spent before
+  int64_t pixels_used = 0;
+  std::string
+      start;  // in words: the reflectance that the best start began with
+  std::vector<TraceEntry> trace;
+  // kOk; kNoImprovement or kInterrupted: this is the best iterate found.
+  Status status;
+};
+
+}  // namespace ibrdf

@@ -1,0 +1,175 @@
+#include "ibrdf/solvers/illumination/process_illumination.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "ibrdf/solvers/priors/directional_lights.h"
+#include "ibrdf/solvers/priors/light_spectrum.h"
+
+namespace ibrdf {
+namespace {
+
+// Of a factor's diagonal: rounding of the highest frequencies at the poles.
+constexpr double kJitter = 1e-10;
+
+// Texels: a process of more would take minutes and gigabytes.
+constexpr int kMostSide = 256;
+
+class ProcessIllumination final : public IlluminationModel {
+ public:
+  ProcessIllumination(int width, int height, const LightProcess& process,
+                      const LightScales& scales,
+                      const std::vector<Eigen::Vector3d>& lamps)
+      : IlluminationModel(width, height),
+        spectrum_(ProcessSpectrum(height, width, process).At(scales)),
+        axes_(ColourAxes()),
+        lamp_texels_(NearLamps(lamps, height, width)) {
+    const Eigen::Matrix3d local =
+        std::exp(scales.log_amplitude) * process.Local();
+    const Eigen::Matrix3d level = width * process.Level();
+    for (int kind = 0; kind < 2; ++kind) {
+      const Eigen::Vector3d axis = axes_.row(kind);
+      lamp_std_[kind] = std::sqrt(axis.dot(process.Lamp() * axis));
+      for (int k = 0; k < spectrum_.num_frequencies(); ++k) {
+        RowMatrix factor = axis.dot(local * axis) * spectrum_.block(k);
+        if (k == 0) factor.array() += axis.dot(level * axis);
+        factor.diagonal() *= 1.0 + kJitter;
+        CHECK(Factorise(&factor)) << "frequency " << k;
+        factors_[kind].push_back(factor.triangularView<Eigen::Lower>());
+      }
+    }
+  }
+
+  int num_parameters() const override {
+    return num_outputs() + 3 * static_cast<int>(lamp_texels_.size());
+  }
+  std::vector<float> ConstantMap(const double* log_radiance) const override {
+    std::vector<float> w(num_parameters(), 0.0f);
+    ShiftChannels(log_radiance, w.data());
+    return w;
+  }
+  std::vector<float> PriorStd() const override {
+    return std::vector<float>(num_parameters(), 1.0f);
+  }
+  void Forward(const float* parameters, float* log_radiance) override {
+    const int H = height(), W = width();
+    RowMatrix coefficients(3 * H, W), axes;
+    for (int a = 0; a < 3; ++a) {
+      for (int j = 0; j < W; ++j) {
+        coefficients.col(j).segment(a * H, H).noalias() =
+            Factor(a, j).triangularView<Eigen::Lower>() *
+            Eigen::Map<const Eigen::VectorXf>(parameters + Index(a, j), H)
+                .cast<double>();
+      }
+    }
+    MultiplyTransposed(coefficients, spectrum_.basis(), &axes);
+    ForLampTexels([&](int a, int texel, double std, int parameter) {
+      axes(a * H + texel / W, texel % W) += std * parameters[parameter];
+    });
+    for (int c = 0; c < 3; ++c) {
+      FloatMap(log_radiance + static_cast<size_t>(c) * H * W, H, W) =
+          (axes_(0, c) * axes.middleRows(0, H) +
+           axes_(1, c) * axes.middleRows(H, H) +
+           axes_(2, c) * axes.middleRows(2 * H, H))
+              .cast<float>();
+    }
+  }
+  // Linear: the products are the same everywhere.
+  void Linearise(const float* parameters, float* log_radiance) override {
+    Forward(parameters, log_radiance);
+  }
+  void Jvp(const float* tangent, float* d_log_radiance) override {
+    Forward(tangent, d_log_radiance);
+  }
+  void Vjp(const float* adjoint, float* gradient) override {
+    const int H = height(), W = width();
+    RowMatrix axes = RowMatrix::Zero(3 * H, W), coefficients;
+    for (int a = 0; a < 3; ++a) {
+      for (int c = 0; c < 3; ++c) {
+        axes.middleRows(a * H, H) +=
+            axes_(a, c) *
+            ConstFloatMap(adjoint + static_cast<size_t>(c) * H * W, H, W)
+                .cast<double>();
+      }
+    }
+    ForLampTexels([&](int a, int texel, double std, int parameter) {
+      gradient[parameter] =
+          static_cast<float>(std * axes(a * H + texel / W, texel % W));
+    });
+    Multiply(axes, spectrum_.basis(), &coefficients);
+    for (int a = 0; a < 3; ++a) {
+      for (int j = 0; j < W; ++j) {
+        Eigen::Map<Eigen::VectorXf>(gradient + Index(a, j), H) =
+            (Factor(a, j).transpose().triangularView<Eigen::Upper>() *
+             coefficients.col(j).segment(a * H, H))
+                .cast<float>();
+      }
+    }
+  }
+  void ShiftChannels(const double* shift, float* parameters) const override {
+    const int H = height();
+    const Eigen::Vector3d by_axis =
+        axes_ * Eigen::Vector3d(shift[0], shift[1], shift[2]);
+    for (int a = 0; a < 3; ++a) {
+      Eigen::VectorXd w = Eigen::VectorXd::Constant(
+          H, by_axis[a] * std::sqrt(static_cast<double>(width())));
+      Factor(a, 0).triangularView<Eigen::Lower>().solveInPlace(w);
+      Eigen::Map<Eigen::VectorXf>(parameters + Index(a, 0), H) +=
+          w.cast<float>();
+    }
+  }
+
+ private:
+  using FloatMatrix =
+      Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using FloatMap = Eigen::Map<FloatMatrix>;
+  using ConstFloatMap = Eigen::Map<const FloatMatrix>;
+
+  // of(axis, texel, standard deviation, parameter) of what the lamps add.
+  template <typename Of>
+  void ForLampTexels(const Of& of) const {
+    int parameter = num_outputs();
+    for (int a = 0; a < 3; ++a) {
+      for (const LampTexel& near : lamp_texels_) {
+        of(a, near.texel, lamp_std_[a == 0 ? 0 : 1] * near.weight, parameter++);
+      }
+    }
+  }
+
+  // Parameters: [axis][coefficient][row], then the lamps' [axis][texel].
+  size_t Index(int axis, int j) const {
+    return (static_cast<size_t>(axis) * width() + j) * height();
+  }
+  const RowMatrix& Factor(int axis, int j) const {
+    return factors_[axis == 0 ? 0 : 1][LightSpectrum::FrequencyOf(j)];
+  }
+
+  const LightSpectrum spectrum_;
+  const Eigen::Matrix3d axes_;
+  // Of grey and of chroma, by frequency; lower triangular.
+  std::vector<RowMatrix> factors_[2];
+  const std::vector<LampTexel> lamp_texels_;
+  double lamp_std_[2];
+};
+
+}  // namespace
+
+std::unique_ptr<IlluminationModel> MakeProcessIllumination(
+    int width, int height, const LightProcess& process,
+    const LightScales& scales, const std::vector<Eigen::Vector3d>& lamps) {
+  return std::make_unique<ProcessIllumination>(width, height, process, scales,
+                                               lamps);
+}
+
+MapSize ProcessSize(MapSize size) {
+  while (std::max(size.width, size.height) > kMostSide) {
+    size.width = std::max(size.width / 4 * 2, 8);
+    size.height = std::max(size.height / 2, 4);
+  }
+  return size;
+}
+
+}  // namespace ibrdf

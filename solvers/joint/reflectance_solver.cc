@@ -1,0 +1,91 @@
+#include "ibrdf/solvers/joint/reflectance_solver.h"
+
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+
+#include "ibrdf/solvers/optim/conditioning.h"
+#include "ibrdf/solvers/optim/stop_callback.h"
+#include "ibrdf/solvers/priors/material_prior_cost.h"
+
+namespace ibrdf {
+namespace {
+
+// Of the problem's normal equations, J^T J, at its parameters' values.
+void LogConditioning(ceres::Problem* problem, double cost) {
+  ceres::CRSMatrix jacobian;
+  if (!problem->Evaluate({}, nullptr, nullptr, nullptr, &jacobian)) return;
+  Eigen::MatrixXd J =
+      Eigen::MatrixXd::Zero(jacobian.num_rows, jacobian.num_cols);
+  for (int row = 0; row < jacobian.num_rows; ++row) {
+    for (int i = jacobian.rows[row]; i < jacobian.rows[row + 1]; ++i) {
+      J(row, jacobian.cols[i]) = jacobian.values[i];
+    }
+  }
+  VLOG(1) << "reflectance: cost " << cost
+          << ", condition of the normal equations, columns scaled, "
+          << ScaledCondition(J.transpose() * J);
+}
+
+}  // namespace
+
+double SolveReflectance(const Transport& transport, const LobeModel& lobes,
+                        const std::vector<float>& map,
+                        const Observations& observed,
+                        const ReflectanceStepOptions& options,
+                        std::vector<double>* parameters) {
+  ceres::Problem problem;
+  problem.AddResidualBlock(
+      new LobeRadianceCost(&transport, &lobes, map, &observed,
+                           options.likelihood, options.stored),
+      nullptr, parameters->data());
+  ceres::CostFunction* const prior =
+      options.materials != nullptr
+          ? static_cast<ceres::CostFunction*>(
+                new MaterialPriorCost(options.materials))
+          : new LobePriorCost(lobes.num_lobes(), lobes.code_size(),
+                              options.prior);
+  problem.AddResidualBlock(prior, nullptr, parameters->data());
+  ceres::Solver::Options o;
+  o.linear_solver_type = ceres::DENSE_QR;
+  o.initial_trust_region_radius = options.trust_region_radius;
+  o.max_num_iterations = options.max_iterations;
+  o.function_tolerance = options.tolerance;
+  o.logging_type = ceres::SILENT;
+  StopCallback stop(options.should_stop);
+  o.callbacks.push_back(&stop);
+  ceres::Solver::Summary summary;
+  ceres::Solve(o, &problem, &summary);
+  if (VLOG_IS_ON(1)) LogConditioning(&problem, summary.final_cost);
+  return summary.final_cost;
+}
+
+std::vector<double> GaugeShift(const LobeModel& lobes, const LobePrior& prior,
+                               const std::vector<double>& parameters,
+                               const double* mean_log_radiance,
+                               double light_std) {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  const double w = 1.0 / (prior.colour_sigma * prior.colour_sigma);
+  for (int k = 0; k < lobes.num_lobes(); ++k) {
+    for (int c = 0; c < 3; ++c) {
+      const double a =
+          parameters[k * lobes.lobe_size() + lobes.code_size() + c];
+      A(c, c) += w;
+      b[c] += w * (prior.colour_mean[c] - a);
+    }
+  }
+  const double v = 1.0 / (light_std * light_std);
+  for (const int c : {0, 2}) {
+    Eigen::Vector3d row = Eigen::Vector3d::Zero();
+    row[c] = 1.0;
+    row[1] = -1.0;
+    A += v * row * row.transpose();
+    b += v * row * (mean_log_radiance[c] - mean_log_radiance[1]);
+  }
+  const Eigen::Vector3d d = A.ldlt().solve(b);
+  return {d[0], d[1], d[2]};
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,27 @@
+// An image as a few synthetic points: what an estimate of the light needs of
+// it.
+#pragma once
+#include <vector>
+
+#include "ibrdf/scene/scene.h"
+
+namespace ibrdf {
+
+struct MeanCells {
+  std::vector<ShadingPoint> points;  // mean normal and view; pixel of a member
+  std::vector<double> radiance;      // [points * 3], geometric mean
+};
+
+// Joins points of like normals, seen along like directions: a point of distant
+// light without shadows says no more than these two, so that a cell's mean
+// radiance is that of its mean normal but for the second order in the cell's
+// size, and the noise of its pixels averages out. cells_across > 0: of the
+// diameter of the disc of normals seen along an orthographic view. Points at a
+// cosine below min_cosine are left out (at the limb a pixel's centre stands
+// badly for its area), as are those that are not finite and positive in all
+// channels of radiance [points * 3].
+MeanCells JoinLikePoints(const std::vector<ShadingPoint>& points,
+                         const std::vector<double>& radiance, int cells_across,
+                         double min_cosine);
+
+}  // namespace ibrdf

@@ -1,0 +1,35 @@
+// Compact sources of light: the sun, lamps, windows far away. A Gaussian
+// process of log radiance that is right for the rest of light holds none.
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "ibrdf/scene/scene.h"
+
+namespace ibrdf {
+
+// sr. A lamp has no width; its radiance is that of so large a piece of sky.
+inline constexpr double kLampSolidAngle = 0.1;
+
+// Where light that makes the image's highlights comes from if it mirrors: unit
+// directions, at most `most`, the brightest first. A highlight is a local
+// maximum of luminance over the directions around it. radiance [points][3].
+std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
+                                       const std::vector<double>& radiance,
+                                       int most);
+
+// A lamp at offsets [2], radians along two axes of its tangent plane.
+Eigen::Vector3d MovedLamp(const Eigen::Vector3d& lamp, const double* offsets);
+
+// A texel of a map [H, W] in which a lamp may be.
+struct LampTexel {
+  int texel = 0;        // row * W + column
+  double weight = 0.0;  // in (0, 1]: of LightProcess::Lamp's deviations
+};
+
+// Those around lamps whose directions are known to some degrees, in order;
+// where lamps meet, the larger weight.
+std::vector<LampTexel> NearLamps(const std::vector<Eigen::Vector3d>& lamps,
+                                 int height, int width);
+
+}  // namespace ibrdf

@@ -1,0 +1,191 @@
+#include "ibrdf/solvers/priors/material_prior.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ibrdf/solvers/priors/embedding_prior.h"
+
+namespace ibrdf {
+namespace {
+
+// Share of the off-diagonal covariance that is given up: some 90 materials
+// stand for 38 dimensions.
+constexpr double kShrinkage = 0.2;
+// Log colour of lobes beyond a material's own, relative to its last lobe's.
+constexpr double kExtraLobe = -3.0;
+// Their codes start within so many of the prior's standard deviations, in each
+// dimension's mean: a narrow prior would otherwise start at an infinite cost.
+constexpr double kExtraDeviations = 2.0;
+
+// Lobes of every material: those of its fit, or one of its mean code.
+std::vector<MaterialPrior::Material> FittedMaterials(
+    const NeuralBrdfModel& model, int lobes) {
+  const int lobe_size = model.shape.code_size() + 3;
+  std::vector<MaterialPrior::Material> materials;
+  if (model.fit_lobes == 0 || lobes < model.fit_lobes) {
+    const int size = model.shape.code_size();
+    const std::vector<MaterialCode> codes = MaterialCodes(model);
+    for (size_t m = 0; m < codes.size(); ++m) {
+      MaterialPrior::Material material{codes[m].name,
+                                       Eigen::VectorXd(lobe_size)};
+      std::copy(codes[m].code.begin(), codes[m].code.end(),
+                material.parameters.data());
+      for (int c = 0; c < 3; ++c) {
+        material.parameters[size + c] = model.log_colours[3 * m + c];
+      }
+      materials.push_back(std::move(material));
+    }
+    return materials;
+  }
+  const Eigen::Index size =
+      static_cast<Eigen::Index>(model.fit_lobes) * lobe_size;
+  for (int m = 0; m < model.num_materials(); ++m) {
+    const std::string& name = model.names[static_cast<size_t>(3) * m];
+    materials.push_back(
+        {name.substr(0, name.rfind('.')),
+         Eigen::Map<const Eigen::VectorXf>(&model.lobe_fits[m * size], size)
+             .cast<double>()});
+  }
+  return materials;
+}
+
+// Of a known material's parameters: no step or derivative tells it from 0.
+constexpr double kKnownStd = 1e-9;
+
+}  // namespace
+
+double MaterialPrior::WallCost(const Eigen::VectorXd& x,
+                               Eigen::VectorXd* gradient) const {
+  double cost = 0.0;
+  for (int k = 0; k < num_lobes(); ++k) {
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * (code_size + 3);
+    const double norm = x.segment(first, code_size).norm();
+    if (norm <= 1.0) continue;
+    cost += 0.5 * wall * wall * (norm - 1.0) * (norm - 1.0);
+    if (gradient != nullptr) {
+      gradient->segment(first, code_size) +=
+          wall * wall * (norm - 1.0) / norm * x.segment(first, code_size);
+    }
+  }
+  return cost;
+}
+
+void MaterialPrior::AddWallInformation(const Eigen::VectorXd& x,
+                                       Eigen::MatrixXd* information) const {
+  for (int k = 0; k < num_lobes(); ++k) {
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * (code_size + 3);
+    const Eigen::VectorXd z = x.segment(first, code_size);
+    if (z.norm() <= 1.0) continue;
+    const Eigen::VectorXd outward = wall * z.normalized();
+    information->block(first, first, code_size, code_size) +=
+        outward * outward.transpose();
+  }
+}
+
+double MaterialPrior::Cost(const Eigen::VectorXd& x,
+                           Eigen::VectorXd* gradient) const {
+  const auto lower = factor.triangularView<Eigen::Lower>();
+  const Eigen::VectorXd y = lower.solve(x - mean);
+  if (gradient != nullptr) *gradient += lower.transpose().solve(y);
+  return 0.5 * y.squaredNorm() + WallCost(x, gradient);
+}
+
+double MaterialPrior::CostAtBestLevel(const Eigen::VectorXd& x) const {
+  const auto lower = factor.triangularView<Eigen::Lower>();
+  const Eigen::VectorXd y = lower.solve(x - mean);
+  Eigen::VectorXd level = Eigen::VectorXd::Zero(x.size());
+  for (int k = 0; k < num_lobes(); ++k) {
+    level.segment<3>(static_cast<Eigen::Index>(k) * (code_size + 3) + code_size)
+        .setOnes();
+  }
+  const Eigen::VectorXd along = lower.solve(level).normalized();
+  return 0.5 * (y - y.dot(along) * along).squaredNorm() + WallCost(x, nullptr);
+}
+
+MaterialPrior KnownMaterial(const Eigen::VectorXd& parameters) {
+  const Eigen::Index n = parameters.size();
+  MaterialPrior prior;
+  prior.mean = parameters;
+  prior.factor = kKnownStd * Eigen::MatrixXd::Identity(n, n);
+  prior.materials.push_back({"known", parameters});
+  return prior;
+}
+
+MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,
+                        double code_sigma) {
+  const LobePrior embedding = EmbeddingPrior(model, code_sigma);
+  const int size = model.shape.code_size(), lobe_size = size + 3;
+  MaterialPrior prior;
+  prior.code_size = size;
+  prior.mean =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lobes) * lobe_size);
+  Eigen::VectorXd std =
+      Eigen::VectorXd::Constant(prior.mean.size(), code_sigma);
+  for (int k = 0; k < lobes; ++k) {
+    for (int c = 0; c < 3; ++c) {
+      prior.mean[k * lobe_size + size + c] = embedding.colour_mean[c];
+      std[k * lobe_size + size + c] = embedding.colour_sigma;
+    }
+  }
+  prior.factor = std.asDiagonal();
+  prior.materials = FittedMaterials(model, lobes);
+  for (MaterialPrior::Material& m : prior.materials) {
+    while (m.parameters.size() < prior.mean.size()) {
+      const Eigen::Index n = m.parameters.size();
+      m.parameters.conservativeResize(n + lobe_size);
+      m.parameters.tail(lobe_size) =
+          m.parameters.segment(n - lobe_size, lobe_size);
+      auto code = m.parameters.segment(n, size);
+      const double most =
+          kExtraDeviations * code_sigma * std::sqrt(static_cast<double>(size));
+      if (code.norm() > most) code *= most / code.norm();
+      m.parameters.tail(3).array() += kExtraLobe;
+    }
+  }
+  return prior;
+}
+
+MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
+                                 double code_sigma) {
+  MaterialPrior prior = BallPrior(model, lobes, code_sigma);
+  const std::vector<MaterialPrior::Material> materials =
+      FittedMaterials(model, lobes);
+  if (materials.size() < 3) return prior;
+  const MaterialPrior own = GaussianPrior(materials, prior.code_size);
+  const Eigen::Index size = own.mean.size();
+  prior.mean.head(size) = own.mean;
+  prior.factor.topLeftCorner(size, size) = own.factor;
+  return prior;
+}
+
+MaterialPrior GaussianPrior(std::vector<MaterialPrior::Material> materials,
+                            int code_size) {
+  CHECK_GE(materials.size(), 3u);
+  const Eigen::Index size = materials.front().parameters.size();
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
+  for (const MaterialPrior::Material& m : materials) mean += m.parameters;
+  mean /= static_cast<double>(materials.size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  for (const MaterialPrior::Material& m : materials) {
+    const Eigen::VectorXd d = m.parameters - mean;
+    covariance += d * d.transpose() / (materials.size() - 1.0);
+  }
+  // A dimension in which the materials do not differ is not known exactly.
+  const Eigen::VectorXd variance = covariance.diagonal().cwiseMax(1e-4);
+  covariance *= 1.0 - kShrinkage;
+  covariance.diagonal() = variance;
+  const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
+  CHECK(llt.info() == Eigen::Success);
+  MaterialPrior prior;
+  prior.mean = mean;
+  prior.factor = llt.matrixL();
+  prior.materials = std::move(materials);
+  prior.code_size = code_size;
+  return prior;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,47 @@
+// What a solve is given: the image, the object's points and what is known.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/flow/neural_brdf_model.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/io/problem.h"
+#include "ibrdf/scene/scene.h"
+#include "ibrdf/solvers/effects/effects_plan.h"
+#include "ibrdf/transport/transport.h"
+
+namespace ibrdf {
+
+struct InverseProblem {
+  ProblemKind kind = ProblemKind::kJoint;
+  Image image;                       // observed radiance
+  std::vector<ShadingPoint> points;  // of the object's pixels, at most one each
+
+  // Unknown reflectance: the trained model; known: its grid.
+  NeuralBrdfModel model;
+  int lobes = 2;
+  double prior_sigma = 0.5;
+  std::optional<BrdfGrid> known_brdf;
+
+  // Size of the map; known: its radiance at that size.
+  int map_width = 128, map_height = 64;
+  IlluminationPrior illumination_prior = IlluminationPrior::kUNet;
+  int unet_channels = 32;
+  std::optional<Image> known_map;
+
+  std::optional<double> scale, epsilon;  // of the likelihood
+  SolverSpec solver;
+  // Of solver.seconds: what went before the call, and what is to be left for
+  // what follows it, as a program reads files before and writes them after.
+  double seconds_spent = 0.0, seconds_reserved = 0.0;
+  uint64_t seed = 1;
+  int num_threads = 0;
+  // Of the level solver.quadrature; with the visibility of `points` where
+  // `effects` has it.
+  TransportOptions transport;
+  EffectsPlan effects;
+};
+
+}  // namespace ibrdf

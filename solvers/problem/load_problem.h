@@ -1,0 +1,16 @@
+// A problem file's inputs, read and checked.
+#pragma once
+#include <cstdint>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/io/problem.h"
+#include "ibrdf/solvers/problem/inverse_problem.h"
+
+namespace ibrdf {
+
+// Reads every file that a checked problem names and finds the object's pixels.
+StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
+                                            uint64_t default_seed,
+                                            int num_threads);
+
+}  // namespace ibrdf

@@ -1,0 +1,386 @@
+#include "ibrdf/solvers/report/preview.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "ibrdf/base/format.h"
+#include "ibrdf/solvers/report/tone_map.h"
+
+namespace ibrdf {
+namespace {
+
+// Pixels of the picture.
+constexpr int kMaxWidth = 1440;
+constexpr int kMaxPanelHeight = 420;
+constexpr int kMargin = 32;
+constexpr int kGap = 28;
+constexpr int kBarGap = 10;
+constexpr int kBarWidth = 18;
+constexpr int kBarTotal = 84;  // gap, bar and its numbers
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+
+const cv::Scalar kGround(250, 250, 250);
+const cv::Scalar kInk(25, 25, 25);
+const cv::Scalar kFaintInk(95, 95, 95);
+constexpr uint8_t kNeutralGrey = 176;
+
+struct TextStyle {
+  double scale;
+  int line_height;
+  cv::Scalar colour;
+};
+const TextStyle kTitleStyle{0.9, 36, kInk};
+const TextStyle kLabelStyle{0.55, 22, kInk};
+const TextStyle kCaptionStyle{0.45, 19, kFaintInk};
+
+int TextWidth(const std::string& text, const TextStyle& style) {
+  int baseline = 0;
+  return cv::getTextSize(text, kFont, style.scale, 1, &baseline).width;
+}
+
+// Lines no wider than `width` where words allow.
+std::vector<std::string> Wrap(const std::string& text, int width,
+                              const TextStyle& style) {
+  std::vector<std::string> lines;
+  std::string line;
+  size_t begin = 0;
+  while (begin < text.size()) {
+    const size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    begin = end + 1;
+    if (word.empty()) continue;
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (!line.empty() && TextWidth(longer, style) > width) {
+      lines.push_back(line);
+      line = word;
+    } else {
+      line = longer;
+    }
+  }
+  if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+// `top`: of the line.
+void DrawText(cv::Mat* canvas, const std::string& text, int left, int top,
+              const TextStyle& style) {
+  cv::putText(*canvas, text, {left, top + style.line_height * 3 / 4}, kFont,
+              style.scale, style.colour, 1, cv::LINE_AA);
+}
+
+bool IsInside(const Mask& mask, size_t pixel) {
+  return mask.empty() || mask.inside[pixel] != 0;
+}
+
+double ChannelMean(const float* rgb) {
+  return (static_cast<double>(rgb[0]) + rgb[1] + rgb[2]) / 3.0;
+}
+
+// The smallest of 1, 2 and 5 times a power of ten that is >= x > 0.
+double RoundUp(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (x <= factor * power * (1.0 + 1e-9)) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+double ResidualRange(const PreviewPanel& panel) {
+  if (panel.range > 0.0) return panel.range;
+  std::vector<double> magnitudes;
+  for (size_t i = 0; i < panel.image.num_pixels(); ++i) {
+    const double value = std::fabs(ChannelMean(&panel.image.rgb[3 * i]));
+    if (IsInside(panel.mask, i) && std::isfinite(value)) {
+      magnitudes.push_back(value);
+    }
+  }
+  constexpr double kSmallest = 1e-3;  // a finer scale shows rounding
+  if (magnitudes.empty()) return kSmallest;
+  return RoundUp(std::max(Percentile(std::move(magnitudes), 99.0), kSmallest));
+}
+
+// Linear display colours in [0, 1], one per pixel of the image.
+cv::Mat DisplayColours(const PreviewPanel& panel, double range) {
+  const Image& image = panel.image;
+  cv::Mat colours(image.height, image.width, CV_32FC3);
+  const auto grey = static_cast<float>(DecodeSrgb(kNeutralGrey / 255.0));
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const float* rgb = image.At(x, y);
+      cv::Vec3f& out = colours.at<cv::Vec3f>(y, x);
+      const size_t pixel = static_cast<size_t>(y) * image.width + x;
+      if (!IsInside(panel.mask, pixel) ||
+          std::isnan(rgb[0] + rgb[1] + rgb[2])) {
+        out = {grey, grey, grey};
+      } else if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+        uint8_t bytes[3];
+        DivergingColour(ChannelMean(rgb) / range, bytes);
+        for (int c = 0; c < 3; ++c) {
+          out[c] = static_cast<float>(DecodeSrgb(bytes[c] / 255.0));
+        }
+      } else {
+        for (int c = 0; c < 3; ++c) {
+          out[c] =
+              static_cast<float>(std::clamp(rgb[c] * panel.exposure, 0.0, 1.0));
+        }
+      }
+    }
+  }
+  return colours;
+}
+
+// CV_8UC3, red first.
+cv::Mat EncodeColours(const cv::Mat& linear) {
+  cv::Mat pixels(linear.size(), CV_8UC3);
+  for (int y = 0; y < linear.rows; ++y) {
+    for (int x = 0; x < linear.cols; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        pixels.at<cv::Vec3b>(y, x)[c] =
+            EncodeSrgb(linear.at<cv::Vec3f>(y, x)[c]);
+      }
+    }
+  }
+  return pixels;
+}
+
+Rgb8Image ToRgb8(const cv::Mat& pixels) {
+  Rgb8Image image(pixels.cols, pixels.rows);
+  CHECK(pixels.isContinuous());
+  std::memcpy(image.rgb.data(), pixels.data, image.rgb.size());
+  return image;
+}
+
+// A side of `length` pixels after reduction, at least 1.
+int Reduced(int length, double factor) {
+  return std::max(1, static_cast<int>(length * factor));
+}
+
+void CheckPanel(const PreviewPanel& panel) {
+  CHECK(!panel.image.empty()) << panel.label;
+  CHECK(panel.mask.empty() ||
+        panel.mask.inside.size() == panel.image.num_pixels());
+}
+
+// A panel ready to be placed.
+struct Placed {
+  cv::Mat pixels;  // CV_8UC3, red first
+  std::vector<std::string> label;
+  std::string caption;
+  PreviewPanel::Kind kind;
+  double range = 0.0;
+  int width() const {
+    return pixels.cols +
+           (kind == PreviewPanel::Kind::kSignedResidual ? kBarTotal : 0);
+  }
+};
+
+Placed Place(const PreviewPanel& panel, int max_width) {
+  const Image& image = panel.image;
+  CheckPanel(panel);
+  Placed placed;
+  placed.kind = panel.kind;
+  if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+    placed.range = ResidualRange(panel);
+  }
+  const cv::Mat colours = DisplayColours(panel, placed.range);
+  const double fit =
+      std::min(static_cast<double>(max_width) / image.width,
+               static_cast<double>(kMaxPanelHeight) / image.height);
+  cv::Mat resized;
+  if (fit >= 1.0) {
+    const int factor = static_cast<int>(fit);
+    cv::resize(colours, resized, {}, factor, factor, cv::INTER_NEAREST);
+    placed.caption = Format("%d x %d px, shown x%d (nearest)", image.width,
+                            image.height, factor);
+  } else {
+    const cv::Size size(Reduced(image.width, fit), Reduced(image.height, fit));
+    cv::resize(colours, resized, size, 0, 0, cv::INTER_AREA);
+    placed.caption = Format("%d x %d px, shown at %d x %d", image.width,
+                            image.height, size.width, size.height);
+  }
+  placed.pixels = EncodeColours(resized);
+  placed.label =
+      Wrap(panel.label, std::max(placed.width(), max_width / 2), kLabelStyle);
+  return placed;
+}
+
+void DrawColourBar(cv::Mat* canvas, int left, int top, int height,
+                   double range) {
+  for (int y = 0; y < height; ++y) {
+    uint8_t rgb[3];
+    DivergingColour(1.0 - 2.0 * (y + 0.5) / height, rgb);
+    cv::line(*canvas, {left, top + y}, {left + kBarWidth - 1, top + y},
+             cv::Scalar(rgb[0], rgb[1], rgb[2]));
+  }
+  cv::rectangle(*canvas, {left, top, kBarWidth, height}, kFaintInk);
+  const int x = left + kBarWidth + 6;
+  const int half_line = kCaptionStyle.line_height / 2;
+  DrawText(canvas, Format("+%g", range), x, top, kCaptionStyle);
+  DrawText(canvas, "0", x, top + height / 2 - half_line, kCaptionStyle);
+  DrawText(canvas, Format("-%g", range), x,
+           top + height - kCaptionStyle.line_height, kCaptionStyle);
+}
+
+// Columns where the map looks along an axis; +y is the top, -y the bottom.
+void DrawMapAxes(cv::Mat* canvas, int left, int top, int width) {
+  const char* const names[] = {"+z", "+x", "-z", "-x", "+z"};
+  for (int i = 0; i < 5; ++i) {
+    const int x = left + i * (width - 1) / 4;
+    cv::line(*canvas, {x, top}, {x, top + 6}, kFaintInk);
+    const int text = TextWidth(names[i], kCaptionStyle);
+    const int text_left = i == 0 ? x : i == 4 ? x - text : x - text / 2;
+    DrawText(canvas, names[i], text_left, top + 6, kCaptionStyle);
+  }
+}
+
+struct RowLayout {
+  std::vector<Placed> panels;
+  int label_height = 0;
+  int picture_height = 0;
+  int caption_height = kCaptionStyle.line_height;
+  int width = 0;
+  int height() const { return label_height + picture_height + caption_height; }
+};
+
+RowLayout LayOut(const std::vector<PreviewPanel>& row) {
+  CHECK(!row.empty());
+  const int count = static_cast<int>(row.size());
+  int free_width = kMaxWidth - 2 * kMargin - (count - 1) * kGap;
+  for (const PreviewPanel& panel : row) {
+    if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+      free_width -= kBarTotal;
+    }
+  }
+  RowLayout layout;
+  size_t lines = 0;
+  for (const PreviewPanel& panel : row) {
+    layout.panels.push_back(Place(panel, std::max(1, free_width / count)));
+    const Placed& placed = layout.panels.back();
+    lines = std::max(lines, placed.label.size());
+    layout.picture_height = std::max(layout.picture_height, placed.pixels.rows);
+    layout.width += placed.width() + (layout.panels.size() > 1 ? kGap : 0);
+    if (placed.kind == PreviewPanel::Kind::kMap) {
+      layout.caption_height = 2 * kCaptionStyle.line_height + 6;
+    }
+  }
+  layout.label_height =
+      static_cast<int>(lines) * kLabelStyle.line_height + (lines > 0 ? 4 : 0);
+  return layout;
+}
+
+void DrawRow(cv::Mat* canvas, const RowLayout& row, int top) {
+  int left = kMargin;
+  const int picture_top = top + row.label_height;
+  for (const Placed& panel : row.panels) {
+    // Labels stand right above their picture.
+    int y = picture_top - 4 -
+            static_cast<int>(panel.label.size()) * kLabelStyle.line_height;
+    for (const std::string& line : panel.label) {
+      DrawText(canvas, line, left, y, kLabelStyle);
+      y += kLabelStyle.line_height;
+    }
+    const cv::Rect area(left, picture_top, panel.pixels.cols,
+                        panel.pixels.rows);
+    panel.pixels.copyTo((*canvas)(area));
+    int below = area.br().y;
+    if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+      DrawColourBar(canvas, area.br().x + kBarGap, picture_top, area.height,
+                    panel.range);
+    } else if (panel.kind == PreviewPanel::Kind::kMap) {
+      DrawMapAxes(canvas, left, below, area.width);
+      below += 6 + kCaptionStyle.line_height;
+    }
+    DrawText(canvas, panel.caption, left, below + 2, kCaptionStyle);
+    left += panel.width() + kGap;
+  }
+}
+
+}  // namespace
+
+PanelPicture DrawPanel(const PreviewPanel& panel, int max_side) {
+  CheckPanel(panel);
+  CHECK_GT(max_side, 0);
+  PanelPicture picture;
+  if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+    picture.range = ResidualRange(panel);
+  }
+  cv::Mat colours = DisplayColours(panel, picture.range);
+  const double fit =
+      static_cast<double>(max_side) / std::max(colours.cols, colours.rows);
+  if (fit < 1.0) {
+    cv::Mat reduced;
+    cv::resize(colours, reduced,
+               {Reduced(colours.cols, fit), Reduced(colours.rows, fit)}, 0, 0,
+               cv::INTER_AREA);
+    colours = reduced;
+  }
+  picture.pixels = ToRgb8(EncodeColours(colours));
+  return picture;
+}
+
+Rgb8Image ComposePanels(const std::vector<std::vector<PreviewPanel>>& rows,
+                        const std::string& title,
+                        const std::vector<std::string>& notes) {
+  std::vector<RowLayout> layouts;
+  int content_width = 0;
+  for (const std::vector<PreviewPanel>& row : rows) {
+    layouts.push_back(LayOut(row));
+    content_width = std::max(content_width, layouts.back().width);
+    // A label may be wider than its picture.
+    int left = 0;
+    for (const Placed& panel : layouts.back().panels) {
+      for (const std::string& line : panel.label) {
+        content_width =
+            std::max(content_width, left + TextWidth(line, kLabelStyle));
+      }
+      content_width = std::max(content_width,
+                               left + TextWidth(panel.caption, kCaptionStyle));
+      left += panel.width() + kGap;
+    }
+  }
+  const std::vector<std::string> title_lines =
+      Wrap(title, std::max(content_width, kMaxWidth / 2), kTitleStyle);
+  std::vector<std::string> note_lines;
+  for (const std::string& note : notes) {
+    for (std::string& line :
+         Wrap(note, std::max(content_width, kMaxWidth / 2), kLabelStyle)) {
+      note_lines.push_back(std::move(line));
+    }
+  }
+  int height = 2 * kMargin;
+  for (const std::string& line : title_lines) {
+    content_width = std::max(content_width, TextWidth(line, kTitleStyle));
+    height += kTitleStyle.line_height;
+  }
+  for (const std::string& line : note_lines) {
+    content_width = std::max(content_width, TextWidth(line, kLabelStyle));
+    height += kLabelStyle.line_height;
+  }
+  for (const RowLayout& row : layouts) height += row.height() + kGap;
+  if (note_lines.empty()) height -= kGap;
+
+  cv::Mat canvas(height, content_width + 2 * kMargin, CV_8UC3, kGround);
+  int top = kMargin - 8;
+  for (const std::string& line : title_lines) {
+    DrawText(&canvas, line, kMargin, top, kTitleStyle);
+    top += kTitleStyle.line_height;
+  }
+  top += 8;
+  for (const RowLayout& row : layouts) {
+    DrawRow(&canvas, row, top);
+    top += row.height() + kGap;
+  }
+  for (const std::string& line : note_lines) {
+    DrawText(&canvas, line, kMargin, top, kLabelStyle);
+    top += kLabelStyle.line_height;
+  }
+  return ToRgb8(canvas);
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,56 @@
+// The pictures of a result.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/image/rgb8_image.h"
+#include "ibrdf/solvers/report/preview.h"
+
+namespace ibrdf {
+
+// What there is to show; what is empty is left out.
+struct ResultPreviewInput {
+  std::string title;  // printable ASCII
+  Image input;
+  Mask mask;     // of the object, of the input's size; empty: all pixels
+  Image render;  // of the input's size
+  Image illumination;
+  Image reference_illumination;
+  MerlTable brdf;
+  MerlTable reference_brdf;
+  std::vector<std::string> metrics;  // one line each, printable ASCII
+  int num_threads = 0;               // <= 0: all
+};
+
+// The overview: input, render and residual; the maps; the BRDFs on spheres
+// under the lights of render/brdf_sphere.h, the estimate's beside the
+// reference's. Input and render share an exposure, and so do each estimate and
+// its reference; an estimate with a reference is first brought to the
+// reference's scale by one factor for all channels, which its label states.
+Rgb8Image MakeOverview(const ResultPreviewInput& input);
+
+// The overview's rows of panels; empty where there is nothing to show.
+struct ResultPanels {
+  std::vector<PreviewPanel> images;   // input, render, residual
+  std::vector<PreviewPanel> maps;     // estimate, reference
+  std::vector<PreviewPanel> spheres;  // of each light, estimate and reference
+};
+
+// Refuses an empty input and sizes that disagree.
+StatusOr<ResultPanels> MakeResultPanels(const ResultPreviewInput& input);
+
+// Writes overview.png, input.png, render.png, residual.png, illumination.png
+// and brdf.png into `out_dir`, which exists; each whole or absent, and none for
+// what is empty. Of the input, title and metrics are read.
+Status WriteResultPreviews(const ResultPanels& panels,
+                           const ResultPreviewInput& input,
+                           const std::string& out_dir);
+
+// The same of the input's panels; refuses what MakeResultPanels does.
+Status WriteResultPreviews(const ResultPreviewInput& input,
+                           const std::string& out_dir);
+
+}  // namespace ibrdf

@@ -1,0 +1,287 @@
+#include "ibrdf/solvers/training/lobe_table_fit.h"
+
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "ibrdf/solvers/costs/log_table_cost.h"
+#include "ibrdf/solvers/priors/prior_costs.h"
+#include "ibrdf/solvers/training/training_data.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kSearchColumns = 64, kSearchPoints = 12;
+constexpr int kFitColumns = 128, kFitPoints = 24;
+constexpr uint64_t kColumnSeed = 17;
+constexpr int kRoughIterations = 20;
+constexpr double kTolerance = 1e-6;  // relative decrease of the cost to stop at
+constexpr double kWall =
+    60.0;  // of the unit ball: stiffer ones trap steps along it
+constexpr double kFreeColours = 1e3;  // standard deviation of log colours: none
+// Log colours tried for a further lobe, relative to the one that would make it
+// fit alone, go down to this.
+constexpr double kFaintest = -5.0;
+
+// Which theta_h of a column of `count` stands for stratum i of n.
+int Stratum(int i, int n, int count) {
+  return std::min(count - 1, static_cast<int>((i + 0.5) * count / n));
+}
+
+FlowColumns ThinColumns(const std::vector<int>& columns, int points) {
+  const TrainingData all = ColumnsOfTable(columns);
+  const int n = all.num_columns();
+  FlowColumns thin(n, points);
+  for (int c = 0; c < n; ++c) {
+    thin.CopyColumn(c, all.columns, c);
+    for (int i = 0; i < points; ++i) {
+      const int at = Stratum(i, points, all.count[c]);
+      thin.x_h[i * n + c] = all.columns.x_h[at * n + c];
+    }
+  }
+  return thin;
+}
+
+// log raw [3][points][columns] of the same bins.
+StatusOr<std::vector<float>> ThinTable(const MerlTable& table,
+                                       const std::vector<int>& columns,
+                                       int points) {
+  TrainingData all = ColumnsOfTable(columns);
+  AddTable(table, columns, "table", &all);
+  const int n = all.num_columns();
+  std::vector<float> log_raw;
+  for (int c = 0; c < 3; ++c) {
+    for (int i = 0; i < points; ++i) {
+      for (int k = 0; k < n; ++k) {
+        const float v = all.LogRaw(c, k)[Stratum(i, points, all.count[k])];
+        if (!std::isfinite(v)) {
+          return InvalidInput("table", "expected finite values");
+        }
+        log_raw.push_back(v);
+      }
+    }
+  }
+  return log_raw;
+}
+
+}  // namespace
+
+LobeTableFitter::LobeTableFitter(const NeuralBrdfModel& model)
+    : model_(model), flow_(BrdfFlow::Create(model.shape, model.weights)) {
+  CHECK_GE(model.num_codes(), 1);
+  search_columns_ = DrawColumns(kSearchColumns, kColumnSeed);
+  fit_columns_ = DrawColumns(kFitColumns, kColumnSeed + 1);
+  search_points_ = ThinColumns(search_columns_, kSearchPoints);
+  const size_t n = search_points_.num_points();
+  embedding_.resize(n * model.num_codes());
+  for (int m = 0; m < model.num_codes(); ++m) {
+    flow_->LogDensityOnColumns(search_points_,
+                               model.codes.data() + m * model.shape.code_size(),
+                               0, embedding_.data() + m * n, nullptr);
+  }
+  for (float& v : embedding_) v *= static_cast<float>(model_.exponent);
+}
+
+// Starts from the embedding for one table.
+class LobeTableFitter::Search {
+ public:
+  Search(const LobeTableFitter& fitter, std::vector<float> log_raw)
+      : fitter_(fitter),
+        log_raw_(std::move(log_raw)),
+        n_(fitter.search_points_.num_points()),
+        codes_(fitter.model_.num_codes()) {}
+
+  // The `count` best starts with one lobe more than `base` (which may be
+  // empty), no two with the same new material.
+  std::vector<std::vector<double>> Extend(const std::vector<double>& base,
+                                          int count) const {
+    const std::vector<float> log_base = LogSum(base);
+    std::vector<std::pair<double, int>> order;
+    std::vector<std::array<double, 3>> colours(codes_);
+    for (int m = 0; m < codes_; ++m) {
+      double score = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        const auto [colour, error] = BestColour(log_base, m, c);
+        colours[m][c] = colour;
+        score += error;
+      }
+      order.emplace_back(score, m);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<std::vector<double>> starts;
+    std::vector<std::string> taken;
+    const int size = fitter_.model_.shape.code_size();
+    for (const auto& [score, m] : order) {
+      const std::string& name = fitter_.model_.names[m];
+      const std::string material = name.substr(0, name.rfind('.'));
+      if (std::find(taken.begin(), taken.end(), material) != taken.end()) {
+        continue;
+      }
+      taken.push_back(material);
+      std::vector<double> start = base;
+      const float* code = fitter_.model_.codes.data() + m * size;
+      start.insert(start.end(), code, code + size);
+      start.insert(start.end(), colours[m].begin(), colours[m].end());
+      starts.push_back(start);
+      if (static_cast<int>(starts.size()) == count) break;
+    }
+    return starts;
+  }
+
+ private:
+  // log of the sum of lobes [3][n]; -inf where there are none.
+  std::vector<float> LogSum(const std::vector<double>& lobes) const {
+    std::vector<float> sum(3 * n_, -std::numeric_limits<float>::infinity());
+    const int size = fitter_.model_.shape.code_size();
+    std::vector<float> value(n_);
+    for (size_t k = 0; k < lobes.size(); k += size + 3) {
+      const std::vector<float> code(lobes.begin() + k,
+                                    lobes.begin() + k + size);
+      fitter_.flow_->LogDensityOnColumns(fitter_.search_points_, code.data(), 1,
+                                         value.data(), nullptr);
+      for (int c = 0; c < 3; ++c) {
+        for (size_t i = 0; i < n_; ++i) {
+          const double v =
+              lobes[k + size + c] + fitter_.model_.exponent * value[i];
+          float& s = sum[c * n_ + i];
+          const double top = std::max<double>(s, v);
+          s = static_cast<float>(
+              top + std::log(std::exp(s - top) + std::exp(v - top)));
+        }
+      }
+    }
+    return sum;
+  }
+
+  struct Colour {
+    double log_colour, error;
+  };
+
+  // Log colour of code m beside the base, and the squared error it leaves in
+  // channel c. Alone: the mean. Beside others: the best of a ladder.
+  Colour BestColour(const std::vector<float>& base, int m, int c) const {
+    const float* q = fitter_.embedding_.data() + m * n_;
+    const float* target = log_raw_.data() + c * n_;
+    const float* b = base.data() + c * n_;
+    double mean = 0.0;
+    for (size_t i = 0; i < n_; ++i) mean += target[i] - q[i];
+    mean /= static_cast<double>(n_);
+    if (std::isinf(b[0])) {
+      double error = 0.0;
+      for (size_t i = 0; i < n_; ++i) {
+        const double r = mean + q[i] - target[i];
+        error += r * r;
+      }
+      return {mean, error};
+    }
+    Colour best{mean, std::numeric_limits<double>::infinity()};
+    for (double shift = 1.0; shift >= kFaintest; shift -= 1.0) {
+      double error = 0.0;
+      for (size_t i = 0; i < n_; i += 2) {
+        const double v = mean + shift + q[i];
+        const double top = std::max<double>(b[i], v);
+        const double r =
+            top + std::log1p(std::exp(-std::abs(b[i] - v))) - target[i];
+        error += r * r;
+      }
+      if (error < best.error) best = {mean + shift, error};
+    }
+    return best;
+  }
+
+  const LobeTableFitter& fitter_;
+  const std::vector<float> log_raw_;  // [3][n]
+  const size_t n_;
+  const int codes_;
+};
+
+StatusOr<LobeTableFit> LobeTableFitter::Fit(
+    const MerlTable& table, const LobeTableFitOptions& options) const {
+  const double* red = table.raw.data();
+  if (std::none_of(red, red + kMerlBins, [](double v) { return v > 0.0; })) {
+    return InvalidInput("table", "expected a positive red value");
+  }
+  StatusOr<std::vector<float>> seen =
+      ThinTable(table, search_columns_, kSearchPoints);
+  if (!seen.ok()) return seen.status();
+  TableColumns columns;
+  columns.points = ThinColumns(fit_columns_, kFitPoints);
+  StatusOr<std::vector<float>> target =
+      ThinTable(table, fit_columns_, kFitPoints);
+  if (!target.ok()) return target.status();
+  columns.log_raw = std::move(*target);
+  TableColumns rough{search_points_, *seen};
+  const Search search(*this, std::move(*seen));
+
+  // All starts roughly, the best one to the end.
+  std::vector<double> best;
+  for (int lobes = 1; lobes <= options.lobes; ++lobes) {
+    std::vector<double> winner;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::vector<double>& start : search.Extend(best, options.starts)) {
+      const double cost =
+          Refine(rough, lobes, kRoughIterations, options, &start);
+      if (cost < least) {
+        least = cost;
+        winner = start;
+      }
+    }
+    if (winner.empty()) {
+      return InvalidInput("table", "no start of the fit has a finite cost");
+    }
+    best = winner;
+  }
+  Refine(columns, options.lobes, options.max_iterations, options, &best);
+
+  const int size = model_.shape.code_size();
+  for (int k = 0; k < options.lobes; ++k) {
+    double* z = best.data() + k * (size + 3);
+    const double norm = std::sqrt(std::inner_product(z, z + size, z, 0.0));
+    for (int d = 0; d < size && norm > 1.0; ++d) z[d] /= norm;
+  }
+  const LogTableCost cost(*flow_, size, model_.exponent, options.lobes, columns,
+                          kLogFloor, 1.0, options.num_threads);
+  std::vector<double> residuals(columns.log_raw.size());
+  const double* block = best.data();
+  cost.Evaluate(&block, residuals.data(), nullptr);
+  const double square = std::inner_product(residuals.begin(), residuals.end(),
+                                           residuals.begin(), 0.0);
+  return LobeTableFit{
+      best, std::sqrt(square / static_cast<double>(residuals.size()))};
+}
+
+double LobeTableFitter::Refine(const TableColumns& columns, int lobes,
+                               int iterations,
+                               const LobeTableFitOptions& options,
+                               std::vector<double>* parameters) const {
+  const int size = model_.shape.code_size();
+  LobePrior prior;
+  prior.sigma = options.prior_sigma;
+  prior.wall = kWall;
+  prior.colour_sigma = kFreeColours;
+  ceres::Problem problem;
+  problem.AddResidualBlock(
+      new LogTableCost(*flow_, size, model_.exponent, lobes, columns, kLogFloor,
+                       options.independent_bins /
+                           static_cast<double>(columns.log_raw.size()),
+                       options.num_threads),
+      nullptr, parameters->data());
+  problem.AddResidualBlock(new LobePriorCost(lobes, size, prior), nullptr,
+                           parameters->data());
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = iterations;
+  solver.function_tolerance = kTolerance;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  return summary.IsSolutionUsable() ? summary.final_cost
+                                    : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,258 @@
+#include "ibrdf/approximation/harmonic_transport.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ibrdf/base/parallel_for.h"
+#include "ibrdf/scene/view_angles.h"
+
+namespace ibrdf {
+namespace {
+using namespace view_angles;  // NOLINT
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDarkest = 1e-3;  // of the mean radiance
+
+}  // namespace
+
+HarmonicTransport::HarmonicTransport(const std::vector<ShadingPoint>& points,
+                                     int map_height, int map_width,
+                                     const HarmonicOptions& options)
+    : options_(options),
+      basis_(options.order),
+      map_(options.order, map_height, map_width),
+      cells_(options.order, options.quadrature.far_width / 2,
+             options.quadrature.far_width),
+      rotation_(options.order) {
+  CHECK_GE(options.view_angles, 4);
+  const double step = MaxViewAngle() / (options.view_angles - 1);
+  Eigen::Vector3f pole = Eigen::Vector3f::Zero();
+  for (const ShadingPoint& p : points) {
+    const Eigen::Vector3d n = p.normal.cast<double>().normalized();
+    const Eigen::Vector3d wo = p.wo.cast<double>().normalized();
+    if (points_.empty() || p.wo != pole) {
+      pole = p.wo;
+      poles_.push_back(HarmonicRotation::PoleAt(wo));
+    }
+    Point point{};
+    point.pole = static_cast<int>(poles_.size()) - 1;
+    Eigen::Vector3d t, b;
+    ViewFrame(n, wo, &t, &b);
+    const double sine = std::max(wo.dot(t), 0.0), cosine = n.dot(wo);
+    // From wo towards n, at right angles to wo.
+    point.turn =
+        HarmonicRotation::AngleOf(poles_.back(), sine * n - cosine * t);
+    const double at = std::min(std::atan2(sine, cosine), MaxViewAngle()) / step;
+    point.first =
+        std::clamp(static_cast<int>(at) - 1, 0, options.view_angles - 4);
+    CubicWeights(at - point.first, point.weight);
+    points_.push_back(point);
+  }
+
+  const PointQuadrature quadrature(MapCells(options.quadrature.far_width / 2,
+                                            options.quadrature.far_width, 1),
+                                   options.quadrature);
+  pairs_.resize(options.view_angles);
+  ParallelFor(options.view_angles, options.num_threads, [&](int64_t k, int) {
+    // The point's frame is the map's: the view along +y.
+    const double angle = static_cast<double>(k) * step;
+    const Eigen::Vector3d n(0.0, std::cos(angle), std::sin(angle));
+    PointSamples samples;
+    quadrature.Sample(n, Eigen::Vector3d::UnitY(), &samples);
+    const auto add = [&](const auto& sample, int cell,
+                         const Eigen::Vector3d& direction) {
+      Pair pair{};
+      const BrdfGridTaps taps =
+          GridTaps(options_.grid,
+                   ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
+      for (int corner = 0; corner < 8; ++corner) {
+        pair.node[corner] = taps.node[corner];
+        pair.weight[corner] = static_cast<float>(taps.weight[corner]);
+      }
+      pair.cell = cell;
+      pair.share = sample.weight;
+      pair.direction = direction;
+      pairs_[k].push_back(pair);
+    };
+    for (const NearSample& s : samples.near) add(s, -1, s.wi);
+    for (const FarSample& s : samples.far) {
+      add(s, s.cell, Eigen::Vector3d::Zero());
+    }
+  });
+}
+
+void HarmonicTransport::PairHarmonics(const Pair& pair, double* Y) const {
+  if (pair.cell < 0) {
+    basis_.Evaluate(pair.direction, Y);
+  } else {
+    const int columns = options_.quadrature.far_width;
+    cells_.Texel(pair.cell / columns, pair.cell % columns, Y);
+  }
+  for (int k = 0; k < basis_.count(); ++k) Y[k] *= pair.share;
+}
+
+std::vector<HarmonicColours> HarmonicTransport::Slices(
+    const BrdfGrid& grid) const {
+  CHECK(grid.shape == options_.grid);
+  std::vector<HarmonicColours> slices(pairs_.size());
+  ParallelFor(static_cast<int64_t>(pairs_.size()), options_.num_threads,
+              [&](int64_t k, int) {
+                slices[k] = HarmonicColours::Zero(basis_.count(), 3);
+                Eigen::VectorXd Y(basis_.count());
+                for (const Pair& pair : pairs_[k]) {
+                  Eigen::RowVector3d f = Eigen::RowVector3d::Zero();
+                  for (int c = 0; c < 3; ++c) {
+                    const float* const values = grid.Channel(c);
+                    for (int j = 0; j < 8; ++j) {
+                      f[c] += double{pair.weight[j]} * values[pair.node[j]];
+                    }
+                  }
+                  PairHarmonics(pair, Y.data());
+                  slices[k].noalias() += Y * f;
+                }
+              });
+  return slices;
+}
+
+HarmonicColours HarmonicTransport::SliceAt(
+    const std::vector<HarmonicColours>& slices, const Point& point) const {
+  HarmonicColours S = point.weight[0] * slices[point.first];
+  for (int j = 1; j < 4; ++j) S += point.weight[j] * slices[point.first + j];
+  return S;
+}
+
+template <typename Use>
+void HarmonicTransport::ForLight(const float* map, const Use& use) const {
+  const HarmonicColours light = map_.Project(map);
+  ParallelFor(kChunks, options_.num_threads, [&](int64_t chunk, int) {
+    int pole = -1;
+    HarmonicColours at_pole, turned;
+    const int64_t end = ChunkBegin(chunk + 1, points_.size());
+    for (int64_t i = ChunkBegin(chunk, points_.size()); i < end; ++i) {
+      if (points_[i].pole != pole) {
+        pole = points_[i].pole;
+        at_pole = light;
+        rotation_.ToPole(poles_[pole], &at_pole);
+      }
+      turned = at_pole;
+      rotation_.Turn(points_[i].turn, &turned);
+      use(chunk, i, turned);
+    }
+  });
+}
+
+void HarmonicTransport::Render(const BrdfGrid& grid, const float* map,
+                               double* E) const {
+  const std::vector<HarmonicColours> slices = Slices(grid);
+  ForLight(map, [&](int64_t, int64_t i, const HarmonicColours& light) {
+    const Eigen::RowVector3d radiance =
+        SliceAt(slices, points_[i]).cwiseProduct(light).colwise().sum();
+    for (int c = 0; c < 3; ++c) E[3 * i + c] = radiance[c];
+  });
+}
+
+void HarmonicTransport::GridGradient(const float* map, const double* adjoint,
+                                     float* gradient) const {
+  const HarmonicColours zero = HarmonicColours::Zero(basis_.count(), 3);
+  std::vector<std::vector<HarmonicColours>> partial(
+      kChunks, std::vector<HarmonicColours>(pairs_.size(), zero));
+  ForLight(map, [&](int64_t chunk, int64_t i, const HarmonicColours& light) {
+    const Eigen::Map<const Eigen::RowVector3d> a(adjoint + 3 * i);
+    const HarmonicColours share =
+        light.cwiseProduct(a.replicate(basis_.count(), 1));
+    const Point& p = points_[i];
+    for (int j = 0; j < 4; ++j)
+      partial[chunk][p.first + j] += p.weight[j] * share;
+  });
+  for (int64_t chunk = 1; chunk < kChunks; ++chunk) {
+    for (size_t k = 0; k < pairs_.size(); ++k)
+      partial[0][k] += partial[chunk][k];
+  }
+  // What each pair's value of the BRDF adds.
+  std::vector<std::vector<Eigen::Vector3d>> by_pair(pairs_.size());
+  ParallelFor(static_cast<int64_t>(pairs_.size()), options_.num_threads,
+              [&](int64_t k, int) {
+                Eigen::VectorXd Y(basis_.count());
+                for (const Pair& pair : pairs_[k]) {
+                  PairHarmonics(pair, Y.data());
+                  by_pair[k].push_back(partial[0][k].transpose() * Y);
+                }
+              });
+  const size_t nodes = options_.grid.num_nodes();
+  std::vector<double> sums(3 * nodes, 0.0);
+  for (size_t k = 0; k < pairs_.size(); ++k) {
+    for (size_t i = 0; i < pairs_[k].size(); ++i) {
+      const Pair& pair = pairs_[k][i];
+      for (int c = 0; c < 3; ++c) {
+        for (int j = 0; j < 8; ++j) {
+          sums[c * nodes + pair.node[j]] +=
+              double{pair.weight[j]} * by_pair[k][i][c];
+        }
+      }
+    }
+  }
+  for (size_t k = 0; k < sums.size(); ++k) {
+    gradient[k] = static_cast<float>(sums[k]);
+  }
+}
+
+void HarmonicTransport::MapGradient(const BrdfGrid& grid, const double* adjoint,
+                                    float* gradient) const {
+  const std::vector<HarmonicColours> slices = Slices(grid);
+  const HarmonicColours zero = HarmonicColours::Zero(basis_.count(), 3);
+  std::vector<HarmonicColours> partial(kChunks, zero);
+  ParallelFor(kChunks, options_.num_threads, [&](int64_t chunk, int) {
+    const int64_t begin = ChunkBegin(chunk, points_.size());
+    const int64_t end = ChunkBegin(chunk + 1, points_.size());
+    HarmonicColours at_pole = zero, share;
+    for (int64_t i = begin; i < end; ++i) {
+      const Eigen::Map<const Eigen::RowVector3d> a(adjoint + 3 * i);
+      share = SliceAt(slices, points_[i])
+                  .cwiseProduct(a.replicate(basis_.count(), 1));
+      rotation_.TurnBack(points_[i].turn, &share);
+      at_pole += share;
+      if (i + 1 == end || points_[i + 1].pole != points_[i].pole) {
+        rotation_.FromPole(poles_[points_[i].pole], &at_pole);
+        partial[chunk] += at_pole;
+        at_pole.setZero();
+      }
+    }
+  });
+  for (int64_t chunk = 1; chunk < kChunks; ++chunk) {
+    partial[0] += partial[chunk];
+  }
+  map_.Transpose(partial[0], gradient);
+}
+
+std::vector<double> HarmonicTransport::PredictLogErrors(
+    const BrdfGrid& grid, const float* map) const {
+  const int order = options_.order;
+  std::vector<double> E(3 * points_.size()), errors(order + 1, 0.0);
+  Render(grid, map, E.data());
+  double mean = 0.0;
+  for (const double e : E) mean += e / static_cast<double>(E.size());
+  if (!(mean > 0.0)) return errors;
+  const std::vector<HarmonicColours> slices = Slices(grid);
+  const HarmonicColours light = map_.Project(map);
+  for (size_t i = 0; i < points_.size(); ++i) {
+    const HarmonicColours S = SliceAt(slices, points_[i]);
+    for (int c = 0; c < 3; ++c) {
+      // Of a normal distribution: mean magnitude over standard deviation.
+      const double scale =
+          std::sqrt(2.0 / kPi) / std::max(E[3 * i + c], kDarkest * mean);
+      double variance = 0.0;
+      for (int l = order; l >= 0; --l) {
+        errors[l] += std::log1p(scale * std::sqrt(variance)) /
+                     static_cast<double>(E.size());
+        variance += S.col(c).segment(l * l, 2 * l + 1).squaredNorm() *
+                    light.col(c).segment(l * l, 2 * l + 1).squaredNorm() /
+                    (2 * l + 1);
+      }
+    }
+  }
+  return errors;
+}
+
+}  // namespace ibrdf

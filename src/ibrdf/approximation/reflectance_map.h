@@ -1,0 +1,55 @@
+// Images of distant light through an orthographic camera: without shadows
+// radiance depends on the normal alone (a reflectance map, Horn and Sjoberg
+// 1979), so that it is rendered at some normals and interpolated at the rest.
+//
+// The visible normals, by their angle to the view and around it, are cut into
+// cells of 3 x 3 nodes, between which log radiance is quadratic. A cell whose
+// error is too large is cut in four; one whose points cost no more than its
+// nodes is rendered point by point. No angle is singular: at the limb nothing
+// lies beyond the last nodes, and around the view the cells are only narrower
+// than they need be.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/scene/scene.h"
+
+namespace ibrdf {
+
+// Radiance [points, 3], >= 0, of unshadowed points in any number and order: of
+// ReferenceRenderer, Transport or another. false: stop.
+using PointRenderer =
+    std::function<bool(const std::vector<ShadingPoint>& points, double* E)>;
+
+struct ReflectanceMapOptions {
+  // Mean |log E - log E rendered| over the points and channels, in nats, that
+  // interpolation may bring in. A channel's radiance below 1e-3 of its
+  // geometric mean counts as not much more than that: log stands for
+  // log(E + 1e-3 mean).
+  double log_error = 1e-3;
+  // Points of the image, evenly spread over the list, that are rendered in any
+  // case: the error is measured there.
+  int held_out = 256;
+};
+
+struct ReflectanceMapReport {
+  // Points given to the renderer: nodes, held-out ones and those of cells that
+  // are rendered point by point. num_points and more: it did not pay.
+  int rendered = 0;
+  int nodes = 0;
+  int interpolated = 0;  // points that were not rendered
+  // Mean over held-out points, and its standard error. At most the requested
+  // one, less two standard errors, unless nothing is interpolated.
+  double log_error = 0.0;
+  double standard_error = 0.0;
+};
+
+// E [points, 3]. Fails where two points differ in wo (a perspective camera),
+// and with kInterrupted where `render` stops. The caller knows that no point is
+// shadowed and that `render` depends on normal and wo alone.
+StatusOr<ReflectanceMapReport> RenderByNormal(
+    const std::vector<ShadingPoint>& points, const PointRenderer& render,
+    const ReflectanceMapOptions& options, double* E);
+
+}  // namespace ibrdf

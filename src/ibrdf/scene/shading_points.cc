@@ -1,0 +1,116 @@
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ibrdf/base/parallel_for.h"
+#include "ibrdf/scene/face_viewer.h"
+#include "ibrdf/scene/scene.h"
+
+namespace ibrdf {
+namespace {
+
+// Normal at a continuous position: bilinear between the set pixels around it,
+// inside where the pixel that holds the position is set.
+bool NormalAt(const Image& normals, double x, double y,
+              Eigen::Vector3d* normal) {
+  const int px = std::min(static_cast<int>(x), normals.width - 1);
+  const int py = std::min(static_cast<int>(y), normals.height - 1);
+  const Eigen::Map<const Eigen::Vector3f> own(normals.At(px, py));
+  if (own.isZero()) return false;
+  const double x0 = std::floor(x - 0.5), y0 = std::floor(y - 0.5);
+  const double fx = x - 0.5 - x0, fy = y - 0.5 - y0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int corner = 0; corner < 4; ++corner) {
+    const int dx = corner & 1, dy = corner >> 1;
+    const int cx = std::clamp(static_cast<int>(x0) + dx, 0, normals.width - 1);
+    const int cy = std::clamp(static_cast<int>(y0) + dy, 0, normals.height - 1);
+    const Eigen::Map<const Eigen::Vector3f> n(normals.At(cx, cy));
+    sum += (dx ? fx : 1.0 - fx) * (dy ? fy : 1.0 - fy) * n.cast<double>();
+  }
+  *normal = sum.norm() > 1e-6 ? Eigen::Vector3d(sum.normalized())
+                              : Eigen::Vector3d(own.cast<double>());
+  return true;
+}
+
+}  // namespace
+
+StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
+    const Scene& scene, const Camera& camera, int width, int height,
+    const Mask& mask, int samples_per_side, int num_threads) {
+  CHECK(width > 0 && height > 0 && samples_per_side > 0);
+  const Image& normals = scene.normal_map();
+  const bool orthographic = camera.type == CameraType::kOrthographic;
+  const auto size = [](int w, int h) {
+    return std::to_string(w) + " x " + std::to_string(h);
+  };
+  if (!mask.empty() && (mask.width != width || mask.height != height)) {
+    return InvalidInput("mask", "expected the image's size " +
+                                    size(width, height) + ", found " +
+                                    size(mask.width, mask.height));
+  }
+  if (!IsValidCamera(camera)) {
+    return InvalidInput("camera",
+                        "expected fov_degrees in (0, 180), from apart from to, "
+                        "up not parallel to the view");
+  }
+  if (!normals.empty()) {
+    if (!orthographic) {
+      return InvalidInput("camera", "a normal map needs type orthographic");
+    }
+    if (normals.width != width || normals.height != height) {
+      return InvalidInput("normals", "expected the image's size " +
+                                         size(width, height) + ", found " +
+                                         size(normals.width, normals.height));
+    }
+  }
+
+  std::vector<std::vector<ShadingPoint>> rows(height);
+  const int s = samples_per_side;
+  ParallelFor(height, num_threads, [&](int64_t y, int) {
+    for (int x = 0; x < width; ++x) {
+      const int pixel = static_cast<int>(y) * width + x;
+      if (!mask.empty() && mask.inside[pixel] == 0) continue;
+      for (int k = 0; k < s * s; ++k) {
+        const double px = x + (k % s + 0.5) / s;
+        const double py = static_cast<double>(y) + (k / s + 0.5) / s;
+        const Ray ray = CameraRay(camera, px, py, width, height);
+        const Eigen::Vector3d wo = -ray.direction;
+        SurfaceHit hit{};
+        if (!normals.empty()) {
+          Eigen::Vector3d normal;
+          if (!NormalAt(normals, px, py, &normal)) continue;
+          hit.normal = FaceViewer(normal, wo, wo);
+        } else if (!scene.Intersect(ray, orthographic, &hit)) {
+          continue;
+        }
+        rows[y].push_back({hit.normal.cast<float>(), wo.cast<float>(), pixel,
+                           1.0f / static_cast<float>(s * s), 0, hit.position});
+      }
+    }
+  });
+  std::vector<ShadingPoint> points;
+  for (const std::vector<ShadingPoint>& row : rows) {
+    points.insert(points.end(), row.begin(), row.end());
+  }
+  if (points.empty()) {
+    return InvalidInput("geometry", "no pixel inside the mask sees the object");
+  }
+  for (size_t i = 0; i < points.size(); ++i) {
+    points[i].index = static_cast<int>(i);
+  }
+  return points;
+}
+
+std::vector<ShadingPoint> SpreadPoints(const std::vector<ShadingPoint>& points,
+                                       size_t most) {
+  const size_t count = std::min(points.size(), most);
+  std::vector<ShadingPoint> out;
+  for (size_t k = 0; k < count; ++k) {
+    out.push_back(points[(2 * k + 1) * points.size() / (2 * count)]);
+  }
+  return out;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,463 @@
+#include "ibrdf/visibility/radiosity_patches.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ibrdf/base/parallel_for.h"
+#include "ibrdf/geometry/camera.h"
+#include "ibrdf/light/environment_map.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kNormalBins = 2;  // per edge of a cube's face: 24 orientations
+constexpr double kPatchGrowth = 1.25;
+// A patch beside a hit's stands for it if their normals are this much alike.
+constexpr double kLikeNormals = 0.5;
+// Rounds in which emitters find emitters that nothing else sees.
+constexpr int kMaxRounds = 4;
+// Emitters are looked at from no flatter than this: nearer the horizon tables
+// of reflectance are not to be trusted (interpolated, a smooth surface gives
+// back a thousand times what it gets), and every bounce would multiply the
+// error.
+constexpr double kLeastCosine = 0.15;
+// Emitters see in steps this much wider than points.
+constexpr int kCoarser = 2;
+
+// The square of a cube's face, n x n of them each, that a direction goes
+// through.
+int CubeBin(const Eigen::Vector3d& d, int n) {
+  int axis = 0;
+  d.cwiseAbs().maxCoeff(&axis);
+  const double size = std::max(std::abs(d[axis]), 1e-300);
+  const auto bin = [&](double x) {
+    return std::clamp(static_cast<int>((x / size + 1) / 2 * n), 0, n - 1);
+  };
+  const int face = 2 * axis + (d[axis] < 0.0 ? 1 : 0);
+  return (face * n + bin(d[(axis + 1) % 3])) * n + bin(d[(axis + 2) % 3]);
+}
+
+Eigen::Vector3d NotTooFlat(const Eigen::Vector3d& n,
+                           const Eigen::Vector3d& wo) {
+  if (n.dot(wo) >= kLeastCosine) return wo;
+  const Eigen::Vector3d across = wo - n.dot(wo) * n;
+  return kLeastCosine * n +
+         std::sqrt(1.0 - kLeastCosine * kLeastCosine) * across.normalized();
+}
+
+}  // namespace
+
+SurfaceEmitterOptions EmittersFor(size_t num_points, int bounces) {
+  SurfaceEmitterOptions options;
+  options.bounces = bounces;
+  options.max_emitters = static_cast<int>(
+      std::clamp<size_t>(num_points, 500, options.max_emitters));
+  return options;
+}
+
+SurfaceEmitters::SurfaceEmitters(const Scene& scene,
+                                 const std::vector<ShadingPoint>& points,
+                                 std::shared_ptr<const Visibility> visibility,
+                                 const SurfaceEmitterOptions& options)
+    : options_(options), scene_(scene) {
+  CHECK(options.bounces >= 1 && options.views >= 1 && options.patch > 0.0);
+  CHECK_EQ(visibility->grid().rows() % options.lattice_rows, 0);
+  CHECK_LE(2 * options.lattice_rows * options.lattice_rows, 65536);
+  CHECK(options.max_emitters >= 200 && options.max_emitters < kNoEmitter);
+  const std::vector<ShadingPoint> few =
+      SpreadPoints(points, options.max_points);
+  std::vector<std::vector<Hit>> found(few.size());
+  ParallelFor(static_cast<int64_t>(few.size()), options.num_threads,
+              [&](int64_t i, int) {
+                const uint64_t* const hidden = visibility->Hidden(few[i]);
+                if (hidden == nullptr) return;
+                std::vector<HiddenCell> cells;
+                HiddenCells(visibility->grid(), few[i], hidden,
+                            options_.lattice_rows, &cells);
+                for (const HiddenCell& cell : cells) {
+                  Hit hit;
+                  if (Meet(few[i], cell.direction, &hit)) {
+                    found[i].push_back(hit);
+                  }
+                }
+              });
+  std::vector<Hit> hits;
+  for (const std::vector<Hit>& of_point : found) {
+    hits.insert(hits.end(), of_point.begin(), of_point.end());
+  }
+  Eigen::Vector3d high = Eigen::Vector3d::Zero();
+  if (!hits.empty()) low_ = high = hits[0].position;
+  for (const Hit& hit : hits) {
+    low_ = low_.cwiseMin(hit.position);
+    high = high.cwiseMax(hit.position);
+  }
+  const double box = std::max((high - low_).norm(), 1e-300);
+  side_ = options.patch * box / 2;
+  while (!Gather(hits)) {
+    side_ *= kPatchGrowth;
+    // One cube holds all: 24 orientations, 6 views each.
+    if (side_ > 2 * box) options_.views = 1;
+  }
+  VisibilityOptions rays;
+  rays.rows = std::max(visibility->grid().rows() / kCoarser, 32);
+  rays.num_threads = options.num_threads;
+  auto own = std::make_shared<Visibility>(scene_, points_, rays);
+  visibility_ = own;
+  by_point_.lattice_rows = options.lattice_rows;
+  LookFrom(points, *visibility, &by_point_);
+  if (options.bounces == 1) return;
+  by_emitter_.lattice_rows = std::max(options.lattice_rows / kCoarser, 1);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const auto looked = static_cast<int64_t>(by_emitter_.begin.size()) - 1;
+    const std::vector<ShadingPoint> fresh(points_.begin() + looked,
+                                          points_.end());
+    if (fresh.empty()) break;
+    if (round > 0) own->Add(fresh);
+    const std::vector<Unknown> unknown =
+        LookFrom(fresh, *visibility_, &by_emitter_);
+    if (round + 1 < kMaxRounds) AddEmitters(unknown, &by_emitter_);
+  }
+}
+
+void SurfaceEmitters::HiddenCells(const VisibilityGrid& grid,
+                                  const ShadingPoint& point,
+                                  const uint64_t* hidden, int lattice_rows,
+                                  std::vector<HiddenCell>* cells) {
+  cells->clear();
+  const int rows = lattice_rows;
+  const Eigen::Vector3d n = point.normal.cast<double>();
+  std::vector<Eigen::Vector3d> directions;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < 2 * rows; ++column) {
+      const GridRange range = grid.RangeOf(row, column, rows, 2 * rows);
+      directions.clear();
+      int texels = 0;
+      for (int r = range.row_begin; r < range.row_end; ++r) {
+        for (int c = range.column_begin; c < range.column_end; ++c, ++texels) {
+          if (!grid.Hidden(hidden, r, c)) continue;
+          directions.push_back(grid.Direction(r, c));
+        }
+      }
+      if (directions.empty()) continue;
+      Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector3d& d : directions) {
+        middle += std::max(n.dot(d), 1e-6) * d;
+      }
+      const auto nearest = std::max_element(
+          directions.begin(), directions.end(),
+          [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+            return a.dot(middle) < b.dot(middle);
+          });
+      cells->push_back(
+          {static_cast<uint16_t>(row * 2 * rows + column), *nearest});
+    }
+  }
+}
+
+bool SurfaceEmitters::Meet(const ShadingPoint& point,
+                           const Eigen::Vector3d& direction, Hit* hit) const {
+  SurfaceHit surface;
+  if (!scene_.Intersect({point.position, direction}, false, &surface)) {
+    return false;
+  }
+  hit->position = surface.position;
+  hit->normal = surface.normal;
+  hit->wo = -direction;
+  return true;
+}
+
+bool SurfaceEmitters::Meet(const ShadingPoint& point,
+                           const Eigen::Vector3d& direction,
+                           ShadingPoint* met) const {
+  Hit hit;
+  if (!Meet(point, direction, &hit)) return false;
+  ShadingPoint point_met{};
+  point_met.normal = hit.normal.cast<float>();
+  point_met.wo = hit.wo.cast<float>();
+  point_met.position = hit.position;
+  point_met.pixel = -1;
+  point_met.coverage = 1.0f;
+  *met = point_met;
+  return true;
+}
+
+uint64_t SurfaceEmitters::PatchOf(const Eigen::Vector3d& position,
+                                  const Eigen::Vector3d& normal) const {
+  uint64_t key = 0;
+  for (int k = 0; k < 3; ++k) {
+    // Those met later may lie outside the box: offset, and far less than 2^19
+    // sides away.
+    const auto cell = static_cast<int64_t>(
+        std::floor((position[k] - low_[k]) / side_) + (1 << 18));
+    key = key << 19 | static_cast<uint64_t>(
+                          std::clamp<int64_t>(cell, 0, (int64_t{1} << 19) - 1));
+  }
+  return key * (6 * kNormalBins * kNormalBins) +
+         static_cast<uint64_t>(CubeBin(normal, kNormalBins));
+}
+
+bool SurfaceEmitters::Gather(const std::vector<Hit>& hits) {
+  struct Group {
+    uint64_t patch;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Vector3d wo = Eigen::Vector3d::Zero();
+    int count = 0;
+    int nearest = -1;  // the hit nearest to the mean position
+    double distance = 0.0;
+  };
+  const uint64_t views = 6 * options_.views * options_.views;
+  std::vector<Group> groups;
+  std::unordered_map<uint64_t, int> by_key;
+  std::vector<int> group_of(hits.size());
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const uint64_t patch = PatchOf(hits[i].position, hits[i].normal);
+    const uint64_t key = patch * views + static_cast<uint64_t>(CubeBin(
+                                             hits[i].wo, options_.views));
+    const auto [at, added] =
+        by_key.try_emplace(key, static_cast<int>(groups.size()));
+    if (added) groups.emplace_back().patch = patch;
+    if (groups.size() > static_cast<size_t>(options_.max_emitters)) {
+      return false;
+    }
+    Group& group = groups[at->second];
+    group.position += hits[i].position;
+    group.wo += hits[i].wo;
+    ++group.count;
+    group_of[i] = at->second;
+  }
+  for (size_t i = 0; i < hits.size(); ++i) {
+    Group& group = groups[group_of[i]];
+    const double distance =
+        (hits[i].position - group.position / group.count).norm();
+    if (group.nearest >= 0 && distance >= group.distance) continue;
+    group.nearest = static_cast<int>(i);
+    group.distance = distance;
+  }
+  for (const Group& group : groups) {
+    Hit hit = hits[group.nearest];
+    const Eigen::Vector3d wo = group.wo.normalized();
+    if (hit.normal.dot(wo) >= kMinViewCosine) hit.wo = wo;
+    AddEmitter(group.patch, hit);
+  }
+  return true;
+}
+
+void SurfaceEmitters::AddEmitter(uint64_t patch, const Hit& hit) {
+  ShadingPoint point{};
+  point.normal = hit.normal.cast<float>();
+  point.wo = NotTooFlat(hit.normal, hit.wo).cast<float>();
+  point.position = hit.position;
+  point.pixel = -1;
+  point.coverage = 1.0f;
+  point.index = count();
+  patches_[patch].push_back(point.index);
+  points_.push_back(point);
+}
+
+int SurfaceEmitters::Find(const Hit& hit) const {
+  const auto nearest_view = [&](const std::vector<int>& emitters) {
+    return *std::max_element(emitters.begin(), emitters.end(),
+                             [&](int a, int b) {
+                               return points_[a].wo.cast<double>().dot(hit.wo) <
+                                      points_[b].wo.cast<double>().dot(hit.wo);
+                             });
+  };
+  const auto own = patches_.find(PatchOf(hit.position, hit.normal));
+  if (own != patches_.end()) return nearest_view(own->second);
+  int best = -1;
+  double least = 0.0;
+  for (int k = 0; k < 27; ++k) {
+    const Eigen::Vector3d step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    const Eigen::Vector3d position = hit.position + side_ * step;
+    const uint64_t first = PatchOf(position, Eigen::Vector3d::UnitX()) /
+                           (6 * kNormalBins * kNormalBins) *
+                           (6 * kNormalBins * kNormalBins);
+    for (int bin = 0; bin < 6 * kNormalBins * kNormalBins; ++bin) {
+      const auto beside = patches_.find(first + bin);
+      if (beside == patches_.end()) continue;
+      const ShadingPoint& emitter = points_[beside->second.front()];
+      if (emitter.normal.cast<double>().dot(hit.normal) < kLikeNormals) {
+        continue;
+      }
+      const double distance = (emitter.position - hit.position).norm();
+      if (best >= 0 && distance >= least) continue;
+      least = distance;
+      best = nearest_view(beside->second);
+    }
+  }
+  return best;
+}
+
+SeenEmitters SurfaceEmitters::Look(const ShadingPoint& point,
+                                   const VisibilityGrid& grid,
+                                   const uint64_t* hidden,
+                                   std::vector<SeenEmitter>* seen) const {
+  Look(point, grid, hidden, options_.lattice_rows, seen, nullptr);
+  return {seen->data(), seen->data() + seen->size(), options_.lattice_rows};
+}
+
+void SurfaceEmitters::Look(const ShadingPoint& point,
+                           const VisibilityGrid& grid, const uint64_t* hidden,
+                           int lattice_rows, std::vector<SeenEmitter>* seen,
+                           std::vector<Unknown>* unknown) const {
+  std::vector<HiddenCell> cells;
+  HiddenCells(grid, point, hidden, lattice_rows, &cells);
+  seen->clear();
+  for (const HiddenCell& cell : cells) {
+    Hit hit;
+    const bool met = Meet(point, cell.direction, &hit);
+    const int emitter = met ? Find(hit) : -1;
+    if (emitter < 0 && met && unknown != nullptr) {
+      unknown->push_back({static_cast<int64_t>(seen->size()), hit});
+    }
+    seen->push_back(
+        {cell.cell, emitter < 0 ? kNoEmitter : static_cast<uint16_t>(emitter)});
+  }
+}
+
+std::vector<SurfaceEmitters::Unknown> SurfaceEmitters::LookFrom(
+    const std::vector<ShadingPoint>& points, const Visibility& visibility,
+    Table* table) const {
+  std::vector<std::vector<SeenEmitter>> seen(points.size());
+  std::vector<std::vector<Unknown>> missing(points.size());
+  ParallelFor(static_cast<int64_t>(points.size()), options_.num_threads,
+              [&](int64_t i, int) {
+                const uint64_t* const hidden = visibility.Hidden(points[i]);
+                if (hidden == nullptr) return;
+                Look(points[i], visibility.grid(), hidden, table->lattice_rows,
+                     &seen[i], &missing[i]);
+              });
+  std::vector<int64_t> order(points.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int64_t>(i);
+  std::sort(order.begin(), order.end(), [&](int64_t a, int64_t b) {
+    return points[a].index < points[b].index;
+  });
+  std::vector<Unknown> unknown;
+  for (const int64_t i : order) {
+    const auto first = static_cast<int64_t>(table->seen.size());
+    // Indices that no point has see nothing.
+    table->begin.resize(points[i].index + size_t{1}, first);
+    for (Unknown& u : missing[i]) {
+      u.entry += first;
+      unknown.push_back(u);
+    }
+    table->seen.insert(table->seen.end(), seen[i].begin(), seen[i].end());
+    table->begin.push_back(static_cast<int64_t>(table->seen.size()));
+  }
+  return unknown;
+}
+
+void SurfaceEmitters::AddEmitters(const std::vector<Unknown>& unknown,
+                                  Table* table) {
+  for (const Unknown& u : unknown) {
+    int emitter = Find(u.hit);
+    if (emitter < 0 && count() < kNoEmitter) {
+      emitter = count();
+      AddEmitter(PatchOf(u.hit.position, u.hit.normal), u.hit);
+    }
+    if (emitter < 0) continue;
+    table->seen[u.entry].emitter = static_cast<uint16_t>(emitter);
+  }
+}
+
+int64_t SurfaceEmitters::num_cells() const {
+  return static_cast<int64_t>(by_point_.seen.size() + by_emitter_.seen.size());
+}
+
+int64_t SurfaceEmitters::num_lost() const {
+  int64_t lost = 0;
+  for (const Table* table : {&by_point_, &by_emitter_}) {
+    lost +=
+        std::count_if(table->seen.begin(), table->seen.end(),
+                      [](SeenEmitter s) { return s.emitter == kNoEmitter; });
+  }
+  return lost;
+}
+
+SeenEmitters SurfaceEmitters::Table::Of(int index) const {
+  if (index < 0 || static_cast<size_t>(index) + 1 >= begin.size()) return {};
+  return {seen.data() + begin[index], seen.data() + begin[index + 1],
+          lattice_rows};
+}
+
+SeenEmitters SurfaceEmitters::SeenFrom(const ShadingPoint& point) const {
+  return by_point_.Of(point.index);
+}
+
+SeenEmitters SurfaceEmitters::SeenFromEmitter(
+    const ShadingPoint& emitter) const {
+  return by_emitter_.Of(emitter.index);
+}
+
+void SurfaceEmitters::SharesIn(const VisibilityGrid& grid,
+                               const uint64_t* hidden, const Eigen::Vector3d& n,
+                               const GridRange& range, const SeenEmitters& seen,
+                               std::vector<EmitterShare>* shares) const {
+  shares->clear();
+  const int stride = grid.rows() / seen.lattice_rows;
+  const int columns = 2 * seen.lattice_rows;
+  double all = 0.0, behind = 0.0;
+  const int row_end = (range.row_end + stride - 1) / stride;
+  const int column_end = (range.column_end + stride - 1) / stride;
+  for (int row = range.row_begin / stride; row < row_end; ++row) {
+    for (int column = range.column_begin / stride; column < column_end;
+         ++column) {
+      const GridRange part = {
+          std::max(range.row_begin, row * stride),
+          std::min(range.row_end, (row + 1) * stride),
+          std::max(range.column_begin, column * stride),
+          std::min(range.column_end, (column + 1) * stride)};
+      double part_all = 0.0;
+      grid.CosineSums(hidden, n, part, &part_all, &behind);
+      all += part_all;
+      if (behind <= 0.0) continue;
+      const int emitter = InCell(seen, row * columns + column);
+      if (emitter >= 0) shares->push_back({emitter, behind});
+    }
+  }
+  for (EmitterShare& share : *shares) share.share /= all;
+}
+
+int SurfaceEmitters::InCell(const SeenEmitters& seen, int cell) {
+  const SeenEmitter* const at = std::lower_bound(
+      seen.begin, seen.end, cell,
+      [](const SeenEmitter& s, int wanted) { return s.cell < wanted; });
+  if (at == seen.end || at->cell != cell || at->emitter == kNoEmitter) {
+    return -1;
+  }
+  return at->emitter;
+}
+
+int SurfaceEmitters::Along(const SeenEmitters& seen,
+                           const Eigen::Vector3d& wi) const {
+  const int rows = seen.lattice_rows;
+  double row = 0.0, column = 0.0;
+  MapPosition(wi, rows, 2 * rows, &row, &column);
+  const int r = std::clamp(static_cast<int>(row), 0, rows - 1);
+  const int c = std::clamp(static_cast<int>(column), 0, 2 * rows - 1);
+  // Visibility is interpolated: beside an edge the next cell has the emitter.
+  const int beside_r = std::clamp(r + (row - r < 0.5 ? -1 : 1), 0, rows - 1);
+  const int beside_c =
+      (c + (column - c < 0.5 ? -1 : 1) + 2 * rows) % (2 * rows);
+  for (const int cell :
+       {r * 2 * rows + c, r * 2 * rows + beside_c, beside_r * 2 * rows + c,
+        beside_r * 2 * rows + beside_c}) {
+    const int emitter = InCell(seen, cell);
+    if (emitter >= 0) return emitter;
+  }
+  return -1;
+}
+
+size_t SurfaceEmitters::MemoryBytes() const {
+  size_t bytes = points_.capacity() * sizeof(ShadingPoint);
+  for (const Table* table : {&by_point_, &by_emitter_}) {
+    bytes += table->seen.capacity() * sizeof(SeenEmitter) +
+             table->begin.capacity() * sizeof(int64_t);
+  }
+  return bytes + visibility_->MemoryBytes();
+}
+
+}  // namespace ibrdf

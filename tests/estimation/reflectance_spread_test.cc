@@ -1,0 +1,116 @@
+#include "ibrdf/solvers/estimation/reflectance_spread.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/metrics/brdf_metrics.h"
+#include "tests/support/solver_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+constexpr int kDraws = 400;
+
+class ReflectanceSpreadTest : public ::testing::Test {
+ protected:
+  explicit ReflectanceSpreadTest(int num_lobes = 2)
+      : model_(SmoothTinyModel(2)),
+        distance_(FlowLobes::Factory(model_, num_lobes, 1)),
+        parameters_(TinyLobes()) {
+    parameters_.resize(distance_.lobes().num_parameters());
+  }
+  std::vector<double> Diagonal(double code, double colour) const {
+    const size_t n = parameters_.size(), size = distance_.lobes().lobe_size();
+    const size_t codes = distance_.lobes().code_size();
+    std::vector<double> covariance(n * n, 0.0);
+    for (size_t i = 0; i < n; ++i) {
+      covariance[i * n + i] = i % size < codes ? code : colour;
+    }
+    return covariance;
+  }
+  double Spread(const std::vector<double>& covariance) const {
+    return ReflectanceSpread(distance_, parameters_, covariance, kDraws, 1);
+  }
+
+  NeuralBrdfModel model_;
+  LobeDistance distance_;
+  std::vector<double> parameters_;
+};
+
+class OneLobe : public ReflectanceSpreadTest {
+ protected:
+  OneLobe() : ReflectanceSpreadTest(1) {}
+};
+
+// The slow reference: all bins of the tables.
+TEST_F(ReflectanceSpreadTest, DistanceIsTheMetricsOfTables) {
+  const FlowLobes lobes(model_, 2, {4, 4, 2}, 1);
+  const MerlTable at = lobes.ToMerl(parameters_.data());
+  for (const double step : {0.05, 0.3, 0.8}) {
+    std::vector<double> other = parameters_;
+    for (size_t i = 0; i < other.size(); ++i) {
+      other[i] += step * std::sin(3.0 * static_cast<double>(i) + 1.0);
+    }
+    const double table =
+        CompareBrdfs(lobes.ToMerl(other.data()), at)->log_rmse_aligned;
+    const double nodes = distance_.Aligned(distance_.LogValues(other),
+                                           distance_.LogValues(parameters_));
+    EXPECT_NEAR(table, nodes, 0.05 * table) << step;
+  }
+}
+
+TEST_F(ReflectanceSpreadTest, NothingUnknownIsNoSpread) {
+  EXPECT_NEAR(0.0, Spread(Diagonal(0.0, 0.0)), 1e-6);
+}
+
+// To first order the squares are a trace: of the distance's derivatives, here
+// by differences, and the covariance.
+TEST_F(ReflectanceSpreadTest, SmallCovariancesSpreadByTheDerivatives) {
+  constexpr double kVariance = 1e-4, kStep = 1e-2;
+  double trace = 0.0;
+  for (size_t i = 0; i < parameters_.size(); ++i) {
+    std::vector<double> up = parameters_, down = parameters_;
+    up[i] += kStep;
+    down[i] -= kStep;
+    const double d =
+        distance_.Aligned(distance_.LogValues(up), distance_.LogValues(down)) /
+        (2.0 * kStep);
+    trace += kVariance * d * d;
+  }
+  const double spread = Spread(Diagonal(kVariance, kVariance));
+  // 400 draws of a sum of some independent squares.
+  EXPECT_NEAR(std::sqrt(trace), spread, 0.1 * spread);
+}
+
+// A colour of the only lobe is a scale, which alignment takes off.
+TEST_F(OneLobe, ColoursOfASingleLobeAreScales) {
+  EXPECT_LT(Spread(Diagonal(0.0, 0.5)), 1e-3);
+  EXPECT_GT(Spread(Diagonal(0.01, 0.0)), 1e-2);
+}
+
+TEST_F(ReflectanceSpreadTest, ExtremesAreFinite) {
+  const double wide = Spread(Diagonal(1e6, 1e2));
+  EXPECT_TRUE(std::isfinite(wide));
+  EXPECT_GT(wide, Spread(Diagonal(0.01, 0.01)));
+  // As rounding may leave it.
+  std::vector<double> indefinite = Diagonal(0.01, 0.01);
+  indefinite[0] = -1e-9;
+  EXPECT_TRUE(std::isfinite(Spread(indefinite)));
+  indefinite[0] = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(std::isnan(Spread(indefinite)));
+}
+
+TEST(ExpectError, PosteriorsAreTooSure) {
+  const ErrorToExpect error = ExpectError(0.5);
+  EXPECT_GT(error.median, 0.5);
+  EXPECT_GT(error.most, error.median);
+  EXPECT_GT(ExpectError(0.6).most, error.most);
+  EXPECT_EQ(0.0, ExpectError(0.0).most);
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,211 @@
+#include "ibrdf/solvers/forward/approximate_radiance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/io/problem_file.h"
+#include "ibrdf/light/procedural_sky.h"
+#include "ibrdf/solvers/forward/render_scene.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr char kSoft[] =
+    "illumination={known: {sky: {sun_irradiance: 0}}, width: 128, height: 64}";
+constexpr char kHard[] =
+    "illumination={known: {sky: {sun_phi_degrees: 35, sun_radius_degrees: "
+    "0.5}}, width: 128, height: 64}";
+constexpr char kMirror[] =
+    "reflectance.known={cook_torrance: {diffuse: 0, roughness: 0.03, f0: 0.9}}";
+constexpr char kGlossy[] =
+    "reflectance.known={cook_torrance: {diffuse: 0.2, roughness: 0.12, f0: "
+    "0.04}}";
+constexpr char kPerspective[] =
+    "camera={type: perspective, fov_degrees: 30, from: [0, 0, 4]}";
+
+class RadianceTier : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    WriteBytes(dir_.File("scene.yaml"),
+               "image: {width: 64, height: 64}\n"
+               "geometry: {sphere: {}}\n"
+               "reflectance: {known: {lambertian: 0.5}}\n"
+               "illumination: {known: {sky: {sun_irradiance: 0}}, width: 128, "
+               "height: 64}\n"
+               "quality: preview\n");
+  }
+  StatusOr<RenderedScene> Render(const std::vector<std::string>& overrides,
+                                 const RenderSceneOptions& options = {}) {
+    const StatusOr<Problem> problem =
+        ReadProblem(dir_.File("scene.yaml"), overrides);
+    if (!problem.ok()) return problem.status();
+    return RenderScene(*problem, options);
+  }
+  TierPlan Plan(const std::vector<std::string>& overrides, int threads = 0) {
+    RenderSceneOptions options;
+    options.plan_only = true;
+    options.num_threads = threads;
+    return Render(overrides, options).value().effects.tier;
+  }
+  const TempDir dir_;
+};
+
+double LogDifference(const RenderedScene& a, const RenderedScene& b) {
+  double sum = 0.0;
+  int count = 0;
+  for (size_t k = 0; k < a.image.rgb.size(); ++k) {
+    if (a.mask.inside[k / 3] == 0) continue;
+    sum += std::abs(std::log(a.image.rgb[k] / b.image.rgb[k]));
+    ++count;
+  }
+  return sum / count;
+}
+
+bool Says(const RenderedScene& scene, const std::string& text) {
+  return scene.effects.words.find(text) != std::string::npos;
+}
+
+TEST_F(RadianceTier, MatteUnderSoftLightIsRenderedInHarmonics) {
+  const RenderedScene fast = Render({kPerspective}).value();
+  const TierPlan& plan = fast.effects.tier;
+  EXPECT_EQ(Tier::kHarmonics, plan.tier) << fast.effects.words;
+  EXPECT_LE(plan.order, 8);
+  EXPECT_LE(plan.predicted_error, 3e-3);
+  EXPECT_GT(plan.predicted_error, 0.0);
+  EXPECT_LE(plan.found_error, 3e-3);
+  EXPECT_EQ(64, plan.checked);
+  EXPECT_LT(plan.seconds, 0.5 * plan.quadrature_seconds);
+  EXPECT_TRUE(
+      Says(fast, "spherical harmonics up to l = " + std::to_string(plan.order) +
+                     ": predicted error of log radiance"));
+  const RenderedScene slow = Render({kPerspective, "effects=none"}).value();
+  EXPECT_EQ(Tier::kQuadrature, slow.effects.tier.tier);
+  EXPECT_LT(LogDifference(fast, slow), 3e-3);
+  // Seen from far away, so few normals are enough that nothing is to be gained.
+  const TierPlan by_normal = Plan({});
+  EXPECT_EQ(Tier::kReflectanceMap, by_normal.tier);
+  EXPECT_EQ(0, by_normal.checked);
+}
+
+TEST_F(RadianceTier, MatteUnderASmallSunIsRenderedInGaussians) {
+  const RenderedScene fast = Render({kHard, kPerspective}).value();
+  const TierPlan& plan = fast.effects.tier;
+  EXPECT_EQ(Tier::kGaussians, plan.tier) << fast.effects.words;
+  EXPECT_EQ(1, plan.spots);
+  EXPECT_TRUE(Says(fast, "spherical Gaussians, 1 for a bright spot"))
+      << fast.effects.words;
+  // 0.0013.
+  EXPECT_LT(plan.found_error, 2e-3);
+  EXPECT_LT(plan.quadrature_error, plan.found_error);
+  const TierPlan reference = Plan({kHard, kPerspective, "quality=reference"});
+  EXPECT_EQ(Tier::kQuadrature, reference.tier);
+  EXPECT_EQ(0, reference.checked);
+}
+
+TEST_F(RadianceTier, MirrorsAreLeftToTheQuadratureAndItSaysWhy) {
+  EXPECT_EQ(Tier::kQuadrature, Plan({kMirror, kPerspective}).tier);
+  EXPECT_EQ(Tier::kReflectanceMap, Plan({kMirror}).tier);
+  const TierPlan soft = Plan({kMirror});
+  EXPECT_EQ(0, soft.checked);
+  EXPECT_NE(std::string::npos, soft.words.find("are not within 0.0030"))
+      << soft.words;
+  // A glossy surface under a sun is looked at and found to need too many.
+  const TierPlan hard = Plan({kGlossy, kHard});
+  EXPECT_EQ(Tier::kReflectanceMap, hard.tier);
+  EXPECT_EQ(64, hard.checked);
+  EXPECT_NE(std::string::npos, hard.words.find("slower or not within"))
+      << hard.words;
+}
+
+TEST_F(RadianceTier, SmallImagesAreNotWorthAChoice) {
+  const TierPlan plan = Plan({"image={width: 24, height: 24}"});
+  EXPECT_EQ(Tier::kReflectanceMap, plan.tier);
+  EXPECT_EQ(0, plan.checked);
+  EXPECT_EQ("", plan.words);
+}
+
+TEST_F(RadianceTier, TheUserOverrules) {
+  EXPECT_EQ(Tier::kQuadrature, Plan({"effects=none"}).tier);
+  EXPECT_EQ(Tier::kReflectanceMap, Plan({"effects=[reflectance_map]"}).tier);
+  EXPECT_EQ(Tier::kReflectanceMap, Plan({"effects=all"}).tier);
+  const TierPlan gaussians = Plan({"effects=[gaussians]"});
+  EXPECT_EQ(Tier::kGaussians, gaussians.tier);
+  EXPECT_NE(std::string::npos, gaussians.words.find("as asked"));
+  // What was asked for, as near as it comes, with its error.
+  const TierPlan mirror = Plan({"effects=[harmonics]", kMirror});
+  EXPECT_EQ(Tier::kHarmonics, mirror.tier);
+  EXPECT_GT(mirror.predicted_error, 0.1);
+  EXPECT_GT(mirror.found_error, 0.1);
+  // At reference quality as well, and in small images.
+  const TierPlan asked = Plan({"effects=harmonics", "quality=reference",
+                               "image={width: 16, height: 16}"});
+  EXPECT_EQ(Tier::kHarmonics, asked.tier);
+  EXPECT_LE(asked.predicted_error, 3e-4);
+  EXPECT_EQ(Tier::kHarmonics, Plan({"effects=[gaussians, harmonics]"}).tier);
+}
+
+TEST_F(RadianceTier, PlanAndImageAreTheSameForAnyNumberOfThreads) {
+  for (const char* light : {kSoft, kHard}) {
+    RenderSceneOptions one, many;
+    one.num_threads = 1;
+    many.num_threads = 8;
+    const RenderedScene a = Render({light, kPerspective}, one).value();
+    const RenderedScene b = Render({light, kPerspective}, many).value();
+    EXPECT_EQ(a.image.rgb, b.image.rgb);
+    EXPECT_EQ(a.effects.words, b.effects.words);
+    EXPECT_EQ(a.effects.tier.words, Plan({light, kPerspective}).words);
+  }
+}
+
+// Predicted to do, found not to.
+TEST(TierRadiance, FallsBackWhereTheTruthDisagrees) {
+  SkyOptions sky;
+  sky.sun_irradiance = 0.0;
+  const Image map = RenderSky(sky, 32, 64);
+  KnownBrdf brdf;
+  CookTorrance matte;
+  matte.specular = Eigen::Array3d::Zero();
+  brdf.function = matte.Function();
+  const std::vector<ShadingPoint> points =
+      FindShadingPoints(Scene::UnitSphere(), Camera(), 64, 64, Mask(), 1)
+          .value();
+  TierOptions options;
+  options.harmonics = options.gaussians = true;
+  const ReferenceRenderer renderer(map, {});
+  double scale = 1.0;
+  const PointRenderer truth = [&](const std::vector<ShadingPoint>& some,
+                                  double* E) {
+    renderer.Render(some, brdf.function, E);
+    for (size_t k = 0; k < 3 * some.size(); ++k) E[k] *= scale;
+    return true;
+  };
+  TierRadiance tier(map, brdf, 0);
+  ASSERT_TRUE(tier.Choose(points, truth, truth, options));
+  EXPECT_TRUE(tier.renders());
+  scale = 1.01;
+  ASSERT_TRUE(tier.Choose(points, truth, truth, options));
+  EXPECT_FALSE(tier.renders());
+  EXPECT_NE(std::string::npos, tier.plan().words.find("not within"));
+  // The quadrature may be as far off itself.
+  const PointRenderer quadrature = [&](const std::vector<ShadingPoint>& some,
+                                       double* E) {
+    renderer.Render(some, brdf.function, E);
+    for (size_t k = 0; k < 3 * some.size(); ++k) E[k] *= 0.99;
+    return true;
+  };
+  ASSERT_TRUE(tier.Choose(points, quadrature, truth, options));
+  EXPECT_TRUE(tier.renders());
+  EXPECT_GT(tier.plan().quadrature_error, 0.015);
+  // Stopped.
+  const PointRenderer stop = [](const std::vector<ShadingPoint>&, double*) {
+    return false;
+  };
+  EXPECT_FALSE(tier.Choose(points, truth, stop, options));
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,186 @@
+#include "ibrdf/solvers/illumination/process_illumination.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/priors/directional_lights.h"
+#include "tests/support/solver_testing.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kHeight = 4, kWidth = 8, kTexels = kHeight * kWidth;
+constexpr int kSize = 3 * kTexels;
+constexpr double kAmplitude = 1.5;
+const LightScales kScales = {std::log(kAmplitude), {-1.0, 0.5, 0.2, -2.0}};
+constexpr double kFloat = 6e-8;  // half a unit in the last place, relative
+
+std::vector<float> Random(int size, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::normal_distribution<float> g;
+  std::vector<float> out(size);
+  for (float& v : out) v = g(rng);
+  return out;
+}
+
+double Dot(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < a.size(); ++i) sum += double{a[i]} * b[i];
+  return sum;
+}
+
+// Without lamps and with them.
+class ProcessIlluminationTest : public ::testing::TestWithParam<bool> {
+ protected:
+  std::vector<float> Forward(const std::vector<float>& parameters) {
+    std::vector<float> map(model_->num_outputs());
+    model_->Forward(parameters.data(), map.data());
+    return map;
+  }
+  // S.
+  Eigen::MatrixXd Jacobian() { return testing::JacobianOf(model_.get()); }
+  // What rounding of parameters and outputs to float leaves of each texel.
+  Eigen::VectorXd Rounding(const std::vector<float>& parameters,
+                           const std::vector<float>& map) {
+    const Eigen::Map<const Eigen::VectorXf> w(
+        parameters.data(), static_cast<Eigen::Index>(parameters.size()));
+    const Eigen::Map<const Eigen::VectorXf> l(map.data(), kSize);
+    return kFloat * (Jacobian().cwiseAbs() * w.cwiseAbs().cast<double>() +
+                     l.cwiseAbs().cast<double>());
+  }
+
+  const LightProcess process_;
+  // Beside the centres of two texels.
+  const std::vector<Eigen::Vector3d> lamps_ =
+      GetParam() ? std::vector<Eigen::Vector3d>{MapDirection(1.55, 2.52,
+                                                             kHeight, kWidth),
+                                                MapDirection(2.6, 6.45, kHeight,
+                                                             kWidth)}
+                 : std::vector<Eigen::Vector3d>();
+  const std::unique_ptr<IlluminationModel> model_ =
+      MakeProcessIllumination(kWidth, kHeight, process_, kScales, lamps_);
+  const int num_parameters_ = model_->num_parameters();
+};
+
+TEST_P(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
+  ASSERT_EQ(kSize, model_->num_outputs());
+  EXPECT_EQ(std::vector<float>(num_parameters_, 1.0f), model_->PriorStd());
+  const std::vector<LampTexel> near = NearLamps(lamps_, kHeight, kWidth);
+  ASSERT_EQ(lamps_.size(), near.size());
+  ASSERT_EQ(kSize + 3 * static_cast<int>(near.size()), num_parameters_);
+  Eigen::VectorXd of_lamps = Eigen::VectorXd::Zero(kTexels);
+  for (const LampTexel& t : near) of_lamps[t.texel] = t.weight * t.weight;
+  const Eigen::MatrixXd S = Jacobian();
+  const Eigen::MatrixXd covariance = S * S.transpose();
+  const RowMatrix correlation =
+      LightCorrelation(kHeight, kWidth, process_, kScales);
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d < 3; ++d) {
+      Eigen::MatrixXd expected =
+          (kAmplitude * process_.Local()(c, d) * correlation).array() +
+          process_.Level()(c, d);
+      expected.diagonal() += process_.Lamp()(c, d) * of_lamps;
+      const Eigen::MatrixXd block =
+          covariance.block(c * kTexels, d * kTexels, kTexels, kTexels);
+      // |S_i| |S_j| times one rounding of each entry.
+      EXPECT_LT((block - expected).cwiseAbs().maxCoeff(),
+                4 * kFloat * covariance.diagonal().maxCoeff())
+          << c << d;
+    }
+  }
+}
+
+TEST_P(ProcessIlluminationTest, TangentsAndAdjointsAreTransposes) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const std::vector<float> v = Random(num_parameters_, seed);
+    const std::vector<float> a = Random(kSize, seed + 10);
+    std::vector<float> Jv(kSize), Ja(num_parameters_);
+    model_->Jvp(v.data(), Jv.data());
+    model_->Vjp(a.data(), Ja.data());
+    EXPECT_NEAR(Dot(a, Jv), Dot(Ja, v),
+                2 * kFloat * std::sqrt(Dot(a, a) * Dot(Jv, Jv)) +
+                    2 * kFloat * std::sqrt(Dot(Ja, Ja) * Dot(v, v)));
+  }
+}
+
+TEST_P(ProcessIlluminationTest, ForwardIsLinearAndItsOwnTangent) {
+  EXPECT_EQ(std::vector<float>(kSize, 0.0f),
+            Forward(std::vector<float>(num_parameters_, 0.0f)));
+  const std::vector<float> p = Random(num_parameters_, 4),
+                           q = Random(num_parameters_, 5);
+  std::vector<float> sum(num_parameters_), tangent(kSize), map(kSize);
+  for (int i = 0; i < num_parameters_; ++i) sum[i] = p[i] - 2 * q[i];
+  const std::vector<float> at_p = Forward(p), at_q = Forward(q);
+  const std::vector<float> at_sum = Forward(sum);
+  const Eigen::VectorXd rounding =
+      Rounding(sum, at_sum) + Rounding(p, at_p) + 2 * Rounding(q, at_q);
+  for (int i = 0; i < kSize; ++i) {
+    EXPECT_NEAR(double{at_p[i]} - 2 * double{at_q[i]}, at_sum[i], rounding[i]);
+  }
+  // Wherever it is linearised.
+  for (const auto& point : {p, q}) {
+    model_->Linearise(point.data(), map.data());
+    EXPECT_EQ(Forward(point), map);
+    model_->Jvp(sum.data(), tangent.data());
+    EXPECT_EQ(at_sum, tangent);
+  }
+}
+
+TEST_P(ProcessIlluminationTest, ConstantMapIsConstantAtAnyLevel) {
+  for (const double level : {-30.0, -1.0, 0.0, 0.5, 30.0}) {
+    for (const double cast : {0.0, 2.0}) {
+      const double rgb[3] = {level + cast, level, level - cast};
+      const std::vector<float> p = model_->ConstantMap(rgb);
+      const std::vector<float> map = Forward(p);
+      const Eigen::VectorXd rounding = Rounding(p, map);
+      for (int i = 0; i < kSize; ++i) {
+        EXPECT_NEAR(rgb[i / kTexels], map[i], rounding[i]);
+      }
+    }
+  }
+}
+
+TEST_P(ProcessIlluminationTest, ShiftMovesEachChannelByItsOwnAmount) {
+  const std::vector<float> before = Random(num_parameters_, 6);
+  std::vector<float> after = before;
+  const double shift[3] = {0.5, -2.0, 7.25};
+  model_->ShiftChannels(shift, after.data());
+  const std::vector<float> from = Forward(before), to = Forward(after);
+  const Eigen::VectorXd rounding = Rounding(before, from) + Rounding(after, to);
+  for (int i = 0; i < kSize; ++i) {
+    EXPECT_NEAR(shift[i / kTexels], double{to[i]} - from[i], rounding[i]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lamps, ProcessIlluminationTest, ::testing::Bool());
+
+// At the size of an estimate, and far above it.
+TEST(ProcessIllumination, LargeMapsAreConstantToo) {
+  for (const int width : {2, 64, 128}) {
+    const int height = width / 2;
+    const std::unique_ptr<IlluminationModel> model =
+        MakeProcessIllumination(width, height, LightProcess(), {std::log(0.3)});
+    for (const double level : {-30.0, 30.0}) {
+      const double rgb[3] = {level, level + 1, level - 1};
+      const std::vector<float> p = model->ConstantMap(rgb);
+      std::vector<float> map(model->num_outputs());
+      model->Forward(p.data(), map.data());
+      double worst = 0.0;
+      for (size_t i = 0; i < map.size(); ++i) {
+        worst = std::max(worst, std::abs(map[i] - rgb[i / (map.size() / 3)]));
+      }
+      // Roundings of parameters of size up to 30 and of the map, some units
+      // of 2e-6 in the last place.
+      EXPECT_LT(worst, 1e-5) << width;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ibrdf

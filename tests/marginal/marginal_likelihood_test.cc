@@ -1,0 +1,334 @@
+#include "ibrdf/solvers/marginal/marginal_likelihood.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "ibrdf/light/environment_map.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kHeight = 4, kWidth = 8, kTexels = kHeight * kWidth;
+constexpr int kPoints = 6;
+
+// Lobes of a width in radians about random directions, as matrices of three
+// like channels; lamps in random directions.
+std::array<RowMatrix, 3> Lobes(double width, int points = kPoints,
+                               int lamps = 0) {
+  std::mt19937_64 rng(7);
+  std::normal_distribution<double> g;
+  const auto direction = [&] {
+    return Eigen::Vector3d(g(rng), g(rng), g(rng)).normalized();
+  };
+  RowMatrix T(points, kTexels + lamps);
+  for (int p = 0; p < points; ++p) {
+    const Eigen::Vector3d axis = direction();
+    for (int r = 0; r < kHeight; ++r) {
+      for (int c = 0; c < kWidth; ++c) {
+        const double x =
+            axis.dot(MapDirection(r + 0.5, c + 0.5, kHeight, kWidth));
+        T(p, r * kWidth + c) = TexelSolidAngle(r, kHeight, kWidth) *
+                               (std::exp((x - 1) / (width * width)) + 1e-4);
+      }
+    }
+    for (int k = 0; k < lamps; ++k) {
+      const double x = axis.dot(direction());
+      T(p, kTexels + k) = 0.3 * (std::exp((x - 1) / (width * width)) + 1e-4);
+    }
+  }
+  return {T, 0.7 * T, 1.3 * T};
+}
+
+Eigen::VectorXd DrawLight(const LightProcess& process, double amplitude,
+                          uint64_t seed, int lamps = 0) {
+  LightScales scales;
+  scales.log_amplitude = std::log(amplitude);
+  const RowMatrix C = LightCorrelation(kHeight, kWidth, process, scales);
+  const int n = kTexels + lamps;
+  Eigen::MatrixXd K(3 * n, 3 * n);
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d < 3; ++d) {
+      Eigen::MatrixXd local = Eigen::MatrixXd::Zero(n, n);
+      local.topLeftCorner(kTexels, kTexels) =
+          amplitude * process.Local()(c, d) * C;
+      local.diagonal().tail(lamps).setConstant(process.Lamp()(c, d));
+      K.block(c * n, d * n, n, n) = local.array() + process.Level()(c, d);
+    }
+  }
+  std::mt19937_64 rng(seed);
+  std::normal_distribution<double> g;
+  Eigen::VectorXd white(3 * n);
+  for (double& w : white) w = g(rng);
+  return K.llt().matrixL() * white;
+}
+
+std::vector<double> LogRadiance(const std::array<RowMatrix, 3>& T,
+                                const Eigen::VectorXd& l) {
+  std::vector<double> y;
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd E =
+        T[c] * l.segment(c * T[c].cols(), T[c].cols()).array().exp().matrix();
+    for (const double e : E) y.push_back(std::log(e));
+  }
+  return y;
+}
+
+Eigen::VectorXd Noise(double sigma, int points = kPoints) {
+  return Eigen::VectorXd::Constant(3 * points, sigma * sigma);
+}
+
+// A level that the process itself holds, so that nothing is improper.
+LightProcess Proper() {
+  LightProcess process;
+  process.level_variance = 0.5;
+  return process;
+}
+
+// Of no band like another.
+LightScales Rough() { return {0.3, {-1.5, 0.4, -0.3, 0.8}}; }
+
+// Scale `k` moved, the amplitude first.
+LightScales Moved(LightScales scales, int k, double step) {
+  (k == 0 ? scales.log_amplitude : scales.log_roughness[k - 1]) += step;
+  return scales;
+}
+
+MarginalLikelihood Likelihood(std::vector<double> y,
+                              const LightProcess& process, int lamps = 0) {
+  return MarginalLikelihood(std::move(y), process, kHeight, kWidth, lamps, 1);
+}
+
+// Nats, of the mode: its last steps shrink slowly, and the log determinant
+// feels what is left to first order.
+constexpr double kTight = 1e-18;
+
+TEST(MarginalLikelihood, GradientMatchesDifferences) {
+  for (const auto& [width, lamps] :
+       {std::pair(0.3, 0), std::pair(1.0, 0), std::pair(0.3, 2)}) {
+    std::array<RowMatrix, 3> T = Lobes(width, kPoints, lamps);
+    std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 2, lamps));
+    // Not what the model can render: the mode keeps residuals.
+    for (size_t i = 0; i < y.size(); ++i) y[i] += 0.2 * std::sin(5.0 * i);
+    const MarginalLikelihood likelihood = Likelihood(y, Proper(), lamps);
+    const auto cost = [&](const std::array<RowMatrix, 3>& matrices,
+                          const LightScales& scales,
+                          MarginalGradient* gradient) {
+      LightMode mode;
+      mode.l = mode.dual = Eigen::VectorXd::Zero(3 * likelihood.num_sources());
+      const MarginalValue value = likelihood.Evaluate(
+          matrices, Noise(0.1), scales, kTight, &mode, gradient);
+      EXPECT_TRUE(value.ok);
+      return value.cost;
+    };
+    MarginalGradient gradient;
+    const LightScales scales = Rough();
+    cost(T, scales, &gradient);
+    const double h = 1e-3;
+    for (int k = 0; k < LightScales::kCount; ++k) {
+      const double numeric = (cost(T, Moved(scales, k, h), nullptr) -
+                              cost(T, Moved(scales, k, -h), nullptr)) /
+                             (2 * h);
+      EXPECT_NEAR(numeric, gradient.scales[k],
+                  1e-3 * std::abs(gradient.scales[k]) + 1e-3)
+          << k;
+    }
+    std::mt19937_64 rng(1);
+    std::normal_distribution<double> g;
+    for (int trial = 0; trial < 4; ++trial) {
+      std::array<RowMatrix, 3> up = T, down = T;
+      double expected = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        const RowMatrix direction =
+            T[c].unaryExpr([&](double t) { return t * g(rng); });
+        up[c] += h * direction;
+        down[c] -= h * direction;
+        expected += gradient.matrices[c].cwiseProduct(direction).sum();
+      }
+      EXPECT_NEAR(
+          (cost(up, scales, nullptr) - cost(down, scales, nullptr)) / (2 * h),
+          expected, 2e-3 * std::abs(expected) + 2e-3)
+          << width;
+    }
+  }
+}
+
+TEST(MarginalLikelihood, ModeIsWhereThePosteriorIsFlat) {
+  constexpr int kLamps = 2, kSources = kTexels + kLamps;
+  const std::array<RowMatrix, 3> T = Lobes(0.5, kPoints, kLamps);
+  const std::vector<double> y =
+      LogRadiance(T, DrawLight(Proper(), 1.0, 3, kLamps));
+  const MarginalLikelihood likelihood = Likelihood(y, Proper(), kLamps);
+  LightMode mode;
+  ASSERT_TRUE(
+      likelihood.Evaluate(T, Noise(0.05), {}, kTight, &mode, nullptr).ok);
+  // g = J^T D^-1 (y - log E), at the point itself.
+  const std::vector<double> at =
+      LogRadiance(T, (mode.l.array() + mode.level).matrix());
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd L =
+        (mode.l.segment(c * kSources, kSources).array() + mode.level).exp();
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(kSources);
+    for (int p = 0; p < kPoints; ++p) {
+      const int i = c * kPoints + p;
+      expected += (y[i] - at[i]) / (0.05 * 0.05 * std::exp(at[i])) *
+                  T[c].row(p).transpose().cwiseProduct(L);
+    }
+    EXPECT_LT((expected - mode.dual.segment(c * kSources, kSources)).norm(),
+              1e-4 * expected.norm());
+  }
+}
+
+// The integral itself, by drawing light from the prior.
+TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
+  const int points = 2, lamps = 1;
+  const std::array<RowMatrix, 3> T = Lobes(0.8, points, lamps);
+  LightProcess process = Proper();
+  process.lamp_variance = 0.02;
+  process.lamp_chroma_variance = 0.005;
+  process.level_variance = 0.01;
+  process.level_chroma_variance = 0.002;
+  process.horizon_share = 0.02;
+  const double log_amplitude = std::log(0.02), sigma = 0.15;
+  const auto evidence = [&](const std::vector<double>& y) {
+    const MarginalLikelihood likelihood(y, process, kHeight, kWidth, lamps, 1);
+    LightMode mode;
+    mode.l = mode.dual = Eigen::VectorXd::Zero(3 * likelihood.num_sources());
+    return -likelihood
+                .Evaluate(T, Noise(sigma, points), {log_amplitude}, kTight,
+                          &mode, nullptr)
+                .cost;
+  };
+  const auto draws = [&](const std::vector<double>& y) {
+    double sum = 0.0;
+    const int count = 20000;
+    for (int k = 0; k < count; ++k) {
+      const std::vector<double> at =
+          LogRadiance(T, DrawLight(process, 0.02, 100 + k, lamps));
+      double square = 0.0;
+      for (size_t i = 0; i < y.size(); ++i) {
+        square += (y[i] - at[i]) * (y[i] - at[i]) / (sigma * sigma);
+      }
+      sum += std::exp(-0.5 * square) / count;
+    }
+    return std::log(sum) - y.size() * std::log(sigma);
+  };
+  const std::vector<double> likely =
+      LogRadiance(T, DrawLight(process, 0.02, 5, lamps));
+  std::vector<double> unlikely = likely;
+  unlikely[0] += 0.3;
+  unlikely[3] -= 0.2;
+  // 20000 draws know the sum to some per cent; Laplace's error is of the order
+  // of the light's variance, 0.03.
+  EXPECT_NEAR(draws(likely), evidence(likely), 0.1);
+  EXPECT_NEAR(draws(unlikely), evidence(unlikely), 0.15);
+}
+
+// What the maximum over light and reflectance cannot do: an image made by wide
+// lobes is better explained by wide lobes than by narrow ones, which fit it as
+// well; and the other way round.
+TEST(MarginalLikelihood, TellsMatteFromMirror) {
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    const std::array<RowMatrix, 3> wide = Lobes(0.9, 24);
+    const std::array<RowMatrix, 3> narrow = Lobes(0.25, 24);
+    const Eigen::VectorXd light = DrawLight(LightProcess(), 1.0, seed);
+    const auto cost = [&](const std::array<RowMatrix, 3>& truth,
+                          const std::array<RowMatrix, 3>& guess) {
+      const MarginalLikelihood likelihood(
+          LogRadiance(truth, light), LightProcess(), kHeight, kWidth, 0, 1);
+      LightMode mode;
+      const MarginalValue value =
+          likelihood.Evaluate(guess, Noise(0.05, 24), {}, 1e-3, &mode, nullptr);
+      EXPECT_TRUE(value.ok);
+      return value.cost;
+    };
+    EXPECT_LT(cost(wide, wide), cost(wide, narrow) - 3.0) << seed;
+    EXPECT_LT(cost(narrow, narrow), cost(narrow, wide) - 3.0) << seed;
+  }
+}
+
+TEST(MarginalLikelihood, StartOfTheModeDoesNotMatter) {
+  const std::array<RowMatrix, 3> T = Lobes(0.5);
+  const MarginalLikelihood likelihood =
+      Likelihood(LogRadiance(T, DrawLight(Proper(), 4.0, 3)), Proper());
+  LightMode cold, warm;
+  const double cost =
+      likelihood.Evaluate(T, Noise(0.05), {}, 1e-9, &cold, nullptr).cost;
+  const std::array<RowMatrix, 3> other = Lobes(0.9);
+  likelihood.Evaluate(other, Noise(0.05), {0.5}, 1e-9, &warm, nullptr);
+  warm.level = cold.level;
+  EXPECT_NEAR(
+      cost, likelihood.Evaluate(T, Noise(0.05), {}, 1e-9, &warm, nullptr).cost,
+      1e-4);
+}
+
+TEST(MarginalLikelihood, ExtremesAreFiniteOrRefused) {
+  std::array<RowMatrix, 3> T = Lobes(0.3);
+  std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 3));
+  const auto evaluate = [&](const std::vector<double>& image,
+                            const std::array<RowMatrix, 3>& matrices) {
+    LightMode mode;
+    MarginalGradient gradient;
+    const MarginalValue value =
+        Likelihood(image, LightProcess())
+            .Evaluate(matrices, Noise(0.03), {}, 1e-3, &mode, &gradient);
+    if (!value.ok) return;
+    EXPECT_TRUE(std::isfinite(value.cost));
+    for (const RowMatrix& m : gradient.matrices) EXPECT_TRUE(m.allFinite());
+  };
+  std::vector<double> sun = y;
+  sun[2] += 14.0;  // a million times
+  evaluate(sun, T);
+  std::vector<double> dark = y;
+  for (double& v : dark) v -= 60.0;
+  evaluate(dark, T);
+  std::array<RowMatrix, 3> black = T;
+  black[1].setZero();
+  evaluate(y, black);
+  std::array<RowMatrix, 3> bad = T;
+  bad[0](1, 1) = std::nan("");
+  LightMode mode;
+  EXPECT_FALSE(Likelihood(y, LightProcess())
+                   .Evaluate(bad, Noise(0.03), {}, 1e-3, &mode, nullptr)
+                   .ok);
+}
+
+TEST(MarginalLikelihood, VarianceIsThePriorsWhereNothingIsSeen) {
+  std::array<RowMatrix, 3> T = Lobes(0.15);
+  // No point sees the first texel's neighbourhood.
+  for (RowMatrix& m : T) m.leftCols(kWidth).setZero();
+  const MarginalLikelihood likelihood =
+      Likelihood(LogRadiance(T, DrawLight(Proper(), 1.0, 3)), Proper());
+  LightMode mode;
+  likelihood.Evaluate(T, Noise(0.02), {}, 1e-6, &mode, nullptr);
+  const Eigen::VectorXd variance =
+      likelihood.LightVariance(T, Noise(0.02), {}, mode);
+  const double prior = Proper().Local()(0, 0) + Proper().Level()(0, 0);
+  EXPECT_LE(variance.maxCoeff(), prior + 1e-9);
+  EXPECT_GE(variance.minCoeff(), 0.0);
+  // A texel in the middle of a lobe is known better than one of the blind row.
+  EXPECT_LT(variance.segment(kWidth, 2 * kWidth).minCoeff(),
+            0.5 * variance.head(kWidth).minCoeff());
+}
+
+TEST(MarginalLikelihood, NoiseGrowsAsLobesShrink) {
+  double last = 0.0;
+  for (const double width : {1.5, 0.8, 0.4, 0.2}) {
+    const std::array<RowMatrix, 3> T = Lobes(width);
+    LightMode mode;
+    mode.l = Eigen::VectorXd::Zero(3 * kTexels);
+    const Eigen::VectorXd noise =
+        Likelihood(std::vector<double>(3 * kPoints, 0.0), LightProcess())
+            .NoiseVariance(T, 0.03, mode);
+    EXPECT_GE(noise.minCoeff(), 0.03 * 0.03);
+    EXPECT_GT(noise.mean(), last);
+    last = noise.mean();
+  }
+  EXPECT_LT(last, LightProcess().VarianceWithin(180.0 / kHeight) + 1e-3);
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,264 @@
+#include "ibrdf/solvers/marginal/reflectance_search.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "ibrdf/base/eigen_vectors.h"
+#include "ibrdf/brdf/cook_torrance_lobes.h"
+#include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/brdf/table_lobes.h"
+#include "ibrdf/light/environment_map.h"
+#include "tests/marginal/marginal_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+class ReflectanceSearchTest : public MarginalTest {
+ protected:
+  ReflectanceSearchOptions Options() const {
+    ReflectanceSearchOptions options;
+    options.screen = options.coarse = options.fine = resolution_;
+    options.kept = 3;
+    options.coarse_rounds = {{3, 1}, {2, 3}};
+    options.fine_iterations = 4;
+    options.num_threads = 1;
+    return options;
+  }
+};
+
+// What Cook-Torrance rendered, from other materials.
+TEST_F(ReflectanceSearchTest, AmongCookTorranceExplainsItsOwn) {
+  const auto paint = [](double roughness, double diffuse) {
+    CookTorrance brdf;
+    brdf.diffuse = diffuse * Eigen::Array3d(1.0, 0.7, 0.4);
+    brdf.specular.setConstant(1.0);
+    brdf.roughness.setConstant(roughness);
+    brdf.f0.setConstant(0.2);
+    return CookTorranceLobes::ToParameters(brdf);
+  };
+  TransportOptions transport;
+  transport.grid = resolution_.grid;
+  transport.num_threads = 1;
+  const CookTorranceLobes lobes(resolution_.grid, 1);
+  const std::vector<double> truth = paint(0.25, 0.1);
+  std::vector<double> image(3 * points_.size());
+  Transport(points_, 8, 16, transport)
+      .Render(lobes.Grid(truth.data()), SmoothMap(8, 16).rgb.data(),
+              image.data());
+  std::vector<MaterialPrior::Material> materials;
+  for (const double roughness : {0.1, 0.4, 0.8}) {
+    for (const double diffuse : {0.03, 0.3}) {
+      materials.push_back(
+          {std::to_string(roughness), ToEigen(paint(roughness, diffuse))});
+    }
+  }
+  MaterialPrior prior = GaussianPrior(materials, CookTorranceLobes::kCode);
+  prior.wall = 0.0;
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      CookTorranceLobes::Factory(1), prior, points_, image, Options());
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  EXPECT_LT(found->misfit, found->tried[0].first_misfit);
+  ASSERT_EQ(10u, found->parameters.size());
+  // All three resolutions are one: costs compare.
+  for (const TriedMaterial& tried : found->tried) {
+    EXPECT_LT(found->cost, tried.first_cost - 5.0) << tried.name;
+  }
+}
+
+// The reflectance does not move, and the light of a lamp in dim surroundings
+// is found with it.
+TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
+  CookTorrance paint;
+  paint.diffuse = {0.1, 0.07, 0.04};
+  paint.specular.setConstant(1.0);
+  paint.roughness.setConstant(0.2);
+  paint.f0.setConstant(0.2);
+  const BrdfGrid known =
+      BrdfGrid::FromFunction(paint.Function(), resolution_.grid);
+  const std::vector<ShadingPoint> points = SpherePoints(24);
+  Image map = SmoothMap(16, 32);
+  double row = 0.0, column = 0.0;
+  MapPosition(kLamps[0], 16, 32, &row, &column);
+  row = std::floor(row);
+  column = std::floor(column);
+  const Eigen::Vector3d lamp = MapDirection(row + 0.5, column + 0.5, 16, 32);
+  for (int c = 0; c < 3; ++c) {
+    map.rgb[3 * static_cast<size_t>(row * 32 + column) + c] *= 200.0f;
+  }
+  TransportOptions transport;
+  transport.grid = resolution_.grid;
+  transport.num_threads = 1;
+  std::vector<double> image(3 * points.size());
+  Transport(points, 16, 32, transport)
+      .Render(known, map.rgb.data(), image.data());
+  ReflectanceSearchOptions options = Options();
+  options.covariance = false;
+  const std::vector<double> parameters = TableLobes::KnownParameters();
+  const MaterialPrior prior = KnownMaterial(ToEigen(parameters));
+  EXPECT_EQ(0.0, prior.Cost(ToEigen(parameters), nullptr));
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      TableLobes::Factory(known), prior, points, image, options);
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  EXPECT_EQ("known", found->start);
+  ASSERT_EQ(parameters.size(), found->parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    EXPECT_NEAR(parameters[i], found->parameters[i], 1e-6);
+  }
+  ASSERT_FALSE(found->lamps.empty());
+  EXPECT_GT(found->lamps[0].dot(lamp), std::cos(5.0 * M_PI / 180.0));
+  // All resolutions are one: costs compare.
+  EXPECT_LT(found->cost, found->tried[0].first_cost);
+  EXPECT_LT(found->misfit, found->tried[0].first_misfit);
+}
+
+// No infinite cost gets into a trace either.
+TEST_F(ReflectanceSearchTest, UnderABlackReflectanceSaysSo) {
+  const BrdfGrid black = BrdfGrid::FromFunction(
+      [](double, double, double) { return Eigen::Array3d::Zero().eval(); },
+      resolution_.grid);
+  const MaterialPrior prior =
+      KnownMaterial(ToEigen(TableLobes::KnownParameters()));
+  ReflectanceSearchOptions options = Options();
+  int reports = 0;
+  options.report = [&](const std::string&, double, double) { ++reports; };
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      TableLobes::Factory(black), prior, points_, radiance_, options);
+  ASSERT_FALSE(found.ok());
+  EXPECT_EQ(StatusCode::kNoImprovement, found.status().code());
+  EXPECT_EQ(0, reports);
+}
+
+TEST_F(ReflectanceSearchTest, LowersTheCostWhateverTheThreads) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  ReflectanceSearchOptions options = Options();
+  const StatusOr<ReflectanceSearchResult> one = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  ASSERT_TRUE(one.ok()) << one.status().message();
+  ASSERT_EQ(14u, one->parameters.size());
+  ASSERT_EQ(4u, one->tried.size());
+  EXPECT_EQ(one->tried[0].cost, one->cost);
+  EXPECT_EQ(one->tried[0].name, one->start);
+  EXPECT_EQ(one->tried[0].parameters, one->parameters);
+  for (size_t i = 1; i < one->tried.size(); ++i) {
+    EXPECT_LE(one->tried[i - 1].cost, one->tried[i].cost);
+  }
+  EXPECT_LT(one->misfit, 0.1);
+  for (const double s : one->log_radiance_std) {
+    EXPECT_TRUE(std::isfinite(s) && s >= 0.0);
+  }
+  ASSERT_EQ(14, one->covariance.rows());
+  EXPECT_LT((one->covariance - one->covariance.transpose()).norm(),
+            1e-9 * one->covariance.norm());
+  const Eigen::LLT<Eigen::MatrixXd> llt(one->covariance);
+  EXPECT_EQ(Eigen::Success, llt.info());
+  // The image tells something: no direction is wider than the prior's twice.
+  const Eigen::VectorXd prior_variance =
+      (prior.factor * prior.factor.transpose()).diagonal();
+  EXPECT_LT(one->covariance.trace(), prior_variance.sum());
+  options.num_threads = 2;
+  const StatusOr<ReflectanceSearchResult> two = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  ASSERT_TRUE(two.ok());
+  EXPECT_EQ(one->parameters, two->parameters);
+  EXPECT_EQ(one->log_radiance, two->log_radiance);
+}
+
+// What the object throws on itself, told by the caller, is taken out.
+TEST_F(ReflectanceSearchTest, BouncesAreTakenOutOfTheImage) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  std::vector<double> gain(radiance_.size()), brighter = radiance_;
+  for (size_t i = 0; i < gain.size(); ++i) {
+    gain[i] = 1.0 + 0.8 * std::pow(std::sin(1.7 * (i / 3)), 2);
+    brighter[i] *= gain[i];
+  }
+  ReflectanceSearchOptions options = Options();
+  const ReflectanceSearchResult clean =
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        radiance_, options)
+          .value();
+  const ReflectanceSearchResult left =
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        brighter, options)
+          .value();
+  int calls = 0;
+  options.bounce_gain = [&](const std::vector<double>& lobes,
+                            const std::vector<double>& log_radiance) {
+    ++calls;
+    EXPECT_EQ(14u, lobes.size());
+    EXPECT_EQ(size_t{3} * left.map_width * left.map_height,
+              log_radiance.size());
+    return gain;
+  };
+  const ReflectanceSearchResult taken =
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        brighter, options)
+          .value();
+  EXPECT_EQ(options.bounce_rounds, calls);
+  EXPECT_GT(left.cost, clean.cost + 5.0);
+  EXPECT_LT(taken.misfit, 1.2 * clean.misfit);
+  // Lower where its rounds, of more iterations, came further.
+  EXPECT_LT(taken.cost, clean.cost + 0.1 * (left.cost - clean.cost));
+  // Where there is nothing to be had all stays.
+  options.bounce_gain = [](const auto&, const auto&) {
+    return std::vector<double>();
+  };
+  EXPECT_EQ(left.parameters,
+            SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                              brighter, options)
+                .value()
+                .parameters);
+}
+
+TEST_F(ReflectanceSearchTest, WiderMarginsNeverEndAtAHigherCost) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  ReflectanceSearchOptions options = Options();
+  options.covariance = false;
+  options.coarse_margin = 1e9;
+  options.margin = 0.0;
+  const StatusOr<ReflectanceSearchResult> one = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  options.margin = 1e9;
+  const StatusOr<ReflectanceSearchResult> all = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  ASSERT_TRUE(one.ok() && all.ok());
+  EXPECT_LE(all->cost, one->cost);
+  // What the narrow ones left where it was is refined now.
+  double change = 0.0;
+  for (const TriedMaterial& a : one->tried) {
+    for (const TriedMaterial& b : all->tried) {
+      if (a.name == b.name && std::isfinite(a.cost)) change += a.cost - b.cost;
+    }
+  }
+  EXPECT_GT(change, 0.0);
+}
+
+TEST_F(ReflectanceSearchTest, StoppedSearchIsWhole) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  ReflectanceSearchOptions options = Options();
+  options.should_stop = [] { return true; };
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  EXPECT_EQ(14u, found->parameters.size());
+  EXPECT_EQ(14, found->covariance.rows());
+}
+
+TEST_F(ReflectanceSearchTest, ImageWithoutAUsablePixelIsNamed) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  std::vector<double> bad = radiance_;
+  for (size_t i = 0; i < bad.size(); i += 3) {
+    bad[i] = i % 2 == 0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  }
+  const Status status = SearchReflectance(FlowLobes::Factory(model_, 2, 1),
+                                          prior, points_, bad, Options())
+                            .status();
+  EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+  EXPECT_EQ(0u, status.message().find("image"));
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,274 @@
+// Lamps: where an image's highlights put them, and what they add to it.
+#include "ibrdf/solvers/priors/directional_lights.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/geometry/half_diff.h"
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/marginal/directional_responses.h"
+#include "ibrdf/solvers/marginal/marginal_reflectance.h"
+#include "tests/support/solver_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+constexpr double kDegree = kPi / 180;
+
+double DegreesBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree;
+}
+
+struct Highlight {
+  Eigen::Vector3d direction;
+  double brightness;
+  double degrees;  // its width over mirrored directions
+};
+
+// Grey light and highlights on a sphere, with 2 % noise.
+std::vector<double> Highlights(const std::vector<ShadingPoint>& points,
+                               const std::vector<Highlight>& highlights) {
+  std::mt19937_64 rng(3);
+  std::normal_distribution<double> g;
+  std::vector<double> radiance;
+  for (const ShadingPoint& p : points) {
+    const Eigen::Vector3d n = p.normal.cast<double>(), wo = p.wo.cast<double>();
+    const Eigen::Vector3d mirrored = 2.0 * n.dot(wo) * n - wo;
+    double sum = 1.0;
+    for (const Highlight& h : highlights) {
+      const double x = DegreesBetween(mirrored, h.direction) / h.degrees;
+      sum += h.brightness * std::exp(-0.5 * x * x);
+    }
+    // Luminance is weighted by the cosine, as mirrors grow towards the limb.
+    for (int c = 0; c < 3; ++c) {
+      radiance.push_back(sum / n.dot(wo) * std::exp(0.02 * g(rng)));
+    }
+  }
+  return radiance;
+}
+
+Eigen::Vector3d Unit(double x, double y, double z) {
+  return Eigen::Vector3d(x, y, z).normalized();
+}
+
+TEST(FindLamps, HighlightsTellDirectionsTheBrightestFirst) {
+  const std::vector<ShadingPoint> points = SpherePoints(64);
+  const Eigen::Vector3d front = Unit(0.5, 0.6, 0.6), back = Unit(-0.8, 0, -0.5);
+  const std::vector<double> radiance =
+      Highlights(points, {{front, 2.0, 5.0}, {back, 6.0, 4.0}});
+  const std::vector<Eigen::Vector3d> lamps = FindLamps(points, radiance, 3);
+  ASSERT_EQ(2u, lamps.size());
+  EXPECT_LT(DegreesBetween(back, lamps[0]), 1.5);
+  EXPECT_LT(DegreesBetween(front, lamps[1]), 1.0);
+  EXPECT_EQ(1u, FindLamps(points, radiance, 1).size());
+  EXPECT_TRUE(FindLamps(points, radiance, 0).empty());
+}
+
+TEST(FindLamps, ShouldersOfAWideHighlightAreNoLamps) {
+  const std::vector<ShadingPoint> points = SpherePoints(64);
+  const std::vector<double> radiance =
+      Highlights(points, {{Unit(0.3, 0.6, 0.7), 20.0, 14.0}});
+  EXPECT_EQ(1u, FindLamps(points, radiance, 5).size());
+}
+
+// A facet that mirrors a lamp has pixels of one normal and one radiance.
+TEST(FindLamps, EqualPixelsAreOneLamp) {
+  std::vector<ShadingPoint> points = SpherePoints(64);
+  std::vector<double> radiance = Highlights(points, {});
+  const size_t facet = points.size() / 2 + 10;
+  for (int k = 0; k < 200; ++k) {
+    points.push_back(points[facet]);
+    radiance.insert(radiance.end(), {9.0, 9.0, 9.0});
+  }
+  EXPECT_EQ(1u, FindLamps(points, radiance, 3).size());
+}
+
+TEST(FindLamps, NoiseIsNoLamp) {
+  const std::vector<ShadingPoint> points = SpherePoints(64);
+  EXPECT_TRUE(FindLamps(points, Highlights(points, {}), 5).empty());
+}
+
+TEST(FindLamps, PixelsThatAreNotLightTakeNoPart) {
+  const std::vector<ShadingPoint> points = SpherePoints(64);
+  const Eigen::Vector3d lamp = Unit(0.5, 0.6, 0.6);
+  std::vector<double> radiance = Highlights(points, {{lamp, 5.0, 5.0}});
+  for (size_t i = 0; i < points.size(); i += 7) {
+    for (int c = 0; c < 3; ++c) {
+      radiance[3 * i + c] =
+          i % 2 == 0 ? std::numeric_limits<double>::infinity() : -1.0;
+    }
+  }
+  const std::vector<Eigen::Vector3d> lamps = FindLamps(points, radiance, 5);
+  ASSERT_EQ(1u, lamps.size());
+  EXPECT_LT(DegreesBetween(lamp, lamps[0]), 1.0);
+  EXPECT_TRUE(FindLamps({}, {}, 3).empty());
+}
+
+TEST(MovedLamp, OffsetsAreTangentsOfAngles) {
+  const Eigen::Vector3d lamp = Unit(-0.4, 0.3, -0.8);
+  for (const auto& [x, y] : {std::pair(0.0, 0.0), std::pair(0.05, 0.0),
+                             std::pair(0.0, -2.0), std::pair(0.3, 0.4)}) {
+    const double offsets[2] = {x, y};
+    const Eigen::Vector3d moved = MovedLamp(lamp, offsets);
+    EXPECT_NEAR(1.0, moved.norm(), 1e-12);
+    EXPECT_NEAR(std::atan(std::hypot(x, y)) / kDegree,
+                DegreesBetween(lamp, moved), 1e-9);
+  }
+}
+
+TEST(NearLamps, TexelsWithinSomeDegreesTheNearestMost) {
+  const int H = 64, W = 128;
+  // At the pole, across the map's edge, and two that meet.
+  const std::vector<Eigen::Vector3d> lamps = {
+      Unit(0.01, 1.0, 0.0), MapDirection(30.5, 0.1, H, W),
+      MapDirection(40.5, 60.5, H, W), MapDirection(40.5, 62.5, H, W)};
+  const std::vector<LampTexel> near = NearLamps(lamps, H, W);
+  std::vector<double> weights(H * W, 0.0);
+  for (size_t i = 0; i < near.size(); ++i) {
+    if (i > 0) {
+      EXPECT_LT(near[i - 1].texel, near[i].texel);
+    }
+    weights[near[i].texel] = near[i].weight;
+  }
+  for (int r = 0; r < H; ++r) {
+    for (int x = 0; x < W; ++x) {
+      double nearest = 180.0;
+      for (const Eigen::Vector3d& lamp : lamps) {
+        nearest = std::min(
+            nearest,
+            DegreesBetween(lamp, MapDirection(r + 0.5, x + 0.5, H, W)));
+      }
+      const double weight = std::exp(-0.5 * nearest * nearest / 16.0);
+      EXPECT_NEAR(weight < 0.05 ? 0.0 : weight, weights[r * W + x], 1e-9);
+    }
+  }
+  EXPECT_TRUE(NearLamps({}, H, W).empty());
+}
+
+class LampResponsesTest : public ::testing::Test {
+ protected:
+  LampResponsesTest() {
+    // Smooth, so that its table is close to it.
+    const auto brdf = [](double h, double d, double p) -> Eigen::Array3d {
+      return {0.4 + 0.3 * std::cos(2 * h) + 0.1 * d + 0.05 * std::cos(2 * p), 0,
+              0};
+    };
+    grid_ = BrdfGrid::FromFunction(brdf, {48, 20, 12});
+    const std::vector<ShadingPoint> points = SpherePoints(12);
+    cells_ = GroupByNormal(points, std::vector<double>(3 * points.size(), 1.0),
+                           {6, 3, 0.2});
+  }
+  BrdfGrid grid_;
+  ImageCells cells_;
+  // In front, grazing and behind.
+  const std::vector<Eigen::Vector3d> lamps_ = {
+      Unit(0.3, 0.5, 0.8), Unit(0.9, 0.1, -0.2), Unit(0.05, 0.0, -1.0)};
+};
+
+TEST_F(LampResponsesTest, AreTheReflectedRadianceOfEachPoint) {
+  const LampResponses responses(cells_, grid_.shape, nullptr, lamps_);
+  const RowMatrix found = responses.Of(grid_.Channel(0));
+  ASSERT_EQ(cells_.num_cells(), found.rows());
+  ASSERT_EQ(3, found.cols());
+  double most = 0.0;
+  for (int i = 0; i < cells_.num_cells(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      double sum = 0.0;
+      for (int p = cells_.first[i]; p < cells_.first[i + 1]; ++p) {
+        const Eigen::Vector3d n = cells_.points[p].normal.cast<double>();
+        const Eigen::Vector3d wo = cells_.points[p].wo.cast<double>();
+        const double cosine = n.dot(lamps_[k]);
+        if (cosine <= 0.0) continue;
+        const Eigen::Vector3d a = n.unitOrthogonal(), b = n.cross(a);
+        const auto local = [&](const Eigen::Vector3d& v) {
+          return Eigen::Vector3d(v.dot(a), v.dot(b), v.dot(n));
+        };
+        const HalfDiff x = ToHalfDiff(local(lamps_[k]), local(wo));
+        sum += kLampSolidAngle * cosine *
+               grid_.Evaluate(x.theta_h, x.theta_d, x.phi_d)[0];
+      }
+      sum /= cells_.first[i + 1] - cells_.first[i];
+      EXPECT_NEAR(sum, found(i, k), 1e-5 + 1e-4 * sum) << i << " " << k;
+      most = std::max(most, sum);
+    }
+  }
+  EXPECT_GT(most, 0.02);
+  EXPECT_EQ(0.0, found.col(2).maxCoeff());  // seen by nothing
+}
+
+TEST_F(LampResponsesTest, GradientIsTheTranspose) {
+  const LampResponses responses(cells_, grid_.shape, nullptr, lamps_);
+  LampResponses::Matrix adjoint(cells_.num_cells(), 3);
+  for (Eigen::Index i = 0; i < adjoint.size(); ++i) {
+    adjoint.data()[i] = static_cast<float>(std::sin(1.0 + 2.0 * i));
+  }
+  std::vector<float> gradient(grid_.shape.num_nodes(), 0.0f);
+  responses.AddGradient(adjoint, gradient.data());
+  double by_gradient = 0.0;
+  for (size_t i = 0; i < gradient.size(); ++i) {
+    by_gradient += static_cast<double>(gradient[i]) * grid_.Channel(0)[i];
+  }
+  const double expected =
+      responses.Of(grid_.Channel(0)).cwiseProduct(adjoint.cast<double>()).sum();
+  EXPECT_NEAR(expected, by_gradient, 1e-5 * std::abs(expected) + 1e-6);
+  EXPECT_GT(std::abs(expected), 1e-3);
+}
+
+// A sun in one texel over dim light: with a lamp there the true reflectance is
+// the more likely by far, and the map has the sun where it is.
+TEST(Lamps, ExplainASun) {
+  const NeuralBrdfModel model = SmoothTinyModel(4);
+  const std::vector<ShadingPoint> points = SpherePoints(24);
+  const std::vector<double> truth = TinyLobes();
+  const int height = 64, width = 128, row = 20, column = 50;
+  Image map(width, height);
+  std::fill(map.rgb.begin(), map.rgb.end(), 0.5f);
+  const Eigen::Vector3d sun =
+      MapDirection(row + 0.5, column + 0.5, height, width);
+  for (int c = 0; c < 3; ++c) {
+    map.rgb[3 * (row * width + column) + c] = 30000.0f;
+  }
+  const std::vector<double> radiance = RenderTinyLobes(model, points, map);
+
+  MarginalResolution resolution;
+  resolution.cells = {8, 3, 0.2};
+  resolution.map_width = 16;
+  resolution.map_height = 8;
+  resolution.grid = TinyTransportOptions().grid;
+  LightMode mode;
+  const auto cost = [&](const MarginalReflectance& reflectance,
+                        std::vector<double> x) {
+    x.resize(reflectance.num_parameters(), 0.0);
+    const MarginalLikelihood& likelihood = reflectance.likelihood();
+    mode = {};
+    const Eigen::VectorXd noise = likelihood.FindNoise(
+        reflectance.Matrices(x.data()), 0.03, {}, 1e-6, &mode);
+    return reflectance.Evaluate(x.data(), noise, {}, 1e-6, &mode, nullptr).cost;
+  };
+  const MarginalReflectance without(FlowLobes::Factory(model, 2, 1), points,
+                                    radiance, LightProcess(), resolution, 1);
+  const MarginalReflectance with(FlowLobes::Factory(model, 2, 1), points,
+                                 radiance, LightProcess(), resolution, 1,
+                                 {sun});
+  const double cost_without = cost(without, truth);
+  EXPECT_LT(cost(with, truth), cost_without - 20.0);
+  std::vector<double> x_with = truth;
+  x_with.resize(with.num_parameters(), 0.0);
+  const std::vector<double> log_radiance =
+      with.LogRadiance(x_with.data(), mode);
+  double y = 0.0, x = 0.0;
+  MapPosition(sun, 8, 16, &y, &x);
+  const auto brightest =
+      std::max_element(log_radiance.begin(), log_radiance.begin() + 8 * 16) -
+      log_radiance.begin();
+  EXPECT_EQ(static_cast<int>(y) * 16 + static_cast<int>(x), brightest);
+}
+
+}  // namespace
+}  // namespace ibrdf

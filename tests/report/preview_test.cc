@@ -1,0 +1,178 @@
+#include "ibrdf/solvers/report/preview.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "ibrdf/solvers/report/tone_map.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+using Colour = std::array<int, 3>;
+constexpr Colour kGrey = {176, 176, 176};
+
+Image Constant(int width, int height, float value) {
+  Image image(width, height);
+  std::fill(image.rgb.begin(), image.rgb.end(), value);
+  return image;
+}
+
+PreviewPanel Panel(const Image& image,
+                   PreviewPanel::Kind kind = PreviewPanel::Kind::kRadiance) {
+  PreviewPanel panel;
+  panel.image = image;
+  panel.kind = kind;
+  return panel;
+}
+
+int Count(const Rgb8Image& image, const Colour& colour) {
+  int count = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const uint8_t* p = image.At(x, y);
+      count += p[0] == colour[0] && p[1] == colour[1] && p[2] == colour[2];
+    }
+  }
+  return count;
+}
+
+TEST(ToneMap, SrgbHasItsTableValues) {
+  EXPECT_EQ(EncodeSrgb(0.0), 0);
+  EXPECT_EQ(EncodeSrgb(1.0), 255);
+  EXPECT_EQ(EncodeSrgb(0.18), 118);    // middle grey
+  EXPECT_EQ(EncodeSrgb(0.2140), 127);  // 50 % of the code
+  EXPECT_EQ(EncodeSrgb(-3.0), 0);
+  EXPECT_EQ(EncodeSrgb(1e30), 255);
+  for (int code = 0; code < 256; ++code) {
+    EXPECT_EQ(EncodeSrgb(DecodeSrgb(code / 255.0)), code);
+  }
+}
+
+TEST(ToneMap, ExposureIsAPercentileInsideTheMask) {
+  Image image(100, 2);
+  Mask mask(100, 2, 0);
+  for (int x = 0; x < 100; ++x) {
+    image.At(x, 0)[1] = static_cast<float>(x + 1);
+    image.At(x, 1)[0] = 1e6f;  // outside
+    mask.inside[x] = 1;
+  }
+  // 1 to 100: the value that 90 are below is 91.
+  EXPECT_DOUBLE_EQ(ExposureOf(image, mask, 90.0), 1.0 / 91.0);
+  EXPECT_DOUBLE_EQ(ExposureOf(image, mask, 100.0), 1.0 / 100.0);
+  EXPECT_DOUBLE_EQ(ExposureOf(image, Mask(), 100.0), 1e-6);
+  EXPECT_DOUBLE_EQ(ExposureOf(Constant(4, 4, 0.0f), Mask(), 99.0), 1.0);
+  EXPECT_DOUBLE_EQ(ExposureOf(Constant(4, 4, kNan), Mask(), 99.0), 1.0);
+}
+
+TEST(ToneMap, LogRatioIsSignedAndSurvivesAnyPixel) {
+  Image reference = Constant(4, 1, 2.0f), image = Constant(4, 1, 2.0f);
+  image.At(0, 0)[0] = 2.0f * std::exp(0.5f);
+  image.At(1, 0)[0] = -1.0f;
+  image.At(2, 0)[0] = kNan;
+  reference.At(3, 0)[0] = kInfinity;
+  const Image ratio = LogRatio(image, reference, Mask());
+  // The floor of 1e-6 times the largest changes the logarithm by at most that.
+  EXPECT_NEAR(ratio.At(0, 0)[0], 0.5, 2e-6);
+  EXPECT_EQ(ratio.At(0, 0)[1], 0.0f);
+  EXPECT_NEAR(ratio.At(1, 0)[0], std::log(1e-6), 1e-4);
+  EXPECT_TRUE(std::isnan(ratio.At(2, 0)[0]));
+  EXPECT_TRUE(std::isnan(ratio.At(3, 0)[0]));
+  for (const float value :
+       LogRatio(Constant(2, 2, 0.0f), Constant(2, 2, 0.0f), Mask()).rgb) {
+    EXPECT_EQ(value, 0.0f);
+  }
+}
+
+TEST(ToneMap, DivergingColoursEndInBlueWhiteAndRed) {
+  uint8_t rgb[3];
+  DivergingColour(0.0, rgb);
+  EXPECT_EQ(rgb[0] + rgb[1] + rgb[2], 3 * 255);
+  DivergingColour(-1.0, rgb);
+  EXPECT_GT(rgb[2], rgb[0] + 100);
+  DivergingColour(5.0, rgb);
+  EXPECT_GT(rgb[0], rgb[2] + 100);
+}
+
+TEST(Preview, EnlargesByAWholeFactorWithoutBlending) {
+  Image image(64, 32);
+  image.At(0, 0)[0] = 1.0f;  // one red pixel, the rest black
+  const Rgb8Image picture = ComposePanels({{Panel(image)}}, "");
+  const int red = Count(picture, {255, 0, 0});
+  const int factor = static_cast<int>(std::lround(std::sqrt(red)));
+  EXPECT_GE(factor, 2);
+  EXPECT_EQ(red, factor * factor);
+  EXPECT_EQ(Count(picture, {0, 0, 0}), (64 * 32 - 1) * factor * factor);
+}
+
+TEST(Preview, MaskedAndNanPixelsAreGreyAndInfiniteOnesWhite) {
+  Image image = Constant(8, 8, 0.0f);
+  Mask mask(8, 8, 1);
+  mask.inside[3] = 0;
+  image.At(5, 5)[1] = kNan;
+  image.At(6, 6)[0] = image.At(6, 6)[1] = image.At(6, 6)[2] = kInfinity;
+  PreviewPanel panel = Panel(image);
+  panel.mask = mask;
+  const Rgb8Image picture = ComposePanels({{panel}}, "");
+  const int pixel = 52 * 52;  // 420 / 8, whole
+  // Smoothed text has a few pixels of any grey.
+  EXPECT_NEAR(Count(picture, kGrey), 2 * pixel, 20);
+  EXPECT_EQ(Count(picture, {255, 255, 255}), pixel);
+}
+
+TEST(Preview, ResidualIsRedWhereTheRenderIsTooBright) {
+  Image residual = Constant(4, 1, 0.0f);
+  for (int c = 0; c < 3; ++c) {
+    residual.At(0, 0)[c] = 0.3f;
+    residual.At(1, 0)[c] = -0.3f;
+  }
+  PreviewPanel panel = Panel(residual, PreviewPanel::Kind::kSignedResidual);
+  panel.range = 0.1;
+  const Rgb8Image picture = ComposePanels({{panel}}, "");
+  uint8_t red[3], blue[3];
+  DivergingColour(1.0, red);
+  DivergingColour(-1.0, blue);
+  const int reds = Count(picture, {red[0], red[1], red[2]});
+  const int blues = Count(picture, {blue[0], blue[1], blue[2]});
+  EXPECT_GT(reds, 300 * 300);
+  EXPECT_GT(blues, 300 * 300);
+}
+
+TEST(Preview, LargeImagesAreReducedToFitTheWidth) {
+  const Rgb8Image one = ComposePanels({{Panel(Constant(3000, 100, 1.0f))}}, "");
+  EXPECT_LE(one.width, 1440);
+  const std::vector<PreviewPanel> row(5, Panel(Constant(450, 1000, 0.5f)));
+  const Rgb8Image five = ComposePanels({row, row}, "title", {"note"});
+  EXPECT_LE(five.width, 1440);
+  // The mean of equal pixels is the pixel: no ringing, no darkening.
+  EXPECT_GT(Count(five, {EncodeSrgb(0.5), EncodeSrgb(0.5), EncodeSrgb(0.5)}),
+            10 * 150 * 400);
+}
+
+TEST(Preview, TextIsDrawnInItsPlace) {
+  const std::vector<std::vector<PreviewPanel>> rows = {
+      {Panel(Constant(16, 16, 1.0f))}};
+  const Rgb8Image plain = ComposePanels(rows, "");
+  const Rgb8Image titled = ComposePanels(rows, "A title", {"a note"});
+  EXPECT_GT(titled.height, plain.height + 50);
+  const auto darkest = [](const Rgb8Image& image, int begin, int end) {
+    int value = 255;
+    for (int y = begin; y < end; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        value = std::min<int>(value, image.At(x, y)[0]);
+      }
+    }
+    return value;
+  };
+  EXPECT_EQ(darkest(plain, 0, 30), 250);
+  EXPECT_LT(darkest(titled, 0, 60), 60);
+  EXPECT_LT(darkest(titled, titled.height - 60, titled.height), 80);
+}
+
+}  // namespace
+}  // namespace ibrdf

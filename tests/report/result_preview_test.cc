@@ -1,0 +1,92 @@
+#include "ibrdf/solvers/report/result_preview.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/report/brdf_sphere.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+
+ResultPreviewInput SmallInput() {
+  ResultPreviewInput input;
+  input.title = "test";
+  input.input = Image(12, 10);
+  std::fill(input.input.rgb.begin(), input.input.rgb.end(), 0.5f);
+  input.mask = Mask(12, 10, 1);
+  return input;
+}
+
+TEST(ResultPreview, WritesWhatThereIsAndNothingElse) {
+  const TempDir dir;
+  ResultPreviewInput input = SmallInput();
+  ASSERT_TRUE(WriteResultPreviews(input, dir.path()).ok());
+  EXPECT_EQ(dir.CountFiles(), 2);  // overview and input
+
+  input.render = input.input;
+  input.illumination = ProceduralSky(8, 16);
+  input.brdf.raw.assign(size_t{3} * kMerlBins, 100.0);
+  ASSERT_TRUE(WriteResultPreviews(input, dir.path()).ok());
+  for (const char* name : {"overview.png", "input.png", "render.png",
+                           "residual.png", "illumination.png", "brdf.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(dir.File(name))) << name;
+  }
+  EXPECT_EQ(dir.CountFiles(), 6);
+}
+
+TEST(ResultPreview, ReferencesAddPanels) {
+  ResultPreviewInput input = SmallInput();
+  input.illumination = ProceduralSky(8, 16);
+  const Rgb8Image alone = MakeOverview(input);
+  input.reference_illumination = ProceduralSky(16, 32);  // of another size
+  EXPECT_GT(MakeOverview(input).width, alone.width);
+}
+
+// An estimate that differs from its reference by a factor shows the same.
+TEST(ResultPreview, EstimatesAreBroughtToTheReferencesScale) {
+  ResultPreviewInput input = SmallInput();
+  input.illumination = ProceduralSky(8, 16);
+  input.reference_illumination = input.illumination;
+  const Rgb8Image same = MakeOverview(input);
+  for (float& value : input.illumination.rgb) value *= 0.25f;
+  const Rgb8Image scaled = MakeOverview(input);
+  ASSERT_EQ(same.rgb.size(), scaled.rgb.size());
+  // Only the factor in the label differs.
+  size_t different = 0;
+  for (size_t k = 0; k < same.rgb.size(); ++k) {
+    different += same.rgb[k] != scaled.rgb[k];
+  }
+  EXPECT_LT(different, 3u * 1000u);
+}
+
+TEST(ResultPreview, RefusesSizesThatDisagree) {
+  const TempDir dir;
+  ResultPreviewInput input = SmallInput();
+  input.render = Image(10, 12);
+  EXPECT_EQ(WriteResultPreviews(input, dir.path()).code(),
+            StatusCode::kInvalidInput);
+  input = SmallInput();
+  input.mask = Mask(3, 3, 1);
+  EXPECT_EQ(WriteResultPreviews(input, dir.path()).code(),
+            StatusCode::kInvalidInput);
+  input = SmallInput();
+  input.brdf.raw.assign(7, 1.0);
+  EXPECT_EQ(WriteResultPreviews(input, dir.path()).code(),
+            StatusCode::kInvalidInput);
+  EXPECT_EQ(WriteResultPreviews(ResultPreviewInput(), dir.path()).code(),
+            StatusCode::kInvalidInput);
+  EXPECT_EQ(dir.CountFiles(), 0);
+}
+
+TEST(ResultPreview, NamesAFolderThatDoesNotExist) {
+  const Status status = WriteResultPreviews(SmallInput(), "/nowhere/at/all");
+  EXPECT_FALSE(status.ok());
+  EXPECT_NE(status.message().find("/nowhere/at/all"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,223 @@
+#include "ibrdf/solvers/training/lobe_table_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/metrics/brdf_metrics.h"
+#include "ibrdf/solvers/bench/neural_fitters.h"
+#include "ibrdf/solvers/costs/log_table_cost.h"
+#include "tests/support/solver_testing.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr BrdfGridShape kNoGrid{2, 2, 1};
+
+MerlTable TableOf(const NeuralBrdfModel& model,
+                  const std::vector<double>& parameters) {
+  const int lobe = model.shape.code_size() + 3;
+  return FlowLobes(model, static_cast<int>(parameters.size()) / lobe, kNoGrid,
+                   1)
+      .ToMerl(parameters.data());
+}
+
+// Some columns of the cube with their faces, and random targets.
+TableColumns SmallTable() {
+  TableColumns table;
+  table.points = FlowColumns(5, 4);
+  for (int c = 0; c < 5; ++c) {
+    table.points.SetColumn(c, 0.25 * c, 0.19 * c);
+    for (int i = 0; i < 4; ++i) {
+      table.points.x_h[i * 5 + c] = static_cast<float>(i) / 3.0f;
+    }
+  }
+  for (int i = 0; i < 60; ++i) {
+    table.log_raw.push_back(std::sin(1.7f * static_cast<float>(i)) + 3.0f);
+  }
+  return table;
+}
+
+class LogTableCostTest : public ::testing::TestWithParam<double> {};
+
+TEST_P(LogTableCostTest, JacobianMatchesDifferences) {
+  // Of the column's largest entry; float kernels against Ridders' differences.
+  constexpr double kTolerance = 2e-3;
+  const NeuralBrdfModel model = SmoothTinyModel(2);
+  const auto flow = BrdfFlow::Create(model.shape, model.weights);
+  const TableColumns table = SmallTable();
+  // A floor among the values, so that its share matters.
+  const LogTableCost cost(*flow, 4, 1.5, 2, table, 0.3, 2.0, 1);
+  ASSERT_EQ(60, cost.num_residuals());
+  // GetParam(): log colour of the second lobe; far below the floor it vanishes.
+  const std::vector<double> at = {0.3,  -0.4,       0.2,        0.1,       0.5,
+                                  0.3,  -0.8,       -0.5,       0.1,       0.3,
+                                  -0.2, GetParam(), GetParam(), GetParam()};
+  const auto evaluate = [&](const std::vector<double>& p, double* jacobian) {
+    std::vector<double> r(60);
+    const double* block = p.data();
+    EXPECT_TRUE(cost.Evaluate(&block, r.data(),
+                              jacobian == nullptr ? nullptr : &jacobian));
+    return r;
+  };
+  std::vector<double> jacobian(60 * 14);
+  const std::vector<double> with = evaluate(at, jacobian.data());
+  const std::vector<double> without = evaluate(at, nullptr);
+  for (int i = 0; i < 60; ++i) EXPECT_EQ(with[i], without[i]);
+  for (int k = 0; k < 14; ++k) {
+    const std::vector<double> numeric = testing::Differentiate(
+        [&](double t) {
+          std::vector<double> p = at;
+          p[k] += t;
+          return evaluate(p, nullptr);
+        },
+        0.05);
+    double scale = 1e-3;
+    for (const double v : numeric) scale = std::max(scale, std::abs(v));
+    for (int i = 0; i < 60; ++i) {
+      EXPECT_NEAR(numeric[i], jacobian[i * 14 + k], kTolerance * scale)
+          << "parameter " << k << " residual " << i;
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Colours, LogTableCostTest,
+                         ::testing::Values(0.4, 6.0, -40.0));
+
+TEST(LogTableCost, ExtremeColoursStayFiniteAndInfiniteOnesAreRefused) {
+  const NeuralBrdfModel model = TinyModel(2);
+  const auto flow = BrdfFlow::Create(model.shape, model.weights);
+  const TableColumns table = SmallTable();
+  const LogTableCost cost(*flow, 4, 1.0, 1, table, 1e-6, 1.0, 1);
+  std::vector<double> r(60), jacobian(60 * 7);
+  double* j = jacobian.data();
+  for (const double colour : {-1e4, -30.0, 700.0, 1e4}) {
+    const std::vector<double> p = {1.0, 1.0, -1.0, 1.0, colour, colour, colour};
+    const double* block = p.data();
+    ASSERT_TRUE(cost.Evaluate(&block, r.data(), &j));
+    for (const double v : r) EXPECT_TRUE(std::isfinite(v)) << colour;
+    for (const double v : jacobian) EXPECT_TRUE(std::isfinite(v)) << colour;
+  }
+  const double inf = std::numeric_limits<double>::infinity();
+  const std::vector<double> p = {0.1, 0.1, 0.1, 0.1, inf, 0.0, 0.0};
+  const double* block = p.data();
+  EXPECT_FALSE(cost.Evaluate(&block, r.data(), nullptr));
+}
+
+class LobeTableFitTest : public ::testing::Test {
+ protected:
+  const NeuralBrdfModel model_ = SmoothTinyModel(6);
+  const LobeTableFitter fitter_{model_};
+  LobeTableFitOptions options_;
+
+  LobeTableFitTest() {
+    options_.num_threads = 1;
+    options_.prior_sigma = 5.0;
+  }
+  double Score(const MerlTable& table, int lobes) {
+    options_.lobes = lobes;
+    const StatusOr<LobeTableFit> fit = fitter_.Fit(table, options_);
+    EXPECT_TRUE(fit.ok()) << fit.status().message();
+    return CompareBrdfs(TableOf(model_, fit->parameters), table)->log_rmse;
+  }
+};
+
+TEST_F(LobeTableFitTest, FindsOneLobeThatIsNoneOfTheEmbedding) {
+  const MerlTable table =
+      TableOf(model_, {0.35, -0.2, 0.25, -0.3, 4.0, 3.0, 2.0});
+  // Its nearest code is off by more than a tenth; the prior pulls a little.
+  EXPECT_LT(Score(table, 1), 0.02);
+}
+
+TEST_F(LobeTableFitTest, TwoLobesOfDifferentHueNeedTwo) {
+  const MerlTable table =
+      TableOf(model_, {0.5, -0.5, 0.3, 0.1, 5.0, 2.0, 1.0,  //
+                       -0.4, 0.4, -0.2, 0.3, 1.0, 2.0, 4.0});
+  const double one = Score(table, 1), two = Score(table, 2);
+  EXPECT_LT(two, 0.05);
+  EXPECT_GT(one, 2 * two);
+}
+
+TEST_F(LobeTableFitTest, CodesStayInTheBallAndScoreIsThatOfTheTable) {
+  // A flow's table beyond the ball: the fit ends on the sphere.
+  const MerlTable table = TableOf(model_, {2.0, -2.0, 1.0, 1.0, 4.0, 4.0, 4.0});
+  options_.lobes = 2;
+  const StatusOr<LobeTableFit> fit = fitter_.Fit(table, options_);
+  ASSERT_TRUE(fit.ok());
+  for (int k = 0; k < 2; ++k) {
+    double square = 0.0;
+    for (int d = 0; d < 4; ++d) {
+      square += std::pow(fit->parameters[7 * k + d], 2);
+    }
+    EXPECT_LE(square, 1.0 + 1e-12);
+  }
+  // Its own score is over a seventieth of the bins.
+  const double full =
+      CompareBrdfs(TableOf(model_, fit->parameters), table)->log_rmse;
+  EXPECT_NEAR(full, fit->log_rmse, 0.1 * full);
+}
+
+TEST_F(LobeTableFitTest, ThreadsDoNotChangeTheFit) {
+  const MerlTable table = TableOf(model_, {0.3, 0.3, 0.3, 0.3, 4.0, 3.0, 2.0});
+  options_.lobes = 1;
+  const StatusOr<LobeTableFit> one = fitter_.Fit(table, options_);
+  options_.num_threads = 2;
+  EXPECT_EQ(one->parameters, fitter_.Fit(table, options_)->parameters);
+}
+
+TEST_F(LobeTableFitTest, BadTablesAreRefusedAndFloorsAreNot) {
+  MerlTable table = TableOf(model_, {0.3, 0.3, 0.3, 0.3, 4.0, 3.0, 2.0});
+  MerlTable broken = table;
+  std::fill(broken.raw.begin(), broken.raw.end(),
+            std::numeric_limits<double>::quiet_NaN());
+  const Status status = fitter_.Fit(broken, options_).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+  EXPECT_EQ(0u, status.message().find("table"));
+  MerlTable empty = table;
+  std::fill(empty.raw.begin(), empty.raw.end(), -1.0);
+  EXPECT_EQ(StatusCode::kInvalidInput,
+            fitter_.Fit(empty, options_).status().code());
+  // Half of the table on the floor.
+  for (int bin = 0; bin < 3 * kMerlBins; bin += 2) {
+    table.raw[bin] = std::min(table.raw[bin], 0.0);
+  }
+  const StatusOr<LobeTableFit> fit = fitter_.Fit(table, options_);
+  ASSERT_TRUE(fit.ok());
+  for (const double v : fit->parameters) EXPECT_TRUE(std::isfinite(v));
+}
+
+TEST_F(LobeTableFitTest, FittersOfTheSweepDoTheSame) {
+  const MerlTable table = TableOf(model_, {0.3, 0.3, 0.3, 0.3, 4.0, 3.0, 2.0});
+  options_.lobes = 1;
+  TableFitContext context;
+  context.material = "m";
+  context.num_threads = 1;
+  const auto flow =
+      FlowFitter(std::make_shared<LobeTableFitter>(model_), "tiny", options_);
+  EXPECT_EQ("flow", flow->method());
+  EXPECT_EQ("1", flow->lobes());
+  EXPECT_EQ("tiny", flow->model());
+  const StatusOr<FittedTable> fit = flow->Fit(table, context);
+  ASSERT_TRUE(fit.ok());
+  EXPECT_LT(CompareBrdfs(fit->table, table)->log_rmse, 0.02);
+
+  // A flow of its own reaches the table too; 300 steps are a start.
+  FreeFlowOptions free;
+  free.shape.triangular = model_.shape.triangular;
+  free.shape.triangular.code_size = 3;
+  free.steps = 300;
+  const auto own = FreeFlowFitter(free);
+  EXPECT_EQ("flow_free", own->method());
+  const StatusOr<FittedTable> trained = own->Fit(table, context);
+  ASSERT_TRUE(trained.ok());
+  EXPECT_LT(CompareBrdfs(trained->table, table)->log_rmse, 0.15);
+  std::atomic<bool> stop{true};
+  context.stop = &stop;
+  EXPECT_EQ(StatusCode::kInterrupted, own->Fit(table, context).status().code());
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,30 @@
+#include "ibrdf/solvers/training/material_lobes.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "tests/support/solver_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+TEST(MaterialLobes, AreSortedFiniteAndCloseToTheirMaterial) {
+  NeuralBrdfModel model = TinyModel(2);
+  ASSERT_TRUE(FitMaterialLobes(2, 2, nullptr, &model).ok());
+  EXPECT_EQ(2, model.fit_lobes);
+  ASSERT_EQ(2u * 2 * 7, model.lobe_fits.size());
+  for (const float v : model.lobe_fits) EXPECT_TRUE(std::isfinite(v));
+  NeuralBrdfModel again = TinyModel(2);
+  ASSERT_TRUE(FitMaterialLobes(2, 1, nullptr, &again).ok());
+  EXPECT_EQ(model.lobe_fits, again.lobe_fits);
+  const std::atomic<bool> stop{true};
+  EXPECT_EQ(StatusCode::kInterrupted,
+            FitMaterialLobes(1, 1, &stop, &again).code());
+  EXPECT_EQ(model.lobe_fits, again.lobe_fits);
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,223 @@
+// Light from directions of its own (TransportOptions::bright) in the transport.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "ibrdf/transport/transport.h"
+#include "ibrdf/visibility/radiosity_patches.h"
+#include "tests/support/render_testing.h"
+#include "tests/support/shadow_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+constexpr int kHeight = 128, kWidth = 256;
+constexpr int kSunRow = 30, kSunColumn = 30;
+
+Image SunnyMap(int row = kSunRow, int column = kSunColumn) {
+  Image map = SmoothMap(kHeight, kWidth);
+  for (int c = 0; c < 3; ++c) map.At(column, row)[c] = 1e4f;
+  return map;
+}
+
+// From the mirrored view of the sun to where no peak of a lobe is.
+std::vector<ShadingPoint> SunnyPoints() {
+  return PointsAroundTheHighlight(
+      MapDirection(kSunRow + 0.5, kSunColumn + 0.5, kHeight, kWidth),
+      {0, 1, 2, 5, 8, 11, 20, 40});
+}
+
+TransportOptions WithBright(const BrightTexels& split,
+                            TransportOptions options = {}) {
+  options.bright = SampleBrightTexels(split.texels, kHeight, kWidth, 4);
+  return options;
+}
+
+std::vector<double> Render(const Transport& transport, const BrdfGrid& grid,
+                           const Image& map) {
+  std::vector<double> E(3 * static_cast<size_t>(transport.num_points()));
+  transport.Render(grid, map.rgb.data(), E.data());
+  return E;
+}
+
+TEST(BrightTransport, ShowsASunThatRingsMiss) {
+  const Image map = SunnyMap();
+  const BrightTexels split = SplitBrightTexels(map);
+  ASSERT_EQ(1u, split.texels.size());
+  const std::vector<ShadingPoint> points = SunnyPoints();
+  const Transport by_rings(points, kHeight, kWidth, {});
+  const Transport by_samples(points, kHeight, kWidth, WithBright(split));
+  for (const BrdfFunction& brdf :
+       {Lambertian(0.7), Glossy(0.1, 0.5, 10), Glossy(0.02, 0.5, 3)}) {
+    const BrdfGrid grid = BrdfGrid::FromFunction(brdf, {});
+    const BrdfFunction tabulated = [&grid](double h, double d, double p) {
+      return grid.Evaluate(h, d, p);
+    };
+    const std::vector<double> E = Render(by_samples, grid, split.rest);
+    const std::vector<double> rings = Render(by_rings, grid, map);
+    double most = 0.0, most_rings = 0.0;
+    for (size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Array3d slow =
+          BruteForceRadiance(points[i], tabulated, map, 500, 1000);
+      for (int c = 0; c < 3; ++c) {
+        most = std::max(most, std::abs(E[3 * i + c] / slow[c] - 1.0));
+        most_rings =
+            std::max(most_rings, std::abs(rings[3 * i + c] / slow[c] - 1.0));
+      }
+    }
+    EXPECT_LT(most, 0.02);
+    EXPECT_GT(most_rings, 3.0 * most);
+  }
+}
+
+// The same light, given in full to both.
+TEST(BrightTransport, ProductsAgree) {
+  const Image map = SunnyMap();
+  const BrightTexels split = SplitBrightTexels(map);
+  const std::vector<ShadingPoint> points = SunnyPoints();
+  const Transport transport(points, kHeight, kWidth, WithBright(split));
+  const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 4), {});
+  const std::vector<double> E = Render(transport, grid, split.rest);
+
+  const float* fields[] = {grid.Channel(0), grid.Channel(1), grid.Channel(2)};
+  std::vector<float> lobes(9 * points.size()), stored(lobes.size());
+  transport.RenderLobes(fields, 3, split.rest.rgb.data(), lobes.data());
+  transport.ByReflectance(split.rest.rgb.data())
+      .Apply(fields, 3, stored.data());
+  EXPECT_EQ(lobes, stored);
+  for (size_t i = 0; i < E.size(); ++i) {
+    EXPECT_NEAR(E[i], lobes[i / 3 * 9 + i % 3 * 4], 2e-5 * E[i]) << i;
+  }
+
+  // E is linear in the grid, and ByLight is what the map alone adds.
+  std::mt19937 rng(4);
+  std::normal_distribution<double> gauss;
+  std::vector<double> adjoint(E.size());
+  for (double& a : adjoint) a = gauss(rng);
+  std::vector<float> gradient(grid.values.size());
+  transport.GridGradient(grid, split.rest.rgb.data(), adjoint.data(),
+                         gradient.data());
+  double by_points = 0.0, by_nodes = 0.0, size = 0.0;
+  for (size_t i = 0; i < E.size(); ++i) {
+    by_points += adjoint[i] * E[i];
+    size += std::abs(adjoint[i] * E[i]);
+  }
+  for (size_t i = 0; i < gradient.size(); ++i) {
+    by_nodes += static_cast<double>(gradient[i]) * grid.values[i];
+  }
+  EXPECT_NEAR(by_points, by_nodes, 1e-5 * size);
+
+  std::vector<double> by_map(E.size());
+  transport.ByLight(grid).Apply(split.rest.rgb.data(), by_map.data());
+  const std::vector<double> rest =
+      Render(Transport(points, kHeight, kWidth, {}), grid, split.rest);
+  for (size_t i = 0; i < rest.size(); ++i) {
+    EXPECT_NEAR(rest[i], by_map[i], 2e-5 * rest[i]) << i;
+  }
+}
+
+class ShadowedSun : public ::testing::Test {
+ protected:
+  ShadowedSun() : scene_(Scene::FromMesh(TorusMesh(64, 32)).value()) {
+    points_ = FindShadingPoints(scene_, TorusCamera(), 9, 9, Mask(), 1).value();
+    TransportOptions options;
+    auto visibility =
+        std::make_shared<Visibility>(scene_, points_, VisibilityOptions());
+    options.visibility = visibility;
+    SurfaceEmitterOptions how;
+    how.bounces = 2;
+    options.emitters =
+        std::make_shared<SurfaceEmitters>(scene_, points_, visibility, how);
+    options_ = WithBright(split_, options);
+  }
+
+  const BrightTexels split_ = SplitBrightTexels(SunnyMap(60, 64));  // low
+  const Image black_{kWidth, kHeight};
+  const Scene scene_;
+  std::vector<ShadingPoint> points_;
+  TransportOptions options_;
+};
+
+// Under the bright light alone: dark where every sample is hidden or behind the
+// point, but for what comes back from elsewhere.
+TEST_F(ShadowedSun, IsSeenWhereNothingHidesIt) {
+  const BrdfGrid matte = BrdfGrid::FromFunction(Lambertian(0.6), {});
+  TransportOptions no_bounce = options_;
+  no_bounce.emitters = nullptr;
+  const std::vector<double> E =
+      Render(Transport(points_, kHeight, kWidth, no_bounce), matte, black_);
+  const std::vector<double> lit =
+      Render(Transport(points_, kHeight, kWidth, options_), matte, black_);
+  const VisibilityGrid& grid = options_.visibility->grid();
+  int hidden = 0, faced = 0;
+  for (size_t i = 0; i < points_.size(); ++i) {
+    const Eigen::Vector3d n = points_[i].normal.cast<double>().normalized();
+    double slow = 0.0;
+    faced += n.dot(options_.bright[0].direction) > 0.05;
+    for (const BrightSample& s : options_.bright) {
+      const double cosine = n.dot(s.direction);
+      if (cosine <= 0.0) continue;
+      const uint64_t* const hidden_bits =
+          options_.visibility->Hidden(points_[i]);
+      slow += cosine * s.power[0] * 0.6 / kPi *
+              (hidden_bits != nullptr
+                   ? grid.VisibleAlong(hidden_bits, n, s.direction)
+                   : 1.0);
+    }
+    EXPECT_NEAR(slow, E[3 * i], 1e-4 * slow) << i;
+    EXPECT_GE(lit[3 * i], E[3 * i]) << i;
+    hidden += n.dot(options_.bright[0].direction) > 0.05 && slow == 0.0;
+  }
+  EXPECT_GT(hidden, 1);
+  EXPECT_GT(faced, hidden + 3);
+  double direct = 0.0, all = 0.0;
+  for (size_t i = 0; i < E.size(); ++i) direct += E[i], all += lit[i];
+  EXPECT_GT(all, 1.004 * direct);
+}
+
+// Through two bounces radiance is a cubic of the grid's values, to which five
+// differences are exact.
+TEST_F(ShadowedSun, GridGradientMatchesDifferences) {
+  const Transport transport(points_, kHeight, kWidth, options_);
+  const BrdfGrid at = BrdfGrid::FromFunction(Glossy(0.3, 0.4, 5), {});
+  std::mt19937 rng(8);
+  std::normal_distribution<double> gauss;
+  std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+  std::vector<double> adjoint(3 * points_.size());
+  for (double& a : adjoint) a = gauss(rng);
+  std::vector<float> gradient(at.values.size());
+  transport.GridGradient(at, split_.rest.rgb.data(), adjoint.data(),
+                         gradient.data());
+  BrdfGrid direction = at;
+  for (float& v : direction.values) v *= uniform(rng);
+  double slope = 0.0;
+  for (size_t i = 0; i < gradient.size(); ++i) {
+    slope += static_cast<double>(gradient[i]) * direction.values[i];
+  }
+  double size = 0.0;
+  const auto value = [&](float step) {
+    BrdfGrid moved = at;
+    for (size_t i = 0; i < moved.values.size(); ++i) {
+      moved.values[i] += step * direction.values[i];
+    }
+    const std::vector<double> E = Render(transport, moved, split_.rest);
+    double sum = 0.0;
+    size = 0.0;
+    for (size_t i = 0; i < E.size(); ++i) {
+      sum += adjoint[i] * E[i];
+      size += std::abs(adjoint[i] * E[i]);
+    }
+    return sum;
+  };
+  const double numeric =
+      (8 * (value(0.25f) - value(-0.25f)) - (value(0.5f) - value(-0.5f))) /
+      (12 * 0.25);
+  EXPECT_NEAR(numeric, slope, 1e-5 * size);
+}
+
+}  // namespace
+}  // namespace ibrdf
