@@ -274,14 +274,15 @@ void ReadEffects(ConfigContext* context, const ConfigNode* node,
   if (node->kind == Kind::kList) {
     effects->mode = EffectsMode::kList;
     for (const ConfigNode& item : node->items) add(item);
-    for (const Effect tier : {Effect::kHarmonics, Effect::kGaussians}) {
+    for (const Effect approximation :
+         {Effect::kHarmonics, Effect::kGaussians}) {
       for (const Effect shadow :
            {Effect::kVisibility, Effect::kInterreflection}) {
-        if (!effects->Lists(tier) || !effects->Lists(shadow)) continue;
-        context->Fail("effects", std::string("expected ") + EffectName(tier) +
-                                     " or " + EffectName(shadow) +
-                                     ", found both: " + EffectName(tier) +
-                                     " knows no shadows");
+        if (!effects->Lists(approximation) || !effects->Lists(shadow)) continue;
+        context->Fail("effects",
+                      std::string("expected ") + EffectName(approximation) +
+                          " or " + EffectName(shadow) + ", found both: " +
+                          EffectName(approximation) + " knows no shadows");
         return;
       }
     }
@@ -472,10 +473,10 @@ Status CheckSolvable(const Problem& problem) {
   if (problem.image.file.empty()) {
     return fail("image.file", "expected the image to be explained");
   }
-  for (const Effect tier : {Effect::kHarmonics, Effect::kGaussians}) {
-    if (problem.effects.Lists(tier)) {
-      return fail("effects",
-                  std::string(EffectName(tier)) + " are ibrdf_render's alone");
+  for (const Effect approximation : {Effect::kHarmonics, Effect::kGaussians}) {
+    if (problem.effects.Lists(approximation)) {
+      return fail("effects", std::string(EffectName(approximation)) +
+                                 " are ibrdf_render's alone");
     }
   }
   const IlluminationSpec& light = problem.illumination;

@@ -27,6 +27,7 @@
 #include "ibrdf/solvers/marginal/reflectance_search.h"
 #include "ibrdf/solvers/observation/observation.h"
 #include "ibrdf/solvers/problem/load_problem.h"
+#include "ibrdf/solvers/problem/truth.h"
 #include "ibrdf/solvers/training/lobe_table_fit.h"
 
 namespace ibrdf {
@@ -42,7 +43,7 @@ constexpr int kSpreadDraws = 64;
 constexpr std::array<double, 6> kTexelNoise = {2.0, 1.0, 0.5, 0.25, 0.1, 0.0};
 
 struct StudyOptions {
-  int cells_across = 0;  // of the finest resolution; 0: the search's
+  int bins_across = 0;  // of the finest resolution; 0: the search's
   bool texel_noise = false;
   bool found_alone = false;
   bool further = false;
@@ -50,7 +51,8 @@ struct StudyOptions {
   int breadth = 1;
   bool ball_prior = false;
   bool cook_torrance = false;
-  int most_lamps = ReflectanceSearchOptions().most_lamps;
+  int most_directional_lights =
+      ReflectanceSearchOptions().most_directional_lights;
   int num_threads = 0;
 };
 
@@ -73,17 +75,17 @@ class EvidenceStudy {
         radiance_(RadianceOf(problem.image, problem.points)) {
     options_.num_threads = problem.num_threads;
     options_.covariance = study.spread;
-    options_.most_lamps = study.most_lamps;
+    options_.most_directional_lights = study.most_directional_lights;
     options_.kept *= study.breadth;
-    for (SearchRound& round : options_.coarse_rounds) {
+    for (SearchStage& round : options_.coarse_stages) {
       round.most *= study.breadth;
     }
     options_.screen.visibility = options_.coarse.visibility =
         options_.fine.visibility = problem.transport.visibility;
-    if (study.cells_across > 0) {
-      options_.fine.cells.cells_across = study.cells_across;
-      options_.fine.map_width = 2 * study.cells_across;
-      options_.fine.map_height = study.cells_across;
+    if (study.bins_across > 0) {
+      options_.fine.bins.bins_across = study.bins_across;
+      options_.fine.map_width = 2 * study.bins_across;
+      options_.fine.map_height = study.bins_across;
     }
   }
 
@@ -95,12 +97,12 @@ class EvidenceStudy {
     if (!found.ok()) return found.status();
     const double seconds =
         std::chrono::duration<double>(Clock::now() - start).count();
-    const MarginalReflectance fine(factory_, problem_.points, radiance_,
-                                   options_.process, options_.fine,
-                                   problem_.num_threads, found->lamps);
+    const MarginalReflectance fine(
+        factory_, problem_.points, radiance_, options_.process, options_.fine,
+        problem_.num_threads, found->directional_lights);
     std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
                 found->start.c_str());
-    const Point end = {ToEigen(found->parameters), found->scales};
+    const Point end = {ToEigen(found->parameters), found->hyperparameters};
     Show(fine, "found", end);
     if (study_.spread) ShowSpread(*found);
     if (study_.further) {
@@ -138,8 +140,8 @@ class EvidenceStudy {
 
  private:
   struct Point {
-    Eigen::VectorXd lobes;  // lamps where the search left them
-    LightScales scales;
+    Eigen::VectorXd lobes;  // directional lights where the search left them
+    LightHyperparameters hyperparameters;
   };
   struct Descent {
     MarginalDescent summary;
@@ -152,11 +154,12 @@ class EvidenceStudy {
     Descent descent;
     LightMode mode;
     descent.noise = fine.likelihood().FindNoise(
-        fine.Matrices(fine.WithLamps(start.lobes).data()), options_.sigma,
-        start.scales, MarginalObjective::kModeTolerance, &mode);
+        fine.Matrices(fine.WithDirectionalLights(start.lobes).data()),
+        options_.sigma, start.hyperparameters,
+        MarginalObjective::kModeTolerance, &mode);
     const MarginalObjective objective(&fine, &prior_, descent.noise, &mode);
-    std::vector<double> y =
-        objective.Whitened(fine.WithLamps(start.lobes), start.scales);
+    std::vector<double> y = objective.Whitened(
+        fine.WithDirectionalLights(start.lobes), start.hyperparameters);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
     o.least_gain = least_gain;
@@ -183,7 +186,7 @@ class EvidenceStudy {
         here.summary.cost - here.value.cost, here.value.misfit,
         here.noise.cwiseSqrt().mean(),
         metrics.ok() ? metrics->log_rmse_aligned : std::nan(""));
-    const LightScales& light = point.scales;
+    const LightHyperparameters& light = point.hyperparameters;
     std::printf("  %-10s light: log amplitude %.2f, log roughness", "",
                 light.log_amplitude);
     for (const double r : light.log_roughness) std::printf(" %.2f", r);
@@ -205,14 +208,15 @@ class EvidenceStudy {
   void SweepTexelNoise(const MarginalReflectance& fine, const Point& point,
                        const Eigen::VectorXd& noise) const {
     const std::array<RowMatrix, 3> matrices =
-        fine.Matrices(fine.WithLamps(point.lobes).data());
+        fine.Matrices(fine.WithDirectionalLights(point.lobes).data());
     const double own = options_.sigma * options_.sigma;
     std::printf("    texel noise times:");
     for (const double factor : kTexelNoise) {
       LightMode mode;
       const MarginalValue value = fine.likelihood().Evaluate(
           matrices, (own + factor * (noise.array() - own)).matrix(),
-          point.scales, MarginalObjective::kModeTolerance, &mode, nullptr);
+          point.hyperparameters, MarginalObjective::kModeTolerance, &mode,
+          nullptr);
       std::printf("  %.2f %.1f", factor, value.cost);
     }
     std::printf("\n");
@@ -270,7 +274,7 @@ int main(int argc, char** argv) {
   ibrdf::StudyOptions options;
   app.add_option("problems", problems, "joint problems with truth.brdf")
       ->required();
-  app.add_option("--cells", options.cells_across,
+  app.add_option("--cells", options.bins_across,
                  "cells across and rows of the map, finest resolution");
   app.add_flag("--texel-noise", options.texel_noise,
                "the likelihood at several strengths of light inside texels");
@@ -293,7 +297,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 8));
   app.add_flag("--spread", options.spread,
                "how far apart draws of the posterior are");
-  app.add_option("--lamps", options.most_lamps, "at most; the search's own: 3")
+  app.add_option("--lamps", options.most_directional_lights,
+                 "at most; the search's own: 3")
       ->check(CLI::Range(0, 8));
   app.add_option("--threads", options.num_threads, "0: all");
   CLI11_PARSE(app, argc, argv);

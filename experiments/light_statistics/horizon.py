@@ -3,7 +3,7 @@
 
 usage: horizon.py MAPS_DIR [--leave-out A,B,...]
 For every Radiance .hdr map, averaged to 32x16: by how many nats the log radiance is more probable under LightProcess
-(solvers/marginal/light_process.h) with a horizon_share than without one, at the most probable scales (amplitude and
+(solvers/priors/light_process.h) with a horizon_share than without one, at the most probable scales (amplitude and
 roughness) of each; in brackets where the step is scaled by the amplitude as the rest is. needs numpy
 """
 import argparse

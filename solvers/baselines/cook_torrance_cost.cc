@@ -79,14 +79,14 @@ bool CookTorranceCost::Evaluate(double const* const* parameters,
       const double diffuse = std::exp(p[c]) * field(0);
       const double specular_colour = std::exp(p[3 + c]);
       const double specular = specular_colour * field(1);
-      const double E = diffuse + specular + observed_.floor;
+      const double L_o = diffuse + specular + observed_.floor;
       const int row = 3 * i + c;
-      const double d = std::log(E) - observed_.values[row];
+      const double d = std::log(L_o) - observed_.values[row];
       if (!std::isfinite(d)) return false;  // step rejected
       const double root = std::sqrt(d * d + s * s);
       residuals[row] = d * std::sqrt(2.0 / (root + s));
       if (!with_jacobian) continue;
-      const double dr_dE = std::sqrt(0.5 * (root + s)) / root / E;
+      const double dr_dE = std::sqrt(0.5 * (root + s)) / root / L_o;
       Eigen::Map<CookTorranceVector> J(jacobians[0] +
                                        row * kCookTorranceParameters);
       J.setZero();
@@ -107,10 +107,10 @@ double CookTorranceCost::Misfit(const CookTorranceVector& parameters) const {
   for (int i = 0; i < transport_.num_points(); ++i) {
     for (int c = 0; c < 3; ++c) {
       const size_t at = static_cast<size_t>(i) * 3 * kFields + c;
-      const double E = std::exp(parameters[c]) * radiance[at] +
-                       std::exp(parameters[3 + c]) * radiance[at + 3];
-      sum +=
-          std::abs(std::log(E + observed_.floor) - observed_.values[3 * i + c]);
+      const double L_o = std::exp(parameters[c]) * radiance[at] +
+                         std::exp(parameters[3 + c]) * radiance[at + 3];
+      sum += std::abs(std::log(L_o + observed_.floor) -
+                      observed_.values[3 * i + c]);
     }
   }
   return sum / static_cast<double>(observed_.values.size());

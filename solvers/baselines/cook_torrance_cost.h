@@ -25,13 +25,13 @@ struct LogObservations {
   double floor = 0.0;  // radiance, > 0
 };
 
-// One residual per point and channel. With d = log(E + floor) - observed and
+// One residual per point and channel. With d = log(L_o + floor) - observed and
 // rho(d) = sqrt(d^2 + s^2) - s, the Laplacian's |d| rounded at s, residual^2 /
 // 2 is rho:
 //   r = d sqrt(2 / (sqrt(d^2 + s^2) + s)).
-// E is linear in colours and lobe fields, so that the Jacobian is exact for the
-// BRDF grid of `transport`, not only in the limit of a fine one. Its functions
-// may be called from one thread at a time.
+// L_o is linear in colours and lobe fields, so that the Jacobian is exact for
+// the BRDF grid of `transport`, not only in the limit of a fine one. Its
+// functions may be called from one thread at a time.
 class CookTorranceCost final : public ceres::CostFunction {
  public:
   // map: of the transport's size. smoothing: s, natural log, > 0. num_threads

@@ -26,7 +26,7 @@ constexpr Bounds kLogColour = {-16.0, 8.0};
 constexpr Bounds kLogRoughness = {-5.5, 0.7};  // 0.004 to 2
 constexpr Bounds kLogitF0 = {-7.0, 7.0};
 
-// Pull on every parameter to where it started, natural log: too weak to show in
+// Vjp on every parameter to where it started, natural log: too weak to show in
 // the misfit, it holds what the image does not tell. Bounds instead cost Ceres
 // a line search, ten renders and more, in each step along them.
 constexpr double kPullScale = 30.0;

@@ -29,7 +29,7 @@ struct CookTorranceFitOptions {
 
 struct CookTorranceFit {
   CookTorrance brdf;    // roughness and f0 are the same in all channels
-  double misfit = 0.0;  // mean |log E - log I| over the kept points, channels
+  double misfit = 0.0;  // mean |log L_o - log I| over the kept points, channels
 };
 
 // Lambertian plus Cook-Torrance fitted to an image under known light, by

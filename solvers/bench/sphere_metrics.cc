@@ -29,14 +29,14 @@ std::vector<ShadingPoint> SpherePoints(int size, int samples_per_side) {
 
 Image RenderMirror(const Image& map) {
   const std::vector<ShadingPoint> points = SpherePoints(kMirrorSize, 2);
-  std::vector<double> E;
+  std::vector<double> L_o;
   for (const ShadingPoint& p : points) {
     const Eigen::Vector3d n = p.normal.cast<double>().normalized();
     const Eigen::Vector3d wo = p.wo.cast<double>().normalized();
     const Eigen::Array3d L = LookUpMap(map, 2.0 * n.dot(wo) * n - wo);
-    E.insert(E.end(), {L[0], L[1], L[2]});
+    L_o.insert(L_o.end(), {L[0], L[1], L[2]});
   }
-  return PixelMeans(points, E.data(), kMirrorSize, kMirrorSize);
+  return PixelMeans(points, L_o.data(), kMirrorSize, kMirrorSize);
 }
 
 Status CheckFinite(const char* name, const Image& map) {
@@ -112,13 +112,13 @@ SphereGallery::Pictures SphereGallery::Render(const Image& map) const {
   options.far_width = 64;
   options.num_threads = num_threads_;
   const std::vector<ShadingPoint> points = SpherePoints(kSmoothSize, 1);
-  std::vector<double> E(3 * tables_.count() * points.size());
-  ReferenceBatch(tables_, {&map}, options).Render(points, E.data());
+  std::vector<double> L_o(3 * tables_.count() * points.size());
+  ReferenceBatch(tables_, {&map}, options).Render(points, L_o.data());
   Pictures pictures;
   pictures[0] = RenderMirror(map);
   for (int m = 0; m < tables_.count(); ++m) {
-    pictures[m + 1] =
-        PixelMeans(points, &E[3 * m * points.size()], kSmoothSize, kSmoothSize);
+    pictures[m + 1] = PixelMeans(points, &L_o[3 * m * points.size()],
+                                 kSmoothSize, kSmoothSize);
   }
   return pictures;
 }
@@ -142,10 +142,11 @@ StatusOr<SphereMetrics> CompareRelit(const MerlTable& estimate,
   options.num_threads = num_threads;
   const std::vector<ShadingPoint> points = SpherePoints(kRelitSize, 1);
   const size_t size = 3 * points.size();
-  std::vector<double> E(2 * size);
-  ReferenceBatch(tables, {&map}, options).Render(points, E.data());
-  return ComparePictures(PixelMeans(points, E.data(), kRelitSize, kRelitSize),
-                         PixelMeans(points, &E[size], kRelitSize, kRelitSize));
+  std::vector<double> L_o(2 * size);
+  ReferenceBatch(tables, {&map}, options).Render(points, L_o.data());
+  return ComparePictures(
+      PixelMeans(points, L_o.data(), kRelitSize, kRelitSize),
+      PixelMeans(points, &L_o[size], kRelitSize, kRelitSize));
 }
 
 StatusOr<std::array<SphereMetrics, kNumSpheres>> SphereGallery::Compare(

@@ -37,9 +37,9 @@ SphereStudio::SphereStudio(int size, const BrdfGridShape& grid, int num_threads)
 }
 
 Image SphereStudio::Render(const BrdfGrid& brdf) const {
-  std::vector<double> E(3 * points_.size());
-  transport_->Render(brdf, sky_.rgb.data(), E.data());
-  return PixelMeans(points_, E.data(), size_, size_);
+  std::vector<double> L_o(3 * points_.size());
+  transport_->Render(brdf, sky_.rgb.data(), L_o.data());
+  return PixelMeans(points_, L_o.data(), size_, size_);
 }
 
 }  // namespace ibrdf

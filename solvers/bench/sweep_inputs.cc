@@ -63,7 +63,7 @@ Status RenderTogether(const SweepOptions& options, const ViewPoints& view,
   const ReferenceBatch batch(tables, maps, reference);
   const size_t images = materials.size() * maps.size();
   const size_t count = view.points.size();
-  std::vector<std::vector<double>> E(images, std::vector<double>(3 * count));
+  std::vector<std::vector<double>> L_o(images, std::vector<double>(3 * count));
   std::vector<double> some;
   for (size_t begin = 0; begin < count; begin += kPointsPerStep) {
     if (options.stopped()) {
@@ -77,7 +77,7 @@ Status RenderTogether(const SweepOptions& options, const ViewPoints& view,
     batch.Render(step, some.data());
     for (size_t k = 0; k < images; ++k) {
       std::copy_n(&some[3 * k * step.size()], 3 * step.size(),
-                  &E[k][3 * begin]);
+                  &L_o[k][3 * begin]);
     }
   }
   for (const SweepCase& c : cases) {
@@ -85,7 +85,7 @@ Status RenderTogether(const SweepOptions& options, const ViewPoints& view,
                      IndexOf(map_names, c.map_path);
     IBRDF_RETURN_IF_ERROR(
         WriteInput(options, c, view.mask,
-                   PixelMeans(view.points, E[k].data(), c.size, c.size)));
+                   PixelMeans(view.points, L_o[k].data(), c.size, c.size)));
   }
   return OkStatus();
 }

@@ -9,7 +9,7 @@
 namespace ibrdf {
 namespace {
 
-// E + epsilon counts as no less: its logarithm and the square of its inverse
+// L_o + epsilon counts as no less: its logarithm and the square of its inverse
 // stay finite.
 constexpr double kLeastRadiance = 1e-100;
 
@@ -31,25 +31,25 @@ Observations MakeObservations(const std::vector<double>& radiance) {
   return o;
 }
 
-LikelihoodValue EvaluateLikelihood(const std::vector<double>& E,
+LikelihoodValue EvaluateLikelihood(const std::vector<double>& L_o,
                                    const Observations& observed,
                                    const RobustLogLikelihood& likelihood,
                                    LikelihoodDerivatives* derivatives) {
-  CHECK_EQ(E.size(), observed.radiance.size());
+  CHECK_EQ(L_o.size(), observed.radiance.size());
   const RobustLogLikelihood& l = likelihood;
   if (derivatives != nullptr) {
-    derivatives->residual.assign(E.size(), 0.0);
-    derivatives->d_residual.assign(E.size(), 0.0);
-    derivatives->weight.assign(E.size(), 0.0);
+    derivatives->residual.assign(L_o.size(), 0.0);
+    derivatives->d_residual.assign(L_o.size(), 0.0);
+    derivatives->weight.assign(L_o.size(), 0.0);
   }
   LikelihoodValue value;
-  for (size_t i = 0; i < E.size(); ++i) {
+  for (size_t i = 0; i < L_o.size(); ++i) {
     if (!observed.valid[i / 3]) continue;
-    if (!std::isfinite(E[i])) {
+    if (!std::isfinite(L_o[i])) {
       value.cost = value.misfit = std::numeric_limits<double>::quiet_NaN();
       return value;
     }
-    const double sum = std::max(E[i], 0.0) + l.epsilon;
+    const double sum = std::max(L_o[i], 0.0) + l.epsilon;
     const double e = std::max(sum, kLeastRadiance);
     const double d = std::log(e) - std::log(observed.radiance[i] + l.epsilon);
     const double t = d / l.scale;
@@ -58,8 +58,8 @@ LikelihoodValue EvaluateLikelihood(const std::vector<double>& E,
     value.cost += r * r / 2;
     value.misfit += std::abs(d);
     if (derivatives == nullptr) continue;
-    // No slope where E counts as another.
-    const bool moves = E[i] >= 0.0 && sum >= kLeastRadiance;
+    // No slope where L_o counts as another.
+    const bool moves = L_o[i] >= 0.0 && sum >= kLeastRadiance;
     const double dt = moves ? 1.0 / (l.scale * e) : 0.0;
     derivatives->residual[i] = r;
     derivatives->d_residual[i] = dr_dt * dt;

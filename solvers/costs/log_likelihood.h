@@ -16,26 +16,26 @@ struct Observations {
 };
 Observations MakeObservations(const std::vector<double>& radiance);
 
-// Per value of E, 0 where the point takes no part:
+// Per value of L_o, 0 where the point takes no part:
 //   residual_i = RobustResidual((log(E_i + eps) - log(I_i + eps)) / b),
-// so that sum residual^2 / 2 is the likelihood. Negative E counts as 0, and 0
+// so that sum residual^2 / 2 is the likelihood. Negative L_o counts as 0, and 0
 // without epsilon as 1e-100, both without slope.
 struct LikelihoodDerivatives {
   std::vector<double> residual;
-  std::vector<double> d_residual;  // d residual / dE
-  // Of the iteratively reweighted squares that touch the likelihood at E with
+  std::vector<double> d_residual;  // d residual / dL_o
+  // Of the iteratively reweighted squares that touch the likelihood at L_o with
   // its slope: sum weight_i dE_i^2 / 2 has the curvature of a Gauss-Newton
   // step.
   std::vector<double> weight;
 };
 
 struct LikelihoodValue {
-  double cost = 0.0;    // nats; NaN where E is not finite
-  double misfit = 0.0;  // mean |log E - log I|; 0 without points
+  double cost = 0.0;    // nats; NaN where L_o is not finite
+  double misfit = 0.0;  // mean |log L_o - log I|; 0 without points
 };
 
-// E [points * 3]; derivatives may be null.
-LikelihoodValue EvaluateLikelihood(const std::vector<double>& E,
+// L_o [points * 3]; derivatives may be null.
+LikelihoodValue EvaluateLikelihood(const std::vector<double>& L_o,
                                    const Observations& observed,
                                    const RobustLogLikelihood& likelihood,
                                    LikelihoodDerivatives* derivatives);

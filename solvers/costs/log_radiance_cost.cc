@@ -8,25 +8,25 @@
 namespace ibrdf {
 namespace {
 
-// Residuals of E, and dr/dE of each; false where E is not finite.
-bool FillResiduals(const std::vector<double>& E, const Observations& observed,
+// Residuals of L_o, and dr/dL_o of each; false where L_o is not finite.
+bool FillResiduals(const std::vector<double>& L_o, const Observations& observed,
                    const RobustLogLikelihood& likelihood, double* residuals,
                    std::vector<double>* dr_dE) {
   LikelihoodDerivatives derivatives;
   const LikelihoodValue value =
-      EvaluateLikelihood(E, observed, likelihood, &derivatives);
+      EvaluateLikelihood(L_o, observed, likelihood, &derivatives);
   std::copy(derivatives.residual.begin(), derivatives.residual.end(),
             residuals);
   if (dr_dE != nullptr) *dr_dE = std::move(derivatives.d_residual);
   return std::isfinite(value.cost);
 }
 
-void ScaleRows(const std::vector<double>& dr_dE, const std::vector<double>& dE,
-               int columns, double* jacobian) {
+void ScaleRows(const std::vector<double>& dr_dE,
+               const std::vector<double>& dL_o, int columns, double* jacobian) {
   for (size_t i = 0; i < dr_dE.size(); ++i) {
     for (int p = 0; p < columns; ++p) {
       const size_t at = i * columns + p;
-      jacobian[at] = dr_dE[i] * dE[at];
+      jacobian[at] = dr_dE[i] * dL_o[at];
     }
   }
 }
@@ -35,21 +35,21 @@ void ScaleRows(const std::vector<double>& dr_dE, const std::vector<double>& dE,
 // Transport::RenderLobes of `points` points.
 template <typename Render>
 bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
-                  const double* parameters, std::vector<double>* E,
-                  std::vector<double>* dE) {
+                  const double* parameters, std::vector<double>* L_o,
+                  std::vector<double>* dL_o) {
   const int lobe_size = lobes.lobe_size(), codes = lobes.code_size();
-  const int stride = dE != nullptr ? 1 + codes : 1;
+  const int stride = dL_o != nullptr ? 1 + codes : 1;
   const int num_fields = stride * lobes.num_lobes();
   const int columns = lobes.num_parameters();
   std::vector<float> fields;
-  lobes.Tabulate(parameters, dE != nullptr, &fields);
+  lobes.Tabulate(parameters, dL_o != nullptr, &fields);
   const size_t nodes = lobes.grid_shape().num_nodes();
   std::vector<const float*> pointers(num_fields);
   for (int f = 0; f < num_fields; ++f) pointers[f] = fields.data() + f * nodes;
   std::vector<float> out(static_cast<size_t>(points) * num_fields * 3);
   render(pointers.data(), num_fields, out.data());
-  E->assign(static_cast<size_t>(points) * 3, 0.0);
-  if (dE != nullptr) dE->assign(E->size() * columns, 0.0);
+  L_o->assign(static_cast<size_t>(points) * 3, 0.0);
+  if (dL_o != nullptr) dL_o->assign(L_o->size() * columns, 0.0);
   bool finite = true;
   for (int i = 0; i < points; ++i) {
     for (int k = 0; k < lobes.num_lobes(); ++k) {
@@ -65,14 +65,14 @@ bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
         };
         const size_t row = static_cast<size_t>(i) * 3 + c;
         const double term = colour * field(0);
-        (*E)[row] += term;
-        if (dE == nullptr) continue;
-        double* d = dE->data() + row * columns + k * lobe_size;
+        (*L_o)[row] += term;
+        if (dL_o == nullptr) continue;
+        double* d = dL_o->data() + row * columns + k * lobe_size;
         for (int z = 0; z < codes; ++z) d[z] = colour * field(1 + z);
         d[codes + c] = lobe[codes + c] < LobeModel::kMaxLogColour ? term : 0.0;
       }
     }
-    for (int c = 0; c < 3; ++c) finite &= std::isfinite((*E)[3 * i + c]);
+    for (int c = 0; c < 3; ++c) finite &= std::isfinite((*L_o)[3 * i + c]);
   }
   return finite;
 }
@@ -81,8 +81,8 @@ bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
 
 bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
                      const double* parameters, const float* map,
-                     std::vector<double>* E, std::vector<double>* dE) {
-  // Radiance of the emitters after one bounce more each, and its tangents.
+                     std::vector<double>* L_o, std::vector<double>* dL_o) {
+  // Radiance of the patches after one bounce more each, and its tangents.
   std::vector<double> emitted, d_emitted;
   const auto render = [&](const Transport& of, const LightOperator* light,
                           std::vector<double>* out, std::vector<double>* d) {
@@ -98,19 +98,19 @@ bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
     return finite;
   };
   std::optional<LightOperator> light;
-  if (transport.bounces() > 0 && dE != nullptr) {
+  if (transport.bounces() > 0 && dL_o != nullptr) {
     light = transport.ByLight(lobes.Grid(parameters));
   }
   for (int b = 0; b < transport.bounces(); ++b) {
     std::vector<double> next, d_next;
-    if (!render(*transport.emitters(), light ? light->emitters() : nullptr,
-                &next, dE != nullptr ? &d_next : nullptr)) {
+    if (!render(*transport.patches(), light ? light->patches() : nullptr, &next,
+                dL_o != nullptr ? &d_next : nullptr)) {
       return false;
     }
     emitted = std::move(next);
     d_emitted = std::move(d_next);
   }
-  return render(transport, light ? &*light : nullptr, E, dE);
+  return render(transport, light ? &*light : nullptr, L_o, dL_o);
 }
 
 LobeRadianceCost::LobeRadianceCost(const Transport* transport,
@@ -135,23 +135,24 @@ LobeRadianceCost::LobeRadianceCost(const Transport* transport,
 bool LobeRadianceCost::Evaluate(double const* const* parameters,
                                 double* residuals, double** jacobians) const {
   const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
-  std::vector<double> E, dE, dr_dE;
-  std::vector<double>* const tangents = wanted ? &dE : nullptr;
+  std::vector<double> L_o, dL_o, dr_dE;
+  std::vector<double>* const tangents = wanted ? &dL_o : nullptr;
   const bool finite =
       operator_
           ? CombineLobes(
                 [this](const float* const* fields, int num_fields, float* out) {
                   operator_->Apply(fields, num_fields, out);
                 },
-                transport_->num_points(), *lobes_, parameters[0], &E, tangents)
+                transport_->num_points(), *lobes_, parameters[0], &L_o,
+                tangents)
           : RenderLobeModel(*transport_, *lobes_, parameters[0], map_.data(),
-                            &E, tangents);
+                            &L_o, tangents);
   if (!finite) return false;
-  if (!FillResiduals(E, *observed_, likelihood_, residuals,
+  if (!FillResiduals(L_o, *observed_, likelihood_, residuals,
                      wanted ? &dr_dE : nullptr)) {
     return false;
   }
-  if (wanted) ScaleRows(dr_dE, dE, lobes_->num_parameters(), jacobians[0]);
+  if (wanted) ScaleRows(dr_dE, dL_o, lobes_->num_parameters(), jacobians[0]);
   return true;
 }
 
@@ -182,23 +183,24 @@ bool LogRadianceCost::Evaluate(double const* const* parameters,
   ToRadianceMap(planar, &map, &slopes);
   const bool want_lobes = jacobians != nullptr && jacobians[0] != nullptr;
   const bool want_weights = jacobians != nullptr && jacobians[1] != nullptr;
-  std::vector<double> E, dE, dr_dE;
-  if (!RenderLobeModel(*transport_, *lobes_, parameters[0], map.data(), &E,
-                       want_lobes ? &dE : nullptr)) {
+  std::vector<double> L_o, dL_o, dr_dE;
+  if (!RenderLobeModel(*transport_, *lobes_, parameters[0], map.data(), &L_o,
+                       want_lobes ? &dL_o : nullptr)) {
     return false;
   }
-  if (!FillResiduals(E, *observed_, likelihood_, residuals,
+  if (!FillResiduals(L_o, *observed_, likelihood_, residuals,
                      want_lobes || want_weights ? &dr_dE : nullptr)) {
     return false;
   }
-  if (want_lobes) ScaleRows(dr_dE, dE, lobes_->num_parameters(), jacobians[0]);
+  if (want_lobes)
+    ScaleRows(dr_dE, dL_o, lobes_->num_parameters(), jacobians[0]);
   if (want_weights) {
     const LightOperator light =
         transport_->ByLight(lobes_->Grid(parameters[0]));
-    std::vector<double> adjoint(E.size(), 0.0);
+    std::vector<double> adjoint(L_o.size(), 0.0);
     std::vector<float> by_map(map.size()), by_output(map.size()),
         by_weight(weights);
-    for (size_t row = 0; row < E.size(); ++row) {
+    for (size_t row = 0; row < L_o.size(); ++row) {
       adjoint[row] = dr_dE[row];
       light.ApplyTranspose(adjoint.data(), by_map.data());
       adjoint[row] = 0.0;

@@ -14,13 +14,14 @@
 namespace ibrdf {
 
 // Residuals [points * 3], row i * 3 + c:
-//   r_ic = RobustResidual((log(E_ic + eps) - log(I_ic + eps)) / b),
-// E = Transport of the lobes (parameters[0], as LobeModel) and the map
+//   r_ic = RobustResidual((log(L_o_ic + eps) - log(I_ic + eps)) / b),
+// L_o = Transport of the lobes (parameters[0], as LobeModel) and the map
 // L = exp(UNet(noise; Phi)) (parameters[1] = Phi, in double). Residuals of
-// points that take no part are 0. Jacobians: dE/d(z, a) by the flow's and the
-// renderer's derivatives; d E / d Phi row by row by the UNet's vector-Jacobian
-// product, so that block is for small problems (its rows are exact, and each
-// costs a backward pass). All referenced objects must outlive the cost.
+// points that take no part are 0. Jacobians: dL_o/d(z, a) by the flow's and the
+// renderer's derivatives; d L_o / d Phi row by row by the UNet's
+// vector-Jacobian product, so that block is for small problems (its rows are
+// exact, and each costs a backward pass). All referenced objects must outlive
+// the cost.
 class LogRadianceCost final : public ceres::CostFunction {
  public:
   LogRadianceCost(const Transport* transport, const LobeModel* lobes,
@@ -68,10 +69,11 @@ class LobeRadianceCost final : public ceres::CostFunction {
   const RobustLogLikelihood likelihood_;
 };
 
-// E [points * 3] of the lobes under a map, and with dE != nullptr its Jacobian
-// [points * 3][lobes.num_parameters()], row-major. False if not finite.
+// L_o [points * 3] of the lobes under a map, and with dL_o != nullptr its
+// Jacobian [points * 3][lobes.num_parameters()], row-major. False if not
+// finite.
 bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
                      const double* parameters, const float* map,
-                     std::vector<double>* E, std::vector<double>* dE);
+                     std::vector<double>* L_o, std::vector<double>* dL_o);
 
 }  // namespace ibrdf

@@ -4,10 +4,10 @@
 
 namespace ibrdf {
 
-// Chen et al. 2020, Eq. 2: -log p = |log I - log E| / b + const per pixel and
-// channel. With t = (log(E + epsilon) - log(I + epsilon)) / b and the smoothed
-// magnitude rho(t) = sqrt(t^2 + delta^2) - delta, the residual
-// r = sign(t) sqrt(2 rho(t)) has r^2 / 2 = rho(t): Ceres' sum of squares is the
+// Chen et al. 2020, Eq. 2: -log p = |log I - log L_o| / b + const per pixel and
+// channel. With t = (log(L_o + epsilon) - log(I + epsilon)) / b and the
+// smoothed magnitude rho(t) = sqrt(t^2 + delta^2) - delta, the residual r =
+// sign(t) sqrt(2 rho(t)) has r^2 / 2 = rho(t): Ceres' sum of squares is the
 // likelihood, one robust loss per pixel and channel however many share a block.
 // r is smooth in t, with r ~ t / sqrt(delta) near 0.
 struct RobustLogLikelihood {

@@ -22,10 +22,10 @@ CookTorrance ProbeMaterial(double specular) {
   return brdf;
 }
 
-EffectsWorth Predict(const Scene& scene,
-                     const std::vector<ShadingPoint>& points,
-                     const Image* known_map, const BrdfGrid* known_brdf,
-                     const SceneProbeOptions& options) {
+OmissionErrors Predict(const Scene& scene,
+                       const std::vector<ShadingPoint>& points,
+                       const Image* known_map, const BrdfGrid* known_brdf,
+                       const SceneProbeOptions& options) {
   const Image sky = RenderSky(SkyOptions(), kProbeWidth / 2, kProbeWidth);
   const Image* map = known_map != nullptr ? known_map : &sky;
   Image small;
@@ -53,14 +53,14 @@ std::string InWords(const EffectsPlan& plan, EffectsMode mode) {
       "the object hides %.1f %% of the light from itself, from %.0f %% of its "
       "points some",
       100 * plan.probe.hidden_mean, 100 * plan.probe.shadowed_share);
-  const std::string worth = Format(
+  const std::string omission = Format(
       "log radiance, mean over the image, would change by %.4f without "
       "shadows and by %.4f without light from the object to itself (worth it "
       "above %.3f)",
-      plan.worth.unshadowed, plan.worth.bounces[0], plan.threshold);
+      plan.omission.unshadowed, plan.omission.bounces[0], plan.threshold);
   const std::string seconds =
       Format("; rays take about %.1f s for shadows, %.1f s for bounces",
-             plan.worth.shadow_seconds, plan.worth.bounce_seconds);
+             plan.omission.shadow_seconds, plan.omission.bounce_seconds);
   const std::string asked = mode == EffectsMode::kAuto ? "" : ", as asked";
   const std::string left =
       mode != EffectsMode::kAuto && plan.error > plan.threshold
@@ -72,7 +72,7 @@ std::string InWords(const EffectsPlan& plan, EffectsMode mode) {
   if (plan.bounces > 0) {
     simulated += ", interreflection (" + Bounces(plan.bounces) + ")";
   }
-  return simulated + asked + ": " + seen + "; " + worth +
+  return simulated + asked + ": " + seen + "; " + omission +
          (plan.probe.shadowed_share > 0.0 ? seconds : "") + left;
 }
 
@@ -82,9 +82,9 @@ void Choose(bool may_leave_shadows, bool may_bounce, EffectsPlan* plan) {
   plan->visibility = true;
   plan->bounces = may_bounce ? kMostBounces : 0;
   for (int b = plan->bounces; b >= 0; --b) {
-    if (plan->worth.bounces[b] <= plan->threshold) plan->bounces = b;
+    if (plan->omission.bounces[b] <= plan->threshold) plan->bounces = b;
   }
-  if (may_leave_shadows && plan->worth.unshadowed <= plan->threshold) {
+  if (may_leave_shadows && plan->omission.unshadowed <= plan->threshold) {
     plan->visibility = false;
     plan->bounces = 0;
   }
@@ -138,9 +138,9 @@ StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
   options.num_threads = num_threads;
   plan.probe = ProbeScene(scene, points, options);
   if (plan.probe.shadowed_share > 0.0) {
-    plan.worth = measure
-                     ? measure()
-                     : Predict(scene, points, known_map, known_brdf, options);
+    plan.omission =
+        measure ? measure()
+                : Predict(scene, points, known_map, known_brdf, options);
   }
   switch (effects.mode) {
     case EffectsMode::kAuto:
@@ -158,8 +158,8 @@ StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
       break;
   }
   plan.reflectance_map = DependsOnNormal(problem, plan.visibility);
-  plan.error = plan.visibility ? plan.worth.bounces[plan.bounces]
-                               : plan.worth.unshadowed;
+  plan.error = plan.visibility ? plan.omission.bounces[plan.bounces]
+                               : plan.omission.unshadowed;
   plan.words = InWords(plan, effects.mode);
   return plan;
 }

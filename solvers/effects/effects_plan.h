@@ -16,20 +16,20 @@ namespace ibrdf {
 // radiance by more than this, mean over the image: in a solve, in a preview,
 // and in a render at reference quality, which others measure themselves
 // against.
-inline constexpr double kWorthwhileLogError = 0.01;
-inline constexpr double kPreviewLogError = 0.005;
-inline constexpr double kReferenceLogError = 0.001;
+inline constexpr double kSolveOmissionError = 0.01;
+inline constexpr double kPreviewOmissionError = 0.005;
+inline constexpr double kReferenceOmissionError = 0.001;
 
 // How points are rendered that nothing shadows.
-enum class Tier {
+enum class Approximation {
   kQuadrature,      // each by itself
   kReflectanceMap,  // as many as it takes, the rest interpolated by normal
   kHarmonics,       // the map in spherical harmonics
   kGaussians,       // the map as a mixture of spherical Gaussians
 };
 
-struct TierPlan {
-  Tier tier = Tier::kQuadrature;
+struct ApproximationPlan {
+  Approximation approximation = Approximation::kQuadrature;
   int order = 0;                 // of the harmonics
   int gaussians = 0, spots = 0;  // in the mixture; bright spots among them
   // Of harmonics and Gaussians, mean |log error|: predicted from the light that
@@ -53,18 +53,18 @@ struct EffectsPlan {
   SceneProbe probe;
   // Predicted under the known light and reflectance; where one is unknown,
   // under a sun in a clear sky, and for a matte and a glossy surface.
-  EffectsWorth worth;
-  double threshold = kWorthwhileLogError;
+  OmissionErrors omission;
+  double threshold = kSolveOmissionError;
   // The predicted error of what is simulated.
   double error = 0.0;
   std::string words;  // for the user
   // Of ibrdf_render, where neither shadows nor bounces are simulated.
-  TierPlan tier;
+  ApproximationPlan approximation;
 };
 
 // Worth of the effects, where they are not to be predicted by patches of the
 // object, as a solve simulates them.
-using EffectsMeasure = std::function<EffectsWorth()>;
+using EffectsMeasure = std::function<OmissionErrors()>;
 
 // known_map, known_brdf and `measure` may be null. Fails where the problem
 // lists an effect that its geometry cannot have.

@@ -53,15 +53,15 @@ Eigen::Array3d Estimator::MatchedLevel(const std::vector<double>& lobes) {
   const double zero[3] = {0, 0, 0};
   const LevelObjective on = ObjectiveOn(cells_.get());
   on.objective->Evaluate(JointState{lobes, light_->ConstantMap(zero)});
-  const std::vector<double>& E = on.objective->radiance();
+  const std::vector<double>& L_o = on.objective->radiance();
   const Observations& o = cells_->observed;
   Eigen::Array3d level = Eigen::Array3d::Zero();
   Eigen::Array3d lit = Eigen::Array3d::Zero();
-  for (size_t i = 0; i < E.size(); ++i) {
+  for (size_t i = 0; i < L_o.size(); ++i) {
     // What reflects nothing says nothing of the light.
-    if (!o.valid[i / 3] || !(E[i] > kBlack)) continue;
+    if (!o.valid[i / 3] || !(L_o[i] > kBlack)) continue;
     const auto c = static_cast<Eigen::Index>(i % 3);
-    level[c] += std::log(o.radiance[i]) - std::log(E[i]);
+    level[c] += std::log(o.radiance[i]) - std::log(L_o[i]);
     lit[c] += 1.0;
   }
   const double of_all = level.sum() / std::max(lit.sum(), 1.0);
@@ -73,8 +73,8 @@ Estimator::LightPriors Estimator::PriorsAt(const Eigen::Array3d& level) const {
   priors.mean = light_->ConstantMap(level.data());
   if (has_process_prior_) {
     priors.on_map.push_back(std::make_unique<ProcessPrior>(
-        light_->height(), light_->width(), LightProcess(), light_scales_,
-        level.mean(), lamps_));
+        light_->height(), light_->width(), LightProcess(),
+        light_hyperparameters_, level.mean(), directional_lights_));
   }
   return priors;
 }
@@ -152,7 +152,7 @@ Status Estimator::EstimateLight(JointState* state) {
 Status Estimator::EstimateDraw(MapSize size, JointMethod method, double share,
                                JointState* state) {
   SetLight(MakeProcessIllumination(size.width, size.height, LightProcess(),
-                                   light_scales_, lamps_),
+                                   light_hyperparameters_, directional_lights_),
            false);
   MatchLight(state);
   StartFirstLight();
@@ -170,27 +170,27 @@ Status Estimator::MapRounds(JointMethod method, double share,
                             JointState* state) {
   IBRDF_RETURN_IF_ERROR(
       Rounds("map", method, JointBlocks::kLight, share, state));
-  if (!CellsBlur(*state)) return OkStatus();
-  cells_ = MakeCellLevel(problem_, kFineMapCells);
+  if (!BinsBlur(*state)) return OkStatus();
+  cells_ = MakeBinnedLevel(problem_, kFineMapBins);
   return Rounds("fine map", method, JointBlocks::kLight, share, state);
 }
 
-bool Estimator::CellsBlur(const JointState& state) {
+bool Estimator::BinsBlur(const JointState& state) {
   // Points in shadow are not joined. And what pixels tell beyond cells of an
   // estimated reflectance is as much its errors as the map.
   if (problem_.transport.visibility != nullptr || lobes_unknown()) return false;
   if (StopAfter(1.0)()) return false;
   // A dense method was found to take the coarser level.
   if (MethodFor(JointBlocks::kLight) == JointMethod::kTrustRegion) return false;
-  LevelPair pair = MakeLevelPair(problem_, kMapCells);
-  if (pair.cells->observed.num_valid == 0) return false;
+  LevelPair pair = MakeLevelPair(problem_, kMapBins);
+  if (pair.bins->observed.num_valid == 0) return false;
   const auto radiance = [&](Level* level) {
     const LevelObjective on = ObjectiveOn(level);
     on.objective->Evaluate(state);
     return on.objective->radiance();
   };
-  const double error = JoiningError(*pair.pixels, radiance(pair.pixels.get()),
-                                    radiance(pair.cells.get()), kMapCells);
+  const double error = BinningError(*pair.pixels, radiance(pair.pixels.get()),
+                                    radiance(pair.bins.get()), kMapBins);
   return error > kBlurredShare * Evaluate("map", cells_.get(), state).misfit;
 }
 

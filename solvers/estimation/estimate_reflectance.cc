@@ -23,7 +23,7 @@ constexpr double kSearchShare = 0.55;
 constexpr double kLightSearchShare = 0.25;
 // Of the disc of normals: what a few dozen parameters under known light can
 // learn from.
-constexpr int kKnownLightCells = 26;
+constexpr int kKnownLightBins = 26;
 constexpr int kKnownLightStarts = 4;
 constexpr int kKnownLightFinalists = 3;
 // Of the trust region: of every start, and of a round.
@@ -72,8 +72,8 @@ ReflectanceSearchOptions Estimator::SearchOptions(double share) {
   o.should_stop = StopAfter(share);
   // The first stages of a small budget of iterations are cut short alike.
   const int iterations = problem_.solver.max_iterations;
-  if (iterations == 0) o.coarse_rounds = {{1, 0}};
-  for (SearchRound& round : o.coarse_rounds) {
+  if (iterations == 0) o.coarse_stages = {{1, 0}};
+  for (SearchStage& round : o.coarse_stages) {
     round.iterations = std::min(round.iterations, 5 * iterations);
   }
   o.fine_iterations = std::min(o.fine_iterations, 5 * iterations);
@@ -86,7 +86,7 @@ ReflectanceSearchOptions Estimator::SearchOptions(double share) {
     entry.seconds = Elapsed();
     Report(entry);
   };
-  if (problem_.transport.emitters != nullptr) {
+  if (problem_.transport.patches != nullptr) {
     // Slice by slice of all points; the last one's transport is kept, which
     // spares a small image the making of another.
     o.bounce_gain = [this, shape = o.fine,
@@ -139,8 +139,8 @@ std::vector<double> Estimator::SearchRadiance() const {
 }
 
 void Estimator::KeepLight(const ReflectanceSearchResult& found, double level) {
-  light_scales_ = found.scales;
-  lamps_ = found.lamps;
+  light_hyperparameters_ = found.hyperparameters;
+  directional_lights_ = found.directional_lights;
   mode_.clear();
   for (const double v : found.log_radiance) {
     mode_.push_back(static_cast<float>(v - level));
@@ -194,9 +194,9 @@ void Estimator::StartAtMeanMaterial(JointState* state) {
 }
 
 JointState Estimator::EstimateUnderKnownLight() {
-  // Pixels as they are: under a known lamp the mean of a cell is not the
-  // radiance of its mean normal.
-  few_ = MakeSampleLevel(problem_, kKnownLightCells);
+  // Pixels as they are: under a known directional light the mean of a cell is
+  // not the radiance of its mean normal.
+  few_ = MakeSampleLevel(problem_, kKnownLightBins);
   const Transport& transport = TransportOf(few_.get());
   if (LobeRadianceCost::IsStored(transport)) {
     few_light_ = transport.ByReflectance(known_map_.data());

@@ -80,7 +80,7 @@ Status Estimator::Prepare() {
                         "no pixel of the object is finite and positive in "
                         "all three channels");
   }
-  if (light_unknown()) cells_ = MakeCellLevel(problem_, kMapCells);
+  if (light_unknown()) cells_ = MakeBinnedLevel(problem_, kMapBins);
   double mean = 0.0;
   for (size_t i = 0; i < full_->observed.radiance.size(); ++i) {
     if (full_->observed.valid[i / 3]) mean += full_->observed.radiance[i];
@@ -133,9 +133,9 @@ void Estimator::PredictFinish() {
   }
   const double start = Elapsed();
   TransportOf(&probe);
-  // Each transport has one of the emitters besides.
-  const auto& emitters = problem_.transport.emitters;
-  const size_t besides = emitters ? emitters->points().size() : 0;
+  // Each transport has one of the patches besides.
+  const auto& patches = problem_.transport.patches;
+  const size_t besides = patches ? patches->points().size() : 0;
   const double transport = (Elapsed() - start) *
                            static_cast<double>(points.size() + besides) /
                            static_cast<double>(probe.points.size() + besides);

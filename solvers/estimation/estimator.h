@@ -46,9 +46,9 @@ class Estimator {
  private:
   // Across the disc of normals: what a map's estimate is made from, at first
   // and where the image is as sharp as the map's texels.
-  static constexpr int kMapCells = 64;
-  static constexpr int kFineMapCells = 128;
-  // Transported at once with bounces: emitters are lit anew by every transport.
+  static constexpr int kMapBins = 64;
+  static constexpr int kFineMapBins = 128;
+  // Transported at once with bounces: patches are lit anew by every transport.
   static constexpr size_t kPointsAtOnceWithBounces = 32768;
 
   // estimator.cc: clock, objective and trace.
@@ -98,9 +98,9 @@ class Estimator {
   std::vector<double> SearchRadiance() const;
   // What a search says of the light, whose log radiance is to fall by `level`.
   void KeepLight(const ReflectanceSearchResult& found, double level);
-  // Lamps and scales of the light of highest posterior probability with its map
-  // integrated out, under the known reflectance; left at the average where the
-  // image does not tell.
+  // DirectionalLights and scales of the light of highest posterior probability
+  // with its map integrated out, under the known reflectance; left at the
+  // average where the image does not tell.
   void SearchLight();
   // The reflectance whose posterior is highest with the light integrated out;
   // kNoImprovement where the light explains the image of no material.
@@ -169,7 +169,7 @@ class Estimator {
   // more.
   Status MapRounds(JointMethod method, double share, JointState* state);
   // Whether the map at hand makes light that joined pixels cannot show.
-  bool CellsBlur(const JointState& state);
+  bool BinsBlur(const JointState& state);
   // As the network's output, from its fit to the draw at hand, which is kept
   // where the network does not explain the image as well.
   Status EstimateNetwork(JointState* state);
@@ -232,8 +232,8 @@ class Estimator {
   Eigen::Array3d level_ = Eigen::Array3d::Zero();  // of MatchLight
   // Centred at the image's level, whatever its unit; those of first_.
   LightPriors light_priors_, first_priors_;
-  LightScales light_scales_ = LightScales::Average();
-  std::vector<Eigen::Vector3d> lamps_;  // that the search found
+  LightHyperparameters light_hyperparameters_ = LightHyperparameters::Average();
+  std::vector<Eigen::Vector3d> directional_lights_;  // that the search found
   // A known map, less the texels that are sampled by themselves, and those.
   std::vector<float> known_map_;
   std::vector<BrightSample> bright_;

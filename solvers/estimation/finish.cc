@@ -30,7 +30,7 @@ Estimator::View Estimator::ViewOf(const JointState& state) {
 void Estimator::RenderPixels(const std::vector<View*>& views) {
   const std::vector<ShadingPoint>& points = full_->points;
   for (View* const view : views) view->radiance.resize(3 * points.size());
-  const bool bounces = problem_.transport.emitters != nullptr;
+  const bool bounces = problem_.transport.patches != nullptr;
   const size_t at_once = bounces ? kPointsAtOnceWithBounces : kPointsAtOnce;
   for (size_t begin = 0; begin < points.size(); begin += at_once) {
     Level slice;

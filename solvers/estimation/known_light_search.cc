@@ -28,7 +28,7 @@ std::vector<RankedMaterial> RankUnderKnownLight(
   transport.RenderLobes(fields.data(), static_cast<int>(fields.size()),
                         map.data(), rendered.data());
   std::vector<RankedMaterial> ranked;
-  std::vector<double> E(3 * points);
+  std::vector<double> L_o(3 * points);
   for (size_t m = 0; m < prior.materials.size(); ++m) {
     Eigen::VectorXd x = prior.materials[m].parameters;
     double shift[3] = {0.0, 0.0, 0.0};
@@ -37,25 +37,25 @@ std::vector<RankedMaterial> RankUnderKnownLight(
       return x[static_cast<Eigen::Index>(k) * lobes.lobe_size() + code_size +
                c];
     };
-    for (size_t i = 0; i < E.size(); ++i) {
+    for (size_t i = 0; i < L_o.size(); ++i) {
       const int c = static_cast<int>(i % 3);
-      E[i] = 0.0;
+      L_o[i] = 0.0;
       for (int k = 0; k < num_lobes; ++k) {
-        E[i] += std::exp(std::min(colour(k, c), LobeModel::kMaxLogColour)) *
-                kMerlScale[c] *
-                rendered[i / 3 * stride + 3 * (m * num_lobes + k) + c];
+        L_o[i] += std::exp(std::min(colour(k, c), LobeModel::kMaxLogColour)) *
+                  kMerlScale[c] *
+                  rendered[i / 3 * stride + 3 * (m * num_lobes + k) + c];
       }
       // A black point, of which no level is right, tells nothing of it.
-      if (observed.valid[i / 3] && E[i] + likelihood.epsilon > 0.0) {
+      if (observed.valid[i / 3] && L_o[i] + likelihood.epsilon > 0.0) {
         shift[c] += std::log(observed.radiance[i] + likelihood.epsilon) -
-                    std::log(E[i] + likelihood.epsilon);
+                    std::log(L_o[i] + likelihood.epsilon);
         ++lit[c];
       }
     }
     for (int c = 0; c < 3; ++c) shift[c] /= std::max(lit[c], 1);
-    for (size_t i = 0; i < E.size(); ++i) E[i] *= std::exp(shift[i % 3]);
+    for (size_t i = 0; i < L_o.size(); ++i) L_o[i] *= std::exp(shift[i % 3]);
     lobes.ShiftColours(shift, x.data());
-    double cost = EvaluateLikelihood(E, observed, likelihood, nullptr).cost +
+    double cost = EvaluateLikelihood(L_o, observed, likelihood, nullptr).cost +
                   prior.Cost(x, nullptr);
     if (!std::isfinite(cost)) cost = std::numeric_limits<double>::infinity();
     ranked.push_back({prior.materials[m].name, cost, ToVector(x)});

@@ -19,10 +19,10 @@ struct TraceEntry {
   double scale = 0.0;       // b of the likelihood then
   int64_t pixels = 0;       // that took part, joined ones as one
   double cost = 0.0;        // likelihood + priors, nats
-  double likelihood = 0.0;  // sum |log E - log I| / b, smoothed
+  double likelihood = 0.0;  // sum |log L_o - log I| / b, smoothed
   double reflectance_prior = 0.0;
   double illumination_prior = 0.0;
-  double misfit = 0.0;  // mean |log E - log I|
+  double misfit = 0.0;  // mean |log L_o - log I|
 };
 
 // A reflectance that explains the image too: where it began, and how far it

@@ -48,9 +48,9 @@ double GaussianSeconds(int spread, double points) {
                               static_cast<double>(spread);
 }
 
-// Mean |log E - log truth| over points and channels, and twice its standard
+// Mean |log L_o - log truth| over points and channels, and twice its standard
 // error over points.
-double ErrorBound(const std::vector<double>& E,
+double ErrorBound(const std::vector<double>& L_o,
                   const std::vector<double>& truth) {
   double mean = 0.0;
   for (const double v : truth) mean += v / static_cast<double>(truth.size());
@@ -61,7 +61,7 @@ double ErrorBound(const std::vector<double>& E,
   for (size_t i = 0; i < truth.size(); i += 3) {
     double error = 0.0;
     for (size_t k = i; k < i + 3; ++k) {
-      error += std::abs(std::log(std::max(E[k], least) /
+      error += std::abs(std::log(std::max(L_o[k], least) /
                                  std::max(truth[k], least))) /
                3.0;
     }
@@ -74,7 +74,7 @@ double ErrorBound(const std::vector<double>& E,
 
 }  // namespace
 
-struct TierRadiance::Gaussians {
+struct ApproximateRadiance::Gaussians {
   Gaussians(const Image& map, const BrdfFunction& brdf, int spread,
             int num_threads)
       : light(map, FitOptions(spread)),
@@ -99,22 +99,22 @@ struct TierRadiance::Gaussians {
   GaussianColours amplitudes;
 };
 
-TierRadiance::TierRadiance(const Image& map, const KnownBrdf& brdf,
-                           int num_threads)
+ApproximateRadiance::ApproximateRadiance(const Image& map,
+                                         const KnownBrdf& brdf, int num_threads)
     : map_(map), brdf_(brdf), num_threads_(num_threads) {}
-TierRadiance::~TierRadiance() = default;
+ApproximateRadiance::~ApproximateRadiance() = default;
 
-void TierRadiance::RenderBy(const Candidate& candidate,
-                            const std::vector<ShadingPoint>& points,
-                            double* E) {
-  if (candidate.tier == Tier::kHarmonics) {
+void ApproximateRadiance::RenderBy(const Candidate& candidate,
+                                   const std::vector<ShadingPoint>& points,
+                                   double* L_o) {
+  if (candidate.approximation == Approximation::kHarmonics) {
     HarmonicOptions options;
     options.order = candidate.size;
     options.grid = grid_.shape;
     options.view_angles = kHarmonicViews;
     options.num_threads = num_threads_;
     HarmonicTransport(points, map_.height, map_.width, options)
-        .Render(grid_, map_.rgb.data(), E);
+        .Render(grid_, map_.rgb.data(), L_o);
   } else {
     if (gaussians_ == nullptr || spread_ != candidate.size) {
       spread_ = candidate.size;
@@ -122,32 +122,32 @@ void TierRadiance::RenderBy(const Candidate& candidate,
                                                      spread_, num_threads_);
     }
     gaussians_->transport.Render(points, gaussians_->tables,
-                                 gaussians_->amplitudes, E);
+                                 gaussians_->amplitudes, L_o);
   }
-  for (size_t k = 0; k < 3 * points.size(); ++k) E[k] = std::max(E[k], 0.0);
+  for (size_t k = 0; k < 3 * points.size(); ++k) L_o[k] = std::max(L_o[k], 0.0);
 }
 
-std::vector<double> TierRadiance::PredictByOrder(
+std::vector<double> ApproximateRadiance::PredictByOrder(
     const std::vector<ShadingPoint>& few) const {
   return HarmonicTransport(few, map_.height, map_.width, ProbeOptions())
       .PredictLogErrors(grid_, map_.rgb.data());
 }
 
-void TierRadiance::PredictGaussians(const std::vector<ShadingPoint>& few,
-                                    const std::vector<double>& E,
-                                    Candidate* candidate) const {
+void ApproximateRadiance::PredictGaussians(const std::vector<ShadingPoint>& few,
+                                           const std::vector<double>& L_o,
+                                           Candidate* candidate) const {
   // What of the map the mixture is not, as the points reflect it.
   const GaussianLight light(map_, Gaussians::FitOptions(candidate->size));
   const Image rest = light.Residual(map_.rgb.data());
-  std::vector<double> with_rest(E.size());
+  std::vector<double> with_rest(L_o.size());
   HarmonicTransport(few, rest.height, rest.width, ProbeOptions())
       .Render(grid_, rest.rgb.data(), with_rest.data());
-  for (size_t k = 0; k < E.size(); ++k) with_rest[k] += E[k];
-  candidate->predicted = MeanAbsLogRatio(with_rest, E);
+  for (size_t k = 0; k < L_o.size(); ++k) with_rest[k] += L_o[k];
+  candidate->predicted = MeanAbsLogRatio(with_rest, L_o);
   candidate->spots = light.num_peaks();
 }
 
-HarmonicOptions TierRadiance::ProbeOptions() const {
+HarmonicOptions ApproximateRadiance::ProbeOptions() const {
   HarmonicOptions options;
   options.order = kProbeOrder;
   options.grid = grid_.shape;
@@ -156,15 +156,16 @@ HarmonicOptions TierRadiance::ProbeOptions() const {
   return options;
 }
 
-bool TierRadiance::Choose(const std::vector<ShadingPoint>& points,
-                          const PointRenderer& quadrature,
-                          const PointRenderer& reference,
-                          const TierOptions& options) {
+bool ApproximateRadiance::Choose(const std::vector<ShadingPoint>& points,
+                                 const PointRenderer& quadrature,
+                                 const PointRenderer& reference,
+                                 const ApproximationOptions& options) {
   const auto count = static_cast<double>(points.size());
-  plan_ = TierPlan();
+  plan_ = ApproximationPlan();
   plan_.quadrature_seconds = count * kQuadraturePoint;
   plan_.seconds = plan_.quadrature_seconds;
-  if (options.reflectance_map) plan_.tier = Tier::kReflectanceMap;
+  if (options.reflectance_map)
+    plan_.approximation = Approximation::kReflectanceMap;
   if (!options.harmonics && !options.gaussians) return true;
   if (!options.forced && plan_.seconds < kWorthChoosing) return true;
 
@@ -192,20 +193,20 @@ bool TierRadiance::Choose(const std::vector<ShadingPoint>& points,
     plan_.seconds = std::min(plan_.seconds, kQuadraturePoint * nodes);
   }
   if (!options.forced && plan_.seconds < kWorthChoosing) return true;
-  std::vector<double> truth(3 * few.size()), E(truth.size()),
+  std::vector<double> truth(3 * few.size()), L_o(truth.size()),
       tried(truth.size());
-  if (!quadrature(few, E.data())) return false;
+  if (!quadrature(few, L_o.data())) return false;
   std::vector<Candidate> candidates;
   if (options.harmonics) {
     for (int l = std::clamp(smooth, 1, kTrustedOrder); l <= kTrustedOrder;
          l += 2) {
-      candidates.push_back(
-          {Tier::kHarmonics, l, HarmonicSeconds(l, count), by_order[l], 0});
+      candidates.push_back({Approximation::kHarmonics, l,
+                            HarmonicSeconds(l, count), by_order[l], 0});
     }
   }
   if (options.gaussians) {
     for (const int spread : kSpreads) {
-      candidates.push_back({Tier::kGaussians, spread,
+      candidates.push_back({Approximation::kGaussians, spread,
                             GaussianSeconds(spread, count), kNotPredicted, 0});
     }
   }
@@ -216,7 +217,7 @@ bool TierRadiance::Choose(const std::vector<ShadingPoint>& points,
   std::stable_sort(candidates.begin(), candidates.end(), by_seconds);
   const auto predict = [&](Candidate* candidate) {
     if (candidate->predicted == kNotPredicted) {
-      PredictGaussians(few, E, candidate);
+      PredictGaussians(few, L_o, candidate);
     }
   };
   // Only spots are beyond the quadrature's own error.
@@ -240,7 +241,7 @@ bool TierRadiance::Choose(const std::vector<ShadingPoint>& points,
 
   if (!reference(few, truth.data())) return false;
   plan_.checked = static_cast<int>(few.size());
-  plan_.quadrature_error = ErrorBound(E, truth);
+  plan_.quadrature_error = ErrorBound(L_o, truth);
   const auto take_first_within = [&](double allowed) {
     for (Candidate& candidate : candidates) {
       predict(&candidate);
@@ -275,15 +276,15 @@ bool TierRadiance::Choose(const std::vector<ShadingPoint>& points,
   return true;
 }
 
-void TierRadiance::Take(const Candidate& candidate, double found,
-                        const TierOptions& options) {
-  plan_.tier = candidate.tier;
+void ApproximateRadiance::Take(const Candidate& candidate, double found,
+                               const ApproximationOptions& options) {
+  plan_.approximation = candidate.approximation;
   plan_.predicted_error = candidate.predicted;
   plan_.found_error = found;
   plan_.seconds = candidate.seconds;
   taken_ = candidate;
   std::string light;
-  if (candidate.tier == Tier::kHarmonics) {
+  if (candidate.approximation == Approximation::kHarmonics) {
     plan_.order = candidate.size;
     light = "spherical harmonics up to l = " + std::to_string(plan_.order);
   } else {
@@ -306,8 +307,9 @@ void TierRadiance::Take(const Candidate& candidate, double found,
                        plan_.quadrature_seconds);
 }
 
-void TierRadiance::Render(const std::vector<ShadingPoint>& points, double* E) {
-  RenderBy(taken_, points, E);
+void ApproximateRadiance::Render(const std::vector<ShadingPoint>& points,
+                                 double* L_o) {
+  RenderBy(taken_, points, L_o);
 }
 
 }  // namespace ibrdf

@@ -14,7 +14,7 @@
 
 namespace ibrdf {
 
-struct TierOptions {
+struct ApproximationOptions {
   // What may be taken beside the quadrature.
   bool reflectance_map = false, harmonics = false, gaussians = false;
   // The user asks for harmonics or Gaussians: of those, the fastest within the
@@ -24,10 +24,10 @@ struct TierOptions {
 };
 
 // The tier of one scene. Keeps references to the map and the BRDF.
-class TierRadiance {
+class ApproximateRadiance {
  public:
-  TierRadiance(const Image& map, const KnownBrdf& brdf, int num_threads);
-  ~TierRadiance();
+  ApproximateRadiance(const Image& map, const KnownBrdf& brdf, int num_threads);
+  ~ApproximateRadiance();
 
   // Takes the tier with the least predicted seconds of those whose error is
   // predicted and, by `reference` at points of the image, found to be within
@@ -36,19 +36,20 @@ class TierRadiance {
   // renderer stopped.
   bool Choose(const std::vector<ShadingPoint>& points,
               const PointRenderer& quadrature, const PointRenderer& reference,
-              const TierOptions& options);
+              const ApproximationOptions& options);
 
-  const TierPlan& plan() const { return plan_; }
+  const ApproximationPlan& plan() const { return plan_; }
   // Whether Render does: by harmonics or Gaussians.
   bool renders() const {
-    return plan_.tier == Tier::kHarmonics || plan_.tier == Tier::kGaussians;
+    return plan_.approximation == Approximation::kHarmonics ||
+           plan_.approximation == Approximation::kGaussians;
   }
   // [points, 3], >= 0.
-  void Render(const std::vector<ShadingPoint>& points, double* E);
+  void Render(const std::vector<ShadingPoint>& points, double* L_o);
 
  private:
   struct Candidate {
-    Tier tier = Tier::kQuadrature;
+    Approximation approximation = Approximation::kQuadrature;
     int size = 0;  // order of harmonics, spread Gaussians
     double seconds = 0.0, predicted = 0.0;
     int spots = 0;  // of Gaussians
@@ -56,17 +57,17 @@ class TierRadiance {
   struct Gaussians;
 
   void RenderBy(const Candidate& candidate,
-                const std::vector<ShadingPoint>& points, double* E);
+                const std::vector<ShadingPoint>& points, double* L_o);
   // At points of the image: mean |log error| of harmonics up to each order;
-  // of Gaussians, where the radiance is E.
+  // of Gaussians, where the radiance is L_o.
   std::vector<double> PredictByOrder(
       const std::vector<ShadingPoint>& few) const;
   void PredictGaussians(const std::vector<ShadingPoint>& few,
-                        const std::vector<double>& E,
+                        const std::vector<double>& L_o,
                         Candidate* candidate) const;
   HarmonicOptions ProbeOptions() const;
   void Take(const Candidate& candidate, double found,
-            const TierOptions& options);
+            const ApproximationOptions& options);
 
   const Image& map_;
   const KnownBrdf& brdf_;
@@ -75,7 +76,7 @@ class TierRadiance {
   std::unique_ptr<const Gaussians> gaussians_;  // of spread_
   int spread_ = 0;
   Candidate taken_;
-  TierPlan plan_;
+  ApproximationPlan plan_;
 };
 
 }  // namespace ibrdf

@@ -11,9 +11,9 @@ namespace ibrdf {
 // effect, `all` shadows and kMostBounces. Slower: for lobes so narrow that
 // patches do not tell what they show of the object (kNarrowLobe). Leaves `all`
 // with as many bounces as it had.
-EffectsWorth MeasureEffects(const SceneRadiance& bare,
-                            const std::vector<ShadingPoint>& points,
-                            SceneRadiance* all);
+OmissionErrors MeasureEffects(const SceneRadiance& bare,
+                              const std::vector<ShadingPoint>& points,
+                              SceneRadiance* all);
 
 // Doubles the rays along which narrow lobes see the object, up to those of
 // reference quality, where that changes the points' log radiance by more than

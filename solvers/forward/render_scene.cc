@@ -67,8 +67,9 @@ void SortByAngle(std::vector<ShadingPoint>* points) {
 
 // How the points of a scene are rendered that nothing shadows. A preview takes
 // what is fast; reference quality only what the user asks for.
-TierOptions MayTake(const Problem& problem, const EffectsPlan& effects) {
-  TierOptions options;
+ApproximationOptions MayTake(const Problem& problem,
+                             const EffectsPlan& effects) {
+  ApproximationOptions options;
   options.log_error = MapError(problem.quality);
   if (effects.visibility) return options;
   options.reflectance_map = effects.reflectance_map;
@@ -88,16 +89,17 @@ TierOptions MayTake(const Problem& problem, const EffectsPlan& effects) {
 class PixelRenderer {
  public:
   PixelRenderer(const Problem& problem, const SceneRadiance& radiance,
-                TierRadiance* tier, const RenderSceneOptions& options)
+                ApproximateRadiance* approximation,
+                const RenderSceneOptions& options)
       : problem_(problem),
         radiance_(radiance),
-        tier_(tier),
+        approximation_(approximation),
         options_(options) {}
 
   // Calls progress with shares of [begin, end].
   StatusOr<Image> Render(const std::vector<ShadingPoint>& points, double begin,
                          double end) {
-    std::vector<double> E(3 * points.size());
+    std::vector<double> L_o(3 * points.size());
     const auto all = [&](const std::vector<ShadingPoint>& some, double* out) {
       const auto progress = [&](double share) {
         return options_.progress(begin + (end - begin) * share);
@@ -108,24 +110,25 @@ class PixelRenderer {
     };
     num_points_ += points.size();
     const Status interrupted = Interrupted(problem_);
-    if (tier_->renders()) {
+    if (approximation_->renders()) {
       if (options_.progress && !options_.progress(begin)) return interrupted;
-      tier_->Render(points, E.data());
-    } else if (tier_->plan().tier == Tier::kReflectanceMap) {
+      approximation_->Render(points, L_o.data());
+    } else if (approximation_->plan().approximation ==
+               Approximation::kReflectanceMap) {
       ReflectanceMapOptions by_normal;
       by_normal.log_error = MapError(problem_.quality);
       const StatusOr<ReflectanceMapReport> report =
-          RenderByNormal(points, all, by_normal, E.data());
+          RenderByNormal(points, all, by_normal, L_o.data());
       if (!report.ok()) {
         return report.status().code() == StatusCode::kInterrupted
                    ? interrupted
                    : report.status();
       }
       num_interpolated_ += report->interpolated;
-    } else if (!all(points, E.data())) {
+    } else if (!all(points, L_o.data())) {
       return interrupted;
     }
-    return PixelMeans(points, E.data(), problem_.image.width,
+    return PixelMeans(points, L_o.data(), problem_.image.width,
                       problem_.image.height);
   }
 
@@ -159,7 +162,8 @@ class PixelRenderer {
       text += "; " + std::to_string(num_refined_) + " pixels are sampled " +
               std::to_string(kSamplesPerSide * kSamplesPerSide) + " times";
     }
-    if (tier_->plan().tier == Tier::kReflectanceMap) {
+    if (approximation_->plan().approximation ==
+        Approximation::kReflectanceMap) {
       text += "; " + std::to_string(num_interpolated_) + " of " +
               std::to_string(num_points_) +
               " points are interpolated by their normal from others";
@@ -170,7 +174,7 @@ class PixelRenderer {
  private:
   const Problem& problem_;
   const SceneRadiance& radiance_;
-  TierRadiance* const tier_;
+  ApproximateRadiance* const approximation_;
   const RenderSceneOptions& options_;
   size_t num_points_ = 0, num_interpolated_ = 0, num_refined_ = 0;
 };
@@ -240,14 +244,15 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
       radiance = std::make_unique<SceneRadiance>(
           view->scene, points, *map, &brdf, grid, all, problem.quality,
           options.num_threads);
-      const EffectsWorth worth = MeasureEffects(bare, points, radiance.get());
+      const OmissionErrors omission =
+          MeasureEffects(bare, points, radiance.get());
       ChooseLobeRays(points, kPreviewLobeError, radiance.get());
-      return worth;
+      return omission;
     };
   }
   StatusOr<EffectsPlan> effects =
       PlanEffects(problem, view->scene, points, &*map, &grid,
-                  reference ? kReferenceLogError : kPreviewLogError,
+                  reference ? kReferenceOmissionError : kPreviewOmissionError,
                   options.num_threads, measure);
   if (!effects.ok()) return effects.status();
   if (radiance == nullptr || !effects->visibility) {
@@ -261,30 +266,33 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
     effects->words += "; " + std::to_string(radiance->lobe_rays()) +
                       " rays of its own for each narrow lobe";
   }
-  TierRadiance tier(*map, brdf, options.num_threads);
+  ApproximateRadiance approximation(*map, brdf, options.num_threads);
   const auto quadrature = [&](const std::vector<ShadingPoint>& some,
-                              double* E) {
-    return radiance->Render(some, nullptr, E);
+                              double* L_o) {
+    return radiance->Render(some, nullptr, L_o);
   };
   // At reference quality, as a preview is off by more than what is looked for
   // under a small sun.
-  const auto converged = [&](const std::vector<ShadingPoint>& some, double* E) {
+  const auto converged = [&](const std::vector<ShadingPoint>& some,
+                             double* L_o) {
     return SceneRadiance(view->scene, some, *map, &brdf, grid, *effects,
                          RenderQuality::kReference, options.num_threads)
-        .Render(some, nullptr, E);
+        .Render(some, nullptr, L_o);
   };
-  if (!tier.Choose(points, quadrature, converged, MayTake(problem, *effects))) {
+  if (!approximation.Choose(points, quadrature, converged,
+                            MayTake(problem, *effects))) {
     return Interrupted(problem);
   }
-  effects->tier = tier.plan();
-  effects->reflectance_map = tier.plan().tier == Tier::kReflectanceMap;
-  effects->words += tier.plan().words;
+  effects->approximation = approximation.plan();
+  effects->reflectance_map =
+      approximation.plan().approximation == Approximation::kReflectanceMap;
+  effects->words += approximation.plan().words;
   RenderedScene out;
   if (options.plan_only) {
     out.effects = *std::move(effects);
     return out;
   }
-  PixelRenderer pixels(problem, *radiance, &tier, options);
+  PixelRenderer pixels(problem, *radiance, &approximation, options);
   // The second pass is of fewer pixels but more points.
   const double first = reference ? 1.0 : 0.5;
   StatusOr<Image> image = pixels.Render(points, 0.0, first);

@@ -15,12 +15,12 @@ namespace {
 // quality, enough to keep the threads busy.
 constexpr size_t kPointsPerStep = 2048;
 constexpr int kPreviewShadowRows = 128;
-// Whose sight decides where emitters are.
-constexpr size_t kEmitterPoints = 2048;
-constexpr size_t kReferenceEmitterPoints = 8192;
+// Whose sight decides where patches are.
+constexpr size_t kPatchPoints = 2048;
+constexpr size_t kReferencePatchPoints = 8192;
 constexpr int kPreviewLobeRays = 8;
 // A small image of an intricate object shows as much of it as a large one.
-constexpr size_t kLeastEmitters = 2048;
+constexpr size_t kLeastPatches = 2048;
 // Of maps whose sides do not halve and which no transport takes as they are.
 constexpr int kObjectLightWidth = 1024;
 
@@ -66,31 +66,31 @@ void SceneRadiance::LightObject(const Scene& scene,
                                 const std::vector<ShadingPoint>& points,
                                 const Image& map, const BrdfGrid& grid,
                                 int bounces, bool reference) {
-  const size_t most = reference ? kReferenceEmitterPoints : kEmitterPoints;
+  const size_t most = reference ? kReferencePatchPoints : kPatchPoints;
   const std::vector<ShadingPoint> few = SpreadPoints(points, most);
   VisibilityOptions rays;
   rays.num_threads = num_threads_;
-  SurfaceEmitterOptions emitters =
-      EmittersFor(std::max(points.size(), kLeastEmitters), bounces);
-  emitters.num_threads = num_threads_;
-  emitters.max_points = static_cast<int>(most);
+  RadiosityOptions patches =
+      PatchesFor(std::max(points.size(), kLeastPatches), bounces);
+  patches.num_threads = num_threads_;
+  patches.max_points = static_cast<int>(most);
   if (reference) {
-    emitters.patch = 0.05;
-    emitters.views = 4;
-    emitters.max_emitters = 16000;
-    emitters.lattice_rows = 64;
+    patches.patch_size = 0.05;
+    patches.views = 4;
+    patches.max_patches = 16000;
+    patches.lattice_rows = 64;
   }
   TransportOptions transport;
   transport.grid = grid.shape;
   transport.num_threads = num_threads_;
   transport.visibility = std::make_shared<Visibility>(scene, few, rays);
-  transport.emitters = std::make_shared<SurfaceEmitters>(
-      scene, few, transport.visibility, emitters);
-  options_.emitters = transport.emitters;
+  transport.patches = std::make_shared<RadiosityPatches>(
+      scene, few, transport.visibility, patches);
+  options_.patches = transport.patches;
   // What the object lights itself by is a blur of the map.
   const bool fits =
       NumFarCells(map.height, map.width, transport.quadrature.far_width) +
-          transport.emitters->count() <=
+          transport.patches->count() <=
       kMaxFarSources;
   const Image smaller =
       fits ? Image() : ResizeMap(map, kObjectLightWidth / 2, kObjectLightWidth);
@@ -113,7 +113,7 @@ void SceneRadiance::set_lobe_rays(int rays) {
 }
 
 bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
-                           const Progress& progress, double* E) const {
+                           const Progress& progress, double* L_o) const {
   for (size_t begin = 0; begin < points.size(); begin += kPointsPerStep) {
     if (progress && !progress(static_cast<double>(begin) / points.size())) {
       return false;
@@ -124,9 +124,9 @@ bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
     EmittedLight emitted;
     if (bounces_ > 0) emitted = {emitted_[bounces_].data(), bounces_};
     if (brdf_->function) {
-      renderer_->Render(some, brdf_->function, E + 3 * begin, emitted);
+      renderer_->Render(some, brdf_->function, L_o + 3 * begin, emitted);
     } else {
-      renderer_->Render(some, brdf_->table, E + 3 * begin, emitted);
+      renderer_->Render(some, brdf_->table, L_o + 3 * begin, emitted);
     }
   }
   return true;

@@ -30,7 +30,7 @@ class SceneRadiance {
   using Progress = std::function<bool(double)>;
 
   // `points`: of the image; where the object lights itself, what they see of it
-  // decides where emitters are. `map` and `brdf`, which must live as long as
+  // decides where patches are. `map` and `brdf`, which must live as long as
   // this: as in the problem; `grid`: the BRDF's, empty where nothing casts
   // shadows.
   SceneRadiance(const Scene& scene, const std::vector<ShadingPoint>& points,
@@ -50,10 +50,10 @@ class SceneRadiance {
 
   // [points, 3]; false: stopped.
   bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
-              double* E) const;
+              double* L_o) const;
 
  private:
-  // Places and lights emitters.
+  // Places and lights patches.
   void LightObject(const Scene& scene, const std::vector<ShadingPoint>& points,
                    const Image& map, const BrdfGrid& grid, int bounces,
                    bool reference);
@@ -62,7 +62,7 @@ class SceneRadiance {
   const KnownBrdf* brdf_;
   int num_threads_;
   int bounces_ = 0;
-  std::vector<std::vector<double>> emitted_;  // [bounces][emitters, 3]
+  std::vector<std::vector<double>> emitted_;  // [bounces][patches, 3]
   ReferenceOptions options_;
   std::unique_ptr<const ReferenceRenderer> renderer_;
 };

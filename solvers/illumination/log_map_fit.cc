@@ -56,7 +56,7 @@ class LogMapFit {
     for (size_t i = 0; i < by_map.size(); ++i) {
       by_map[i] = static_cast<float>(weight_[i] * (log_map_[i] - target_[i]));
     }
-    Eigen::VectorXd residual = -Pull(by_map);
+    Eigen::VectorXd residual = -Vjp(by_map);
     for (Eigen::Index i = 0; i < residual.size(); ++i) {
       residual[i] -= precision_[i] * (parameters[i] - mean_[i]);
     }
@@ -69,7 +69,7 @@ class LogMapFit {
       for (size_t i = 0; i < by_map.size(); ++i) {
         by_map[i] = static_cast<float>(weight_[i] * by_map[i]);
       }
-      return Pull(by_map) + diagonal.cwiseProduct(v);
+      return Vjp(by_map) + diagonal.cwiseProduct(v);
     };
     const auto precondition = [&](const Eigen::VectorXd& r) -> Eigen::VectorXd {
       return r.cwiseQuotient(diagonal);
@@ -91,7 +91,7 @@ class LogMapFit {
     }
     return cost;
   }
-  Eigen::VectorXd Pull(const std::vector<float>& by_map) {
+  Eigen::VectorXd Vjp(const std::vector<float>& by_map) {
     model_->Vjp(by_map.data(), by_parameter_.data());
     return Eigen::Map<const Eigen::VectorXf>(
                by_parameter_.data(),

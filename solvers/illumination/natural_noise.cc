@@ -14,8 +14,9 @@ namespace ibrdf {
 std::vector<float> NaturalNoise(const IlluminationUnetOptions& options) {
   const MapSize asked = {options.width, options.height};
   const MapSize drawn = ProcessSize(asked);
-  const std::unique_ptr<IlluminationModel> process = MakeProcessIllumination(
-      drawn.width, drawn.height, LightProcess(), LightScales::Average());
+  const std::unique_ptr<IlluminationModel> process =
+      MakeProcessIllumination(drawn.width, drawn.height, LightProcess(),
+                              LightHyperparameters::Average());
   std::vector<float> white(process->num_parameters());
   std::vector<float> draw(process->num_outputs()), noise;
   NormalSource normal(options.seed);

@@ -21,18 +21,20 @@ constexpr int kMostSide = 256;
 class ProcessIllumination final : public IlluminationModel {
  public:
   ProcessIllumination(int width, int height, const LightProcess& process,
-                      const LightScales& scales,
-                      const std::vector<Eigen::Vector3d>& lamps)
+                      const LightHyperparameters& hyperparameters,
+                      const std::vector<Eigen::Vector3d>& directional_lights)
       : IlluminationModel(width, height),
-        spectrum_(ProcessSpectrum(height, width, process).At(scales)),
+        spectrum_(ProcessSpectrum(height, width, process).At(hyperparameters)),
         axes_(ColourAxes()),
-        lamp_texels_(NearLamps(lamps, height, width)) {
+        directional_light_texels_(
+            NearDirectionalLights(directional_lights, height, width)) {
     const Eigen::Matrix3d local =
-        std::exp(scales.log_amplitude) * process.Local();
+        std::exp(hyperparameters.log_amplitude) * process.Local();
     const Eigen::Matrix3d level = width * process.Level();
     for (int kind = 0; kind < 2; ++kind) {
       const Eigen::Vector3d axis = axes_.row(kind);
-      lamp_std_[kind] = std::sqrt(axis.dot(process.Lamp() * axis));
+      directional_light_std_[kind] =
+          std::sqrt(axis.dot(process.DirectionalLight() * axis));
       for (int k = 0; k < spectrum_.num_frequencies(); ++k) {
         RowMatrix factor = axis.dot(local * axis) * spectrum_.block(k);
         if (k == 0) factor.array() += axis.dot(level * axis);
@@ -44,7 +46,8 @@ class ProcessIllumination final : public IlluminationModel {
   }
 
   int num_parameters() const override {
-    return num_outputs() + 3 * static_cast<int>(lamp_texels_.size());
+    return num_outputs() +
+           3 * static_cast<int>(directional_light_texels_.size());
   }
   std::vector<float> ConstantMap(const double* log_radiance) const override {
     std::vector<float> w(num_parameters(), 0.0f);
@@ -66,7 +69,7 @@ class ProcessIllumination final : public IlluminationModel {
       }
     }
     MultiplyTransposed(coefficients, spectrum_.basis(), &axes);
-    ForLampTexels([&](int a, int texel, double std, int parameter) {
+    ForDirectionalLightTexels([&](int a, int texel, double std, int parameter) {
       axes(a * H + texel / W, texel % W) += std * parameters[parameter];
     });
     for (int c = 0; c < 3; ++c) {
@@ -95,7 +98,7 @@ class ProcessIllumination final : public IlluminationModel {
                 .cast<double>();
       }
     }
-    ForLampTexels([&](int a, int texel, double std, int parameter) {
+    ForDirectionalLightTexels([&](int a, int texel, double std, int parameter) {
       gradient[parameter] =
           static_cast<float>(std * axes(a * H + texel / W, texel % W));
     });
@@ -128,18 +131,21 @@ class ProcessIllumination final : public IlluminationModel {
   using FloatMap = Eigen::Map<FloatMatrix>;
   using ConstFloatMap = Eigen::Map<const FloatMatrix>;
 
-  // of(axis, texel, standard deviation, parameter) of what the lamps add.
+  // of(axis, texel, standard deviation, parameter) of what the directional
+  // lights add.
   template <typename Of>
-  void ForLampTexels(const Of& of) const {
+  void ForDirectionalLightTexels(const Of& of) const {
     int parameter = num_outputs();
     for (int a = 0; a < 3; ++a) {
-      for (const LampTexel& near : lamp_texels_) {
-        of(a, near.texel, lamp_std_[a == 0 ? 0 : 1] * near.weight, parameter++);
+      for (const DirectionalLightTexel& near : directional_light_texels_) {
+        of(a, near.texel, directional_light_std_[a == 0 ? 0 : 1] * near.weight,
+           parameter++);
       }
     }
   }
 
-  // Parameters: [axis][coefficient][row], then the lamps' [axis][texel].
+  // Parameters: [axis][coefficient][row], then the directional lights'
+  // [axis][texel].
   size_t Index(int axis, int j) const {
     return (static_cast<size_t>(axis) * width() + j) * height();
   }
@@ -151,17 +157,18 @@ class ProcessIllumination final : public IlluminationModel {
   const Eigen::Matrix3d axes_;
   // Of grey and of chroma, by frequency; lower triangular.
   std::vector<RowMatrix> factors_[2];
-  const std::vector<LampTexel> lamp_texels_;
-  double lamp_std_[2];
+  const std::vector<DirectionalLightTexel> directional_light_texels_;
+  double directional_light_std_[2];
 };
 
 }  // namespace
 
 std::unique_ptr<IlluminationModel> MakeProcessIllumination(
     int width, int height, const LightProcess& process,
-    const LightScales& scales, const std::vector<Eigen::Vector3d>& lamps) {
-  return std::make_unique<ProcessIllumination>(width, height, process, scales,
-                                               lamps);
+    const LightHyperparameters& hyperparameters,
+    const std::vector<Eigen::Vector3d>& directional_lights) {
+  return std::make_unique<ProcessIllumination>(
+      width, height, process, hyperparameters, directional_lights);
 }
 
 MapSize ProcessSize(MapSize size) {

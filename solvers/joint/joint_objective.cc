@@ -36,7 +36,7 @@ JointObjective::JointObjective(JointTerms terms) : terms_(std::move(terms)) {
     CHECK(!terms_.known_map.empty());
   }
   CHECK(lobes_unknown() || light_unknown());
-  E_.resize(terms_.observed->radiance.size());
+  L_o_.resize(terms_.observed->radiance.size());
 }
 
 void JointObjective::set_light_mean(std::vector<float> mean) {
@@ -112,7 +112,7 @@ std::vector<float> JointObjective::MapOf(const JointState& state) {
   return map;
 }
 
-// E, map and cost. The operator is made where it will be used again: for
+// L_o, map and cost. The operator is made where it will be used again: for
 // derivatives in the light, or because the lobes are held.
 JointCost JointObjective::Render(const JointState& state, bool linearise,
                                  LikelihoodDerivatives* derivatives) {
@@ -129,17 +129,17 @@ JointCost JointObjective::Render(const JointState& state, bool linearise,
       (operator_.has_value() && operator_lobes_ == state.lobes) || linearise ||
       num_lobe_parameters() == 0;
   if (known_operator) {
-    OperatorOf(state).Apply(map_.data(), E_.data());
+    OperatorOf(state).Apply(map_.data(), L_o_.data());
   } else {
     terms_.transport->Render(lobes_->Grid(state.lobes.data()), map_.data(),
-                             E_.data());
+                             L_o_.data());
   }
   if (lobes_unknown()) {
     cost.reflectance_prior =
         lobes_->Prior(state.lobes.data(), nullptr, nullptr);
   }
-  const LikelihoodValue value =
-      EvaluateLikelihood(E_, *terms_.observed, terms_.likelihood, derivatives);
+  const LikelihoodValue value = EvaluateLikelihood(
+      L_o_, *terms_.observed, terms_.likelihood, derivatives);
   cost.likelihood = value.cost;
   cost.misfit = value.misfit;
   return cost;
@@ -200,14 +200,14 @@ void JointObjective::CheckPoint() const {
 Eigen::VectorXd JointObjective::RadianceJvp(const Eigen::VectorXd& v) {
   CheckPoint();
   const int nl = num_lobe_parameters(), np = num_light_parameters();
-  Eigen::VectorXd dE = Eigen::VectorXd::Zero(num_residuals());
+  Eigen::VectorXd dL_o = Eigen::VectorXd::Zero(num_residuals());
   if (np > 0) {
     std::vector<float> d_log, d_map;
     light_->Jvp(v.data() + nl, &d_log, &d_map);
-    Operator().Apply(d_map.data(), dE.data());
+    Operator().Apply(d_map.data(), dL_o.data());
   }
-  if (nl > 0) dE.noalias() += lobe_jacobian_ * v.head(nl);
-  return dE;
+  if (nl > 0) dL_o.noalias() += lobe_jacobian_ * v.head(nl);
+  return dL_o;
 }
 
 Eigen::VectorXd JointObjective::RadianceVjp(const Eigen::VectorXd& adjoint) {
@@ -232,21 +232,21 @@ Eigen::VectorXd JointObjective::ResidualVjp(const Eigen::VectorXd& adjoint) {
 Eigen::VectorXd JointObjective::Product(const Eigen::VectorXd& v) {
   CheckPoint();
   const int nl = num_lobe_parameters(), np = num_light_parameters();
-  Eigen::VectorXd dE = Eigen::VectorXd::Zero(num_residuals());
+  Eigen::VectorXd dL_o = Eigen::VectorXd::Zero(num_residuals());
   std::vector<float> d_log, d_map;
   if (np > 0) {
     light_->Jvp(v.data() + nl, &d_log, &d_map);
-    Operator().Apply(d_map.data(), dE.data());
+    Operator().Apply(d_map.data(), dL_o.data());
   }
-  if (nl > 0) dE.noalias() += lobe_jacobian_ * v.head(nl);
-  dE.array() *= Array(derivatives_.weight);
+  if (nl > 0) dL_o.noalias() += lobe_jacobian_ * v.head(nl);
+  dL_o.array() *= Array(derivatives_.weight);
   Eigen::VectorXd product(size());
   if (nl > 0) {
-    product.head(nl).noalias() = lobe_jacobian_.transpose() * dE;
+    product.head(nl).noalias() = lobe_jacobian_.transpose() * dL_o;
     product.head(nl).noalias() += lobe_prior_hessian_ * v.head(nl);
   }
   if (np > 0) {
-    light_->Product(v.data() + nl, d_log, ByMap(dE.data()),
+    light_->Product(v.data() + nl, d_log, ByMap(dL_o.data()),
                     product.data() + nl);
   }
   return product;

@@ -41,7 +41,7 @@ struct JointCost {
   double likelihood = 0.0;  // NaN where the radiance is not finite
   double reflectance_prior = 0.0;
   double illumination_prior = 0.0;
-  double misfit = 0.0;  // mean |log E - log I|, no part of the total
+  double misfit = 0.0;  // mean |log L_o - log I|, no part of the total
   double total() const {
     return likelihood + reflectance_prior + illumination_prior;
   }
@@ -85,7 +85,7 @@ class JointObjective {
 
   JointCost Evaluate(const JointState& state);
   // Radiance and map of the state that was last given.
-  const std::vector<double>& radiance() const { return E_; }
+  const std::vector<double>& radiance() const { return L_o_; }
   const std::vector<float>& map() const { return map_; }
   // The map of a state, [H, W, 3], and the operator of its reflectance, which
   // holds until the lobes change.
@@ -103,7 +103,7 @@ class JointObjective {
 
   const Eigen::VectorXd& gradient() const { return gradient_; }
   const std::vector<double>& residuals() const { return derivatives_.residual; }
-  // dE along v [size]; gradient [size] of sum adjoint . E.
+  // dL_o along v [size]; gradient [size] of sum adjoint . L_o.
   Eigen::VectorXd RadianceJvp(const Eigen::VectorXd& v);
   Eigen::VectorXd RadianceVjp(const Eigen::VectorXd& adjoint);
   // The same of the likelihood's residuals, whose squares / 2 are its cost.
@@ -121,7 +121,7 @@ class JointObjective {
  private:
   JointCost Render(const JointState& state, bool linearise,
                    LikelihoodDerivatives* derivatives);
-  // by_map [H, W, 3] of sum adjoint . E at the last operator.
+  // by_map [H, W, 3] of sum adjoint . L_o at the last operator.
   std::vector<float> ByMap(const double* adjoint) const;
   const LightOperator& Operator() const {
     return lobes_unknown() ? *operator_ : *terms_.known_brdf;
@@ -135,7 +135,7 @@ class JointObjective {
   std::vector<double> operator_lobes_;  // what operator_ was made from
   std::optional<LightOperator> operator_;
 
-  std::vector<double> E_;
+  std::vector<double> L_o_;
   std::vector<float> map_;
   // The point of products.
   bool has_point_ = false;

@@ -64,8 +64,8 @@ void LightBlock::Jvp(const double* v, std::vector<float>* d_log,
   }
 }
 
-void LightBlock::Pull(const std::vector<float>& by_map,
-                      std::vector<float> by_log, double* out) {
+void LightBlock::Vjp(const std::vector<float>& by_map,
+                     std::vector<float> by_log, double* out) {
   const size_t texels = map_slopes_.size() / 3;
   for (size_t t = 0; t < texels; ++t) {
     for (size_t c = 0; c < 3; ++c) {
@@ -77,11 +77,11 @@ void LightBlock::Pull(const std::vector<float>& by_map,
 }
 
 void LightBlock::Vjp(const std::vector<float>& by_map, double* gradient) {
-  Pull(by_map, std::vector<float>(by_map.size(), 0.0f), gradient);
+  Vjp(by_map, std::vector<float>(by_map.size(), 0.0f), gradient);
 }
 
 void LightBlock::Gradient(const std::vector<float>& by_map, double* gradient) {
-  Pull(by_map, prior_by_log_, gradient);
+  Vjp(by_map, prior_by_log_, gradient);
   for (size_t i = 0; i < mean_.size(); ++i) {
     gradient[i] +=
         inverse_variance_[i] * (static_cast<double>(parameters_[i]) - mean_[i]);
@@ -94,7 +94,7 @@ void LightBlock::Product(const double* v, const std::vector<float>& d_log,
   for (const LightPrior* prior : priors_) {
     prior->AddProduct(d_log.data(), by_log.data());
   }
-  Pull(by_map, std::move(by_log), product);
+  Vjp(by_map, std::move(by_log), product);
   for (size_t i = 0; i < mean_.size(); ++i) {
     product[i] += inverse_variance_[i] * v[i];
   }

@@ -42,8 +42,8 @@ class LightBlock {
  private:
   double PriorCost(const float* parameters, float* by_log);
   // out = J^T (by_log + slopes of the map * by_map)
-  void Pull(const std::vector<float>& by_map, std::vector<float> by_log,
-            double* out);
+  void Vjp(const std::vector<float>& by_map, std::vector<float> by_log,
+           double* out);
 
   IlluminationModel* model_;
   std::vector<float> mean_;

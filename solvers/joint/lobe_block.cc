@@ -23,10 +23,10 @@ BrdfGrid LobeBlock::Grid(const double* parameters) const {
 
 RowMajorMatrix LobeBlock::RadianceJacobian(const double* parameters,
                                            const float* map) const {
-  std::vector<double> E, dE;
-  RenderLobeModel(*transport_, *lobes_, parameters, map, &E, &dE);
+  std::vector<double> L_o, dL_o;
+  RenderLobeModel(*transport_, *lobes_, parameters, map, &L_o, &dL_o);
   return Eigen::Map<const RowMajorMatrix>(
-      dE.data(), static_cast<Eigen::Index>(E.size()), num_parameters());
+      dL_o.data(), static_cast<Eigen::Index>(L_o.size()), num_parameters());
 }
 
 void LobeBlock::ReverseGradient(const double* parameters, const float* map,

@@ -27,11 +27,11 @@ class LobeBlock {
 
   BrdfGrid Grid(const double* parameters) const;
 
-  // dE [points * 3, parameters] under a map [H, W, 3]: one scalar field per
+  // dL_o [points * 3, parameters] under a map [H, W, 3]: one scalar field per
   // lobe and code entry, rendered together.
   RowMajorMatrix RadianceJacobian(const double* parameters,
                                   const float* map) const;
-  // Gradient [parameters] of sum adjoint . E in one reverse pass, which costs
+  // Gradient [parameters] of sum adjoint . L_o in one reverse pass, which costs
   // two renders whatever the number of parameters.
   void ReverseGradient(const double* parameters, const float* map,
                        const std::vector<double>& adjoint,

@@ -13,12 +13,14 @@ constexpr double kMinCosine = 1e-3;
 
 }  // namespace
 
-LampResponses::LampResponses(const ImageCells& cells, const BrdfGridShape& grid,
-                             const Visibility* visibility,
-                             const std::vector<Eigen::Vector3d>& directions)
-    : num_lamps_(static_cast<int>(directions.size())), first_(cells.first) {
-  taps_.reserve(cells.points.size() * directions.size());
-  for (const ShadingPoint& point : cells.points) {
+DirectionalLightResponses::DirectionalLightResponses(
+    const NormalBins& bins, const BrdfGridShape& grid,
+    const Visibility* visibility,
+    const std::vector<Eigen::Vector3d>& directions)
+    : num_directional_lights_(static_cast<int>(directions.size())),
+      first_(bins.first) {
+  taps_.reserve(bins.points.size() * directions.size());
+  for (const ShadingPoint& point : bins.points) {
     const Eigen::Vector3d n = point.normal.cast<double>();
     const uint64_t* const hidden =
         visibility != nullptr ? visibility->Hidden(point) : nullptr;
@@ -31,7 +33,7 @@ LampResponses::LampResponses(const ImageCells& cells, const BrdfGridShape& grid,
       Taps& taps = taps_.emplace_back();
       const double cosine = n.dot(direction);
       if (!(cosine > kMinCosine)) continue;
-      double scale = cosine * kLampSolidAngle;
+      double scale = cosine * kDirectionalLightSolidAngle;
       if (hidden != nullptr) {
         scale *= visibility->grid().VisibleAlong(hidden, n, direction);
       }
@@ -46,13 +48,13 @@ LampResponses::LampResponses(const ImageCells& cells, const BrdfGridShape& grid,
   }
 }
 
-RowMatrix LampResponses::Of(const float* field) const {
-  const auto num_cells = static_cast<Eigen::Index>(first_.size()) - 1;
-  RowMatrix out = RowMatrix::Zero(num_cells, num_lamps_);
-  for (Eigen::Index i = 0; i < num_cells; ++i) {
+RowMatrix DirectionalLightResponses::Of(const float* field) const {
+  const auto num_bins = static_cast<Eigen::Index>(first_.size()) - 1;
+  RowMatrix out = RowMatrix::Zero(num_bins, num_directional_lights_);
+  for (Eigen::Index i = 0; i < num_bins; ++i) {
     for (int p = first_[i]; p < first_[i + 1]; ++p) {
-      for (int k = 0; k < num_lamps_; ++k) {
-        const Taps& taps = taps_[size_t{1} * p * num_lamps_ + k];
+      for (int k = 0; k < num_directional_lights_; ++k) {
+        const Taps& taps = taps_[size_t{1} * p * num_directional_lights_ + k];
         for (int j = 0; j < 8; ++j) {
           out(i, k) +=
               static_cast<double>(taps.weight[j]) * field[taps.node[j]];
@@ -64,11 +66,12 @@ RowMatrix LampResponses::Of(const float* field) const {
   return out;
 }
 
-void LampResponses::AddGradient(const Matrix& adjoint, float* gradient) const {
+void DirectionalLightResponses::AddGradient(const Matrix& adjoint,
+                                            float* gradient) const {
   for (Eigen::Index i = 0; i < adjoint.rows(); ++i) {
     for (int p = first_[i]; p < first_[i + 1]; ++p) {
-      for (int k = 0; k < num_lamps_; ++k) {
-        const Taps& taps = taps_[size_t{1} * p * num_lamps_ + k];
+      for (int k = 0; k < num_directional_lights_; ++k) {
+        const Taps& taps = taps_[size_t{1} * p * num_directional_lights_ + k];
         const float share =
             adjoint(i, k) / static_cast<float>(first_[i + 1] - first_[i]);
         for (int j = 0; j < 8; ++j) {

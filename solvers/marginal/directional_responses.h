@@ -1,4 +1,4 @@
-// What a lamp adds to the radiance of an image's cells.
+// What a directional light adds to the radiance of an image's bins.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -10,22 +10,24 @@
 
 namespace ibrdf {
 
-// The cells' mean radiance under lamps of unit radiance and kLampSolidAngle, as
-// linear functions of a BRDF's values at a grid's nodes.
-class LampResponses {
+// The bins' mean radiance under directional lights of unit radiance and
+// kDirectionalLightSolidAngle, as linear functions of a BRDF's values at a
+// grid's nodes.
+class DirectionalLightResponses {
  public:
   using Matrix =
       Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  // directions: unit. visibility: of the cells' points; null: all in sight.
-  LampResponses(const ImageCells& cells, const BrdfGridShape& grid,
-                const Visibility* visibility,
-                const std::vector<Eigen::Vector3d>& directions);
+  // directions: unit. visibility: of the bins' points; null: all in sight.
+  DirectionalLightResponses(const NormalBins& bins, const BrdfGridShape& grid,
+                            const Visibility* visibility,
+                            const std::vector<Eigen::Vector3d>& directions);
 
-  int num_lamps() const { return num_lamps_; }
-  // [cells][lamps] of a field [nodes].
+  int num_directional_lights() const { return num_directional_lights_; }
+  // [bins][directional lights] of a field [nodes].
   RowMatrix Of(const float* field) const;
-  // Adds to gradient [nodes]: of adjoint [cells][lamps] . Of(field).
+  // Adds to gradient [nodes]: of adjoint [bins][directional lights] .
+  // Of(field).
   void AddGradient(const Matrix& adjoint, float* gradient) const;
 
  private:
@@ -33,9 +35,9 @@ class LampResponses {
     int node[8] = {};
     float weight[8] = {};
   };
-  int num_lamps_;
-  std::vector<int> first_;  // points of each cell
-  std::vector<Taps> taps_;  // [points][lamps]
+  int num_directional_lights_;
+  std::vector<int> first_;  // points of each bin
+  std::vector<Taps> taps_;  // [points][directional lights]
 };
 
 }  // namespace ibrdf

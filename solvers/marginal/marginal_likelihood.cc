@@ -32,13 +32,14 @@ constexpr double kFirstSigma = 0.15;
 MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
                                        const LightProcess& process,
                                        int map_height, int map_width,
-                                       int num_lamps, int num_threads)
+                                       int num_directional_lights,
+                                       int num_threads)
     : num_points_(static_cast<int>(log_radiance.size() / 3)),
       y_(Eigen::Map<const Eigen::VectorXd>(
           log_radiance.data(), static_cast<Eigen::Index>(log_radiance.size()))),
       local_(process.Local()),
       level_(process.Level()),
-      lamp_(process.Lamp()),
+      directional_light_(process.DirectionalLight()),
       spectrum_(map_height, map_width, process),
       roughness_weights_(RoughnessWeights(map_height)),
       horizon_(
@@ -46,7 +47,7 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
                   map_width)),
       map_height_(map_height),
       map_width_(map_width),
-      num_lamps_(num_lamps),
+      num_directional_lights_(num_directional_lights),
       smooth_share_(process.smooth_share),
       rough_share_(process.rough_share),
       texel_variance_(process.VarianceWithin(180.0 / map_height)),
@@ -56,9 +57,9 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
 }
 
 MarginalLikelihood::Light MarginalLikelihood::LightAt(
-    const LightScales& scales) const {
-  return {std::exp(scales.log_amplitude), spectrum_.At(scales),
-          spectrum_.RoughAt(scales)};
+    const LightHyperparameters& hyperparameters) const {
+  return {std::exp(hyperparameters.log_amplitude),
+          spectrum_.At(hyperparameters), spectrum_.RoughAt(hyperparameters)};
 }
 
 double MarginalLikelihood::LevelFor(
@@ -95,8 +96,8 @@ Eigen::VectorXd MarginalLikelihood::NoiseVariance(
           if (r + 1 < map_height_) add(row + x, row + map_width_ + x);
         }
       }
-      const double E = point.E[c * P + p];
-      noise[c * P + p] = sigma * sigma + 0.125 * sum / (E * E);
+      const double L_o = point.L_o[c * P + p];
+      noise[c * P + p] = sigma * sigma + 0.125 * sum / (L_o * L_o);
     }
   }
   return noise;
@@ -104,10 +105,11 @@ Eigen::VectorXd MarginalLikelihood::NoiseVariance(
 
 Eigen::VectorXd MarginalLikelihood::FindNoise(
     const std::array<RowMatrix, 3>& matrices, double sigma,
-    const LightScales& scales, double tolerance, LightMode* mode) const {
+    const LightHyperparameters& hyperparameters, double tolerance,
+    LightMode* mode) const {
   const Eigen::VectorXd first =
       Eigen::VectorXd::Constant(y_.size(), kFirstSigma * kFirstSigma);
-  Evaluate(matrices, first, scales, tolerance, mode, nullptr);
+  Evaluate(matrices, first, hyperparameters, tolerance, mode, nullptr);
   return NoiseVariance(matrices, sigma, *mode);
 }
 
@@ -140,7 +142,8 @@ Eigen::VectorXd MarginalLikelihood::ApplyCovariance(
   Eigen::VectorXd out = ApplyLocal(light, g);
   const Eigen::Map<const RowMatrix> in(g.data(), 3, n);
   Eigen::Map<RowMatrix> by_channel(out.data(), 3, n);
-  by_channel.rightCols(num_lamps_) += lamp_ * in.rightCols(num_lamps_);
+  by_channel.rightCols(num_directional_lights_) +=
+      directional_light_ * in.rightCols(num_directional_lights_);
   by_channel.colwise() += level_ * in.rowwise().sum();
   return out;
 }
@@ -151,13 +154,13 @@ MarginalLikelihood::Point MarginalLikelihood::At(
   const Eigen::Index n = num_sources(), P = num_points_;
   Point point;
   point.L = (l.array() + level).min(kMaxLogRadiance).exp();
-  point.E.resize(3 * P);
+  point.L_o.resize(3 * P);
   for (int c = 0; c < 3; ++c) {
-    point.E.segment(c * P, P) =
+    point.L_o.segment(c * P, P) =
         MultiplyVector(matrices[c], point.L.segment(c * n, n));
   }
-  point.E = point.E.cwiseMax(kSmallestRadiance);
-  point.residual = y_ - point.E.array().log().matrix();
+  point.L_o = point.L_o.cwiseMax(kSmallestRadiance);
+  point.residual = y_ - point.L_o.array().log().matrix();
   return point;
 }
 
@@ -169,7 +172,7 @@ MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
   auto linear = std::make_unique<Linearisation>();
   ParallelFor(3, num_threads_, [&](int64_t c, int) {
     linear->jacobian[c] =
-        point.E.segment(c * P, P).cwiseInverse().asDiagonal() * matrices[c] *
+        point.L_o.segment(c * P, P).cwiseInverse().asDiagonal() * matrices[c] *
         point.L.segment(c * n, n).asDiagonal();
     light.correlation.Multiply(linear->jacobian[c].leftCols(t), &linear->JC[c]);
   });
@@ -181,20 +184,21 @@ MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
     RowMatrix block;
     MultiplyTransposed(linear->JC[c], linear->jacobian[d].leftCols(t), &block);
     // The rows of a Jacobian sum to 1: a level moves log radiance as it is.
-    A.block(c * P, d * P, P, P) =
-        (light.amplitude * local_(c, d) * block + LampBlock(*linear, c, d))
-            .array() +
-        level_(c, d);
+    A.block(c * P, d * P, P, P) = (light.amplitude * local_(c, d) * block +
+                                   DirectionalLightBlock(*linear, c, d))
+                                      .array() +
+                                  level_(c, d);
   });
   A.diagonal() += noise;
   if (!A.allFinite() || !Factorise(&A)) return nullptr;
   return linear;
 }
 
-RowMatrix MarginalLikelihood::LampBlock(const Linearisation& linear, int c,
-                                        int d) const {
-  return lamp_(c, d) * linear.jacobian[c].rightCols(num_lamps_) *
-         linear.jacobian[d].rightCols(num_lamps_).transpose();
+RowMatrix MarginalLikelihood::DirectionalLightBlock(const Linearisation& linear,
+                                                    int c, int d) const {
+  return directional_light_(c, d) *
+         linear.jacobian[c].rightCols(num_directional_lights_) *
+         linear.jacobian[d].rightCols(num_directional_lights_).transpose();
 }
 
 RowMatrix MarginalLikelihood::UnscaledBlock(const Linearisation& linear, int c,
@@ -202,7 +206,7 @@ RowMatrix MarginalLikelihood::UnscaledBlock(const Linearisation& linear, int c,
   const auto step = [&](int channel) -> Eigen::VectorXd {
     return linear.jacobian[channel].leftCols(num_texels()) * horizon_;
   };
-  RowMatrix block = LampBlock(linear, c, d);
+  RowMatrix block = DirectionalLightBlock(linear, c, d);
   block.noalias() += local_(c, d) * step(c) * step(d).transpose();
   // The rows of a Jacobian sum to 1: a level moves log radiance as it is.
   return block.array() + level_(c, d);
@@ -230,9 +234,9 @@ Eigen::VectorXd MarginalLikelihood::ApplyJacobianTransposed(
   return out;
 }
 
-Eigen::VectorXd MarginalLikelihood::SolveDual(const Linearisation& linear,
-                                              const Light& light,
-                                              const Eigen::VectorXd& x) const {
+Eigen::VectorXd MarginalLikelihood::SolveRepresenters(
+    const Linearisation& linear, const Light& light,
+    const Eigen::VectorXd& x) const {
   Eigen::VectorXd a = ApplyJacobian(linear, ApplyCovariance(light, x));
   SolveFactored(linear.factor, a.data());
   return x - ApplyJacobianTransposed(linear, a);
@@ -247,24 +251,24 @@ Eigen::VectorXd MarginalLikelihood::JacobianTimes(
   for (int c = 0; c < 3; ++c) {
     out.segment(c * P, P) = MultiplyVector(matrices[c], dL.segment(c * n, n));
   }
-  return out.cwiseQuotient(point.E);
+  return out.cwiseQuotient(point.L_o);
 }
 
 Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
     const std::array<RowMatrix, 3>& matrices, const Point& point,
     const Eigen::VectorXd& a) const {
   const Eigen::Index n = num_sources(), P = num_points_;
-  const Eigen::VectorXd dE = a.cwiseQuotient(point.E);
+  const Eigen::VectorXd dL_o = a.cwiseQuotient(point.L_o);
   Eigen::VectorXd out(3 * n);
   for (int c = 0; c < 3; ++c) {
     out.segment(c * n, n) =
-        MultiplyTransposedVector(matrices[c], dE.segment(c * P, P));
+        MultiplyTransposedVector(matrices[c], dL_o.segment(c * P, P));
   }
   return out.cwiseProduct(point.L);
 }
 
 // H = K^-1 + J^T D^-1 J + C, C = -sum_p r_p / D_p (diag(J_p) - J_p J_p^T).
-// Vectors come in pairs: x and, where x = K x', its dual x'.
+// Vectors come in pairs: x and, where x = K x', its representers x'.
 Eigen::VectorXd MarginalLikelihood::SolveHessian(
     const std::array<RowMatrix, 3>& matrices, const Point& point,
     const Linearisation& linear, const Eigen::VectorXd& weight,
@@ -272,30 +276,34 @@ Eigen::VectorXd MarginalLikelihood::SolveHessian(
   const Eigen::VectorXd weighted = weight.cwiseProduct(point.residual);
   const Eigen::VectorXd curvature =
       JacobianTransposedTimes(matrices, point, weighted);
-  Eigen::VectorXd w = Eigen::VectorXd::Zero(x.size()), rest = x, p_dual, p;
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(x.size()), rest = x, p_representers,
+                  p;
   double rho = 0.0, first_rho = 0.0;
   for (int k = 0; k < kMaxHessianSteps; ++k) {
-    const Eigen::VectorXd z_dual = SolveDual(linear, light, rest);
-    const Eigen::VectorXd z = ApplyCovariance(light, z_dual);
+    const Eigen::VectorXd z_representers =
+        SolveRepresenters(linear, light, rest);
+    const Eigen::VectorXd z = ApplyCovariance(light, z_representers);
     const double next_rho = rest.dot(z);
     if (k == 0) first_rho = next_rho;
     if (!(next_rho > tolerance * first_rho)) break;
     const double beta = k == 0 ? 0.0 : next_rho / rho;
-    p_dual = k == 0 ? z_dual : Eigen::VectorXd(z_dual + beta * p_dual);
+    p_representers =
+        k == 0 ? z_representers
+               : Eigen::VectorXd(z_representers + beta * p_representers);
     p = k == 0 ? z : Eigen::VectorXd(z + beta * p);
     rho = next_rho;
     const Eigen::VectorXd Jp = JacobianTimes(matrices, point, p);
     const Eigen::VectorXd Hp =
-        p_dual - curvature.cwiseProduct(p) +
+        p_representers - curvature.cwiseProduct(p) +
         JacobianTransposedTimes(matrices, point,
                                 (weight + weighted).cwiseProduct(Jp));
     const double square = p.dot(Hp);
     if (!(square > 0.0)) {
       // Not convex here: the preconditioner's direction descends all the same.
-      if (k == 0) w = z_dual;
+      if (k == 0) w = z_representers;
       break;
     }
-    w += rho / square * p_dual;
+    w += rho / square * p_representers;
     rest -= rho / square * Hp;
   }
   return w;
@@ -303,8 +311,8 @@ Eigen::VectorXd MarginalLikelihood::SolveHessian(
 
 MarginalValue MarginalLikelihood::Evaluate(
     const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
-    const LightScales& scales, double tolerance, LightMode* mode,
-    MarginalGradient* gradient) const {
+    const LightHyperparameters& hyperparameters, double tolerance,
+    LightMode* mode, MarginalGradient* gradient) const {
   const Eigen::Index n = num_sources();
   const Eigen::VectorXd weight = noise.cwiseInverse();
   const auto likelihood_of = [&](const Point& at) {
@@ -312,21 +320,21 @@ MarginalValue MarginalLikelihood::Evaluate(
   };
   MarginalValue value;
   if (!weight.allFinite()) return value;
-  const Light light = LightAt(scales);
+  const Light light = LightAt(hyperparameters);
   if (!std::isfinite(light.amplitude) ||
-      !Roughness(map_height_, scales).cwiseAbs2().allFinite()) {
+      !Roughness(map_height_, hyperparameters).cwiseAbs2().allFinite()) {
     return value;
   }
   if (mode->l.size() == 0) {
     mode->level = LevelFor(matrices);
-    mode->l = mode->dual = Eigen::VectorXd::Zero(3 * n);
+    mode->l = mode->representers = Eigen::VectorXd::Zero(3 * n);
   } else {
-    mode->l = ApplyCovariance(light, mode->dual);
+    mode->l = ApplyCovariance(light, mode->representers);
   }
   Point point = At(matrices, mode->level, mode->l);
   // Nothing but black: no light explains an image of it.
   if (!point.residual.allFinite() ||
-      !(point.E.minCoeff() > kSmallestRadiance)) {
+      !(point.L_o.minCoeff() > kSmallestRadiance)) {
     return value;
   }
   double likelihood = likelihood_of(point);
@@ -337,14 +345,16 @@ MarginalValue MarginalLikelihood::Evaluate(
       if (linear == nullptr) return value;
     }
     const Eigen::VectorXd slope =
-        mode->dual - JacobianTransposedTimes(
-                         matrices, point, weight.cwiseProduct(point.residual));
-    const Eigen::VectorXd d_dual = -SolveHessian(
+        mode->representers -
+        JacobianTransposedTimes(matrices, point,
+                                weight.cwiseProduct(point.residual));
+    const Eigen::VectorXd d_representers = -SolveHessian(
         matrices, point, *linear, weight, light, kNewtonTolerance, slope);
-    const Eigen::VectorXd dl = ApplyCovariance(light, d_dual);
+    const Eigen::VectorXd dl = ApplyCovariance(light, d_representers);
     if (!dl.allFinite()) return value;
     const double promise = -slope.dot(dl);  // twice the model's gain
-    const double cross = mode->dual.dot(dl), square = d_dual.dot(dl);
+    const double cross = mode->representers.dot(dl),
+                 square = d_representers.dot(dl);
     double taken = 0.0;
     // From a wide start the whole step may leave the range of exp.
     double s = std::min(1.0, kLongestStep / dl.lpNorm<Eigen::Infinity>());
@@ -354,10 +364,10 @@ MarginalValue MarginalLikelihood::Evaluate(
       const double trial_likelihood = likelihood_of(trial);
       const double gain =
           likelihood - trial_likelihood - s * cross - 0.5 * s * s * square;
-      if (trial.E.minCoeff() > kSmallestRadiance &&
+      if (trial.L_o.minCoeff() > kSmallestRadiance &&
           gain >= kSufficientGain * s * (1.0 - 0.5 * s) * promise) {
         taken = s;
-        mode->dual += s * d_dual;
+        mode->representers += s * d_representers;
         mode->l = l;
         point = std::move(trial);
         likelihood = trial_likelihood;
@@ -379,8 +389,8 @@ MarginalValue MarginalLikelihood::Evaluate(
   if (linear == nullptr) return value;
   const double log_determinant =
       2.0 * linear->factor.diagonal().array().log().sum();
-  value.cost =
-      likelihood + 0.5 * mode->dual.dot(mode->l) + 0.5 * log_determinant;
+  value.cost = likelihood + 0.5 * mode->representers.dot(mode->l) +
+               0.5 * log_determinant;
   value.misfit = point.residual.cwiseAbs().mean();
   value.ok = std::isfinite(value.cost);
   if (gradient != nullptr && value.ok) {
@@ -415,13 +425,14 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
   Eigen::VectorXd rough_share = Eigen::VectorXd::Zero(t);
   for (int c = 0; c < 3; ++c) {
     RowMatrix sum = RowMatrix::Zero(P, t),
-              lamps = RowMatrix::Zero(P, num_lamps_);
+              directional_lights = RowMatrix::Zero(P, num_directional_lights_);
     RowMatrix product;
     for (int d = 0; d < 3; ++d) {
       MultiplyInTiles(inverse.block(c * P, d * P, P, P), linear.jacobian[d],
                       num_threads_, &product);
       sum += light.amplitude * local_(c, d) * product.leftCols(t);
-      lamps += lamp_(c, d) * product.rightCols(num_lamps_);
+      directional_lights +=
+          directional_light_(c, d) * product.rightCols(num_directional_lights_);
     }
     light.rough.Multiply(sum, &product);
     rough_share += product.cwiseProduct(linear.jacobian[c].leftCols(t))
@@ -430,7 +441,7 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
                        .transpose();
     light.correlation.Multiply(sum, &product);
     G[c].resize(P, n);
-    G[c] << product, lamps;
+    G[c] << product, directional_lights;
     const Eigen::VectorXd means =
         G[c].cwiseProduct(linear.jacobian[c]).rowwise().sum();
     G[c].colwise() -= means;
@@ -450,7 +461,7 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
     const Eigen::ArrayXd weight_c = weight.segment(c * P, P).array();
     const Eigen::ArrayXd Jv_c = Jv.segment(c * P, P).array();
     const Eigen::ArrayXd inverse_E =
-        point.E.segment(c * P, P).array().inverse();
+        point.L_o.segment(c * P, P).array().inverse();
     RowMatrix& out = gradient->matrices[c];
     out = std::move(G[c]);
     // d(grad_l Phi) . v in T is that of -(J v) . r / D.
@@ -460,7 +471,8 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
     out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
   }
 
-  // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the rest.
+  // tr(A^-1 J K1 J^T), K1 what the amplitude hyperparameters: A less D and the
+  // rest.
   double trace = 3.0 * static_cast<double>(P) -
                  inverse.diagonal().dot(weight.cwiseInverse());
   for (int c = 0; c < 3; ++c) {
@@ -471,23 +483,26 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
     }
   }
   const auto by_scale = [&](const Eigen::VectorXd& K_dual, double its_trace) {
-    return -0.5 * mode.dual.dot(K_dual) + w.dot(K_dual) + 0.5 * its_trace;
+    return -0.5 * mode.representers.dot(K_dual) + w.dot(K_dual) +
+           0.5 * its_trace;
   };
-  gradient->scales[0] =
-      by_scale(ApplyLocal(light, mode.dual) - ApplyHorizon(mode.dual), trace);
+  gradient->hyperparameters[0] = by_scale(
+      ApplyLocal(light, mode.representers) - ApplyHorizon(mode.representers),
+      trace);
   // Of C, by the log roughness of a band with weights h along the texels:
   // diag(h) R + R diag(h), R the rough part.
-  const Eigen::Map<const RowMatrix> dual(mode.dual.data(), 3, n);
+  const Eigen::Map<const RowMatrix> representers(mode.representers.data(), 3,
+                                                 n);
   RowMatrix rough_dual;
-  light.rough.Multiply(dual.leftCols(t), &rough_dual);
-  for (int b = 0; b < LightScales::kBands; ++b) {
+  light.rough.Multiply(representers.leftCols(t), &rough_dual);
+  for (int b = 0; b < LightHyperparameters::kBands; ++b) {
     const Eigen::VectorXd h = BandWeights(b);
     RowMatrix other;
-    light.rough.Multiply(dual.leftCols(t) * h.asDiagonal(), &other);
+    light.rough.Multiply(representers.leftCols(t) * h.asDiagonal(), &other);
     RowMatrix moved = RowMatrix::Zero(3, n);
     moved.leftCols(t) =
         light.amplitude * local_ * (rough_dual * h.asDiagonal() + other);
-    gradient->scales[1 + b] =
+    gradient->hyperparameters[1 + b] =
         by_scale(Eigen::Map<const Eigen::VectorXd>(moved.data(), 3 * n),
                  2.0 * h.dot(rough_share));
   }

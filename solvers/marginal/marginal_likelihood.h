@@ -19,31 +19,31 @@
 
 namespace ibrdf {
 
-// The most probable log radiance of the light, m + l, and l = K dual. Sources
-// are the map's texels, then lamps.
+// The most probable log radiance of the light, m + l, and l = K representers.
+// Sources are the map's texels, then directional lights.
 struct LightMode {
-  double level = 0.0;    // m, of all three channels
-  Eigen::VectorXd l;     // [3 * sources], channel by channel; empty: none yet
-  Eigen::VectorXd dual;  // [3 * sources]
+  double level = 0.0;  // m, of all three channels
+  Eigen::VectorXd l;   // [3 * sources], channel by channel; empty: none yet
+  Eigen::VectorXd representers;  // [3 * sources]
 };
 
 struct MarginalGradient {
   std::array<RowMatrix, 3> matrices;  // [points][sources] each
   // By log amplitude and log roughness.
-  std::array<double, LightScales::kCount> scales = {};
+  std::array<double, LightHyperparameters::kCount> hyperparameters = {};
 };
 
 struct MarginalValue {
   bool ok = false;      // false: not finite, or no mode was found
   double cost = 0.0;    // -log p(image | reflectance), nats, up to a constant
-  double misfit = 0.0;  // mean |log E - log I| at the mode
+  double misfit = 0.0;  // mean |log L_o - log I| at the mode
 };
 
 // Laplace's approximation of -log of
-//   integral N(y; log E(l), D) N(l; 0, K) dl,  E_c = T_c exp(m + l_c):
-//   (y - log E)^T D^-1 (y - log E) / 2 + l^T K^-1 l / 2
+//   integral N(y; log L_o(l), D) N(l; 0, K) dl,  E_c = T_c exp(m + l_c):
+//   (y - log L_o)^T D^-1 (y - log L_o) / 2 + l^T K^-1 l / 2
 //   + log det(D + J K J^T) / 2  at the mode of l,
-// J = d log E / d l, in the space of the data, so that K needs no inverse.
+// J = d log L_o / d l, in the space of the data, so that K needs no inverse.
 //
 // D is diagonal and the caller's, see NoiseVariance.
 // Immutable; may be used from several threads.
@@ -52,52 +52,55 @@ class MarginalLikelihood {
   // log_radiance [3 * points], channel by channel.
   MarginalLikelihood(std::vector<double> log_radiance,
                      const LightProcess& process, int map_height, int map_width,
-                     int num_lamps, int num_threads);
+                     int num_directional_lights, int num_threads);
 
   int num_points() const { return num_points_; }
   int num_texels() const { return map_height_ * map_width_; }
-  int num_lamps() const { return num_lamps_; }
-  int num_sources() const { return num_texels() + num_lamps_; }
+  int num_directional_lights() const { return num_directional_lights_; }
+  int num_sources() const { return num_texels() + num_directional_lights_; }
 
   // matrices: T_c [points][sources], >= 0, of the reflectance in channel c;
-  // noise: the diagonal of D [3 * points], > 0; scales: of the process.
-  // `mode` is where the search starts, if it holds one, and receives the mode,
-  // found where another step would gain less than `tolerance` nats; gradient
-  // may be null. The gradient is of the whole cost, the mode's own
+  // noise: the diagonal of D [3 * points], > 0; hyperparameters: of the
+  // process. `mode` is where the search starts, if it holds one, and receives
+  // the mode, found where another step would gain less than `tolerance` nats;
+  // gradient may be null. The gradient is of the whole cost, the mode's own
   // motion included.
   MarginalValue Evaluate(const std::array<RowMatrix, 3>& matrices,
                          const Eigen::VectorXd& noise,
-                         const LightScales& scales, double tolerance,
-                         LightMode* mode, MarginalGradient* gradient) const;
+                         const LightHyperparameters& hyperparameters,
+                         double tolerance, LightMode* mode,
+                         MarginalGradient* gradient) const;
 
-  // Gauss-Newton Hessian [n + scales]^2 of the cost by n parameters and, last,
-  // by the scales, the light profiled out:
-  //   G^T A^-1 G,  A = D + J K J^T,  G = d log E / d parameters [3 * points][n]
-  // with the light held at its mode. Of the log determinant the scales alone
-  // have their part in it, the Fisher information
-  // tr(A^-1 J K_a J^T A^-1 J K_b J^T) / 2, K_a the derivative of K by scale a.
-  // Positive semidefinite. Empty where A is not positive definite.
+  // Gauss-Newton Hessian [n + hyperparameters]^2 of the cost by n parameters
+  // and, last, by the hyperparameters, the light profiled out:
+  //   G^T A^-1 G,  A = D + J K J^T,  G = d log L_o / d parameters [3 *
+  //   points][n]
+  // with the light held at its mode. Of the log determinant the hyperparameters
+  // alone have their part in it, the Fisher information tr(A^-1 J K_a J^T A^-1
+  // J K_b J^T) / 2, K_a the derivative of K by scale a. Positive semidefinite.
+  // Empty where A is not positive definite.
   Eigen::MatrixXd Information(const std::array<RowMatrix, 3>& matrices,
                               const Eigen::VectorXd& noise,
-                              const LightScales& scales, const LightMode& mode,
-                              const RowMatrix& G) const;
+                              const LightHyperparameters& hyperparameters,
+                              const LightMode& mode, const RowMatrix& G) const;
 
   // sigma^2 and what the map's coarse texels cannot hold: light inside a texel
   // shows where a lobe changes within it,
-  //   sigma^2 + 1 / E_p^2 sum_t v_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,
+  //   sigma^2 + 1 / L_o_p^2 sum_t v_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,
   // n the four neighbours of t, v the process' variance inside a texel at its
-  // average scales, L and E those of `mode`. Small for a matte surface under
-  // soft light, v for a ray. A mirror is then not blamed for what the map
-  // lacks, nor preferred for it. Were v to follow the estimated scales, what
-  // they are taken for would be the noise that suits a reflectance
-  // (experiments/evidence).
+  // average hyperparameters, L and L_o those of `mode`. Small for a matte
+  // surface under soft light, v for a ray. A mirror is then not blamed for what
+  // the map lacks, nor preferred for it. Were v to follow the estimated
+  // hyperparameters, what they are taken for would be the noise that suits a
+  // reflectance (experiments/evidence).
   Eigen::VectorXd NoiseVariance(const std::array<RowMatrix, 3>& matrices,
                                 double sigma, const LightMode& mode) const;
 
   // NoiseVariance where no mode is known yet: at the one found, to `tolerance`
   // nats, with independent deviations of 0.15. `mode` as in Evaluate.
   Eigen::VectorXd FindNoise(const std::array<RowMatrix, 3>& matrices,
-                            double sigma, const LightScales& scales,
+                            double sigma,
+                            const LightHyperparameters& hyperparameters,
                             double tolerance, LightMode* mode) const;
 
   // The level at which constant light gives the image's mean log radiance.
@@ -106,25 +109,25 @@ class MarginalLikelihood {
   // Diagonal of the posterior covariance of l [3 * texels] at the mode.
   Eigen::VectorXd LightVariance(const std::array<RowMatrix, 3>& matrices,
                                 const Eigen::VectorXd& noise,
-                                const LightScales& scales,
+                                const LightHyperparameters& hyperparameters,
                                 const LightMode& mode) const;
 
  private:
   struct Point {
     Eigen::VectorXd L;         // radiance [3 * texels]
-    Eigen::VectorXd E;         // [3 * points]
-    Eigen::VectorXd residual;  // y - log E
+    Eigen::VectorXd L_o;       // [3 * points]
+    Eigen::VectorXd residual;  // y - log L_o
   };
-  // The process at some scales.
+  // The process at some hyperparameters.
   struct Light {
     double amplitude;
     LightSpectrum correlation;  // C
     LightSpectrum rough;        // its rough part
   };
-  Light LightAt(const LightScales& scales) const;
+  Light LightAt(const LightHyperparameters& hyperparameters) const;
   // Of the log roughness of a band [texels].
   Eigen::VectorXd BandWeights(int band) const;
-  // Of log E in l, d log E = J dl, with what its normal equations need.
+  // Of log L_o in l, d log L_o = J dl, with what its normal equations need.
   struct Linearisation {
     std::array<RowMatrix, 3> jacobian;  // [points][sources] of a channel
     std::array<RowMatrix, 3> JC;        // that of texels * correlation
@@ -146,8 +149,10 @@ class MarginalLikelihood {
   // Of its step at the horizon.
   Eigen::VectorXd ApplyHorizon(const Eigen::VectorXd& g) const;
   // J K_lamps J^T, channels c and d.
-  RowMatrix LampBlock(const Linearisation& linear, int c, int d) const;
-  // J K0 J^T, K0 what the amplitude does not scale: level, horizon, lamps.
+  RowMatrix DirectionalLightBlock(const Linearisation& linear, int c,
+                                  int d) const;
+  // J K0 J^T, K0 what the amplitude does not scale: level, horizon, directional
+  // lights.
   RowMatrix UnscaledBlock(const Linearisation& linear, int c, int d) const;
   Eigen::VectorXd ApplyJacobian(const Linearisation& linear,
                                 const Eigen::VectorXd& l) const;
@@ -168,8 +173,9 @@ class MarginalLikelihood {
                                const Light& light, double tolerance,
                                const Eigen::VectorXd& x) const;
   // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T D^-1 J)^-1 x.
-  Eigen::VectorXd SolveDual(const Linearisation& linear, const Light& light,
-                            const Eigen::VectorXd& x) const;
+  Eigen::VectorXd SolveRepresenters(const Linearisation& linear,
+                                    const Light& light,
+                                    const Eigen::VectorXd& x) const;
   void AddGradient(const std::array<RowMatrix, 3>& matrices,
                    const Eigen::VectorXd& weight, const Light& light,
                    const LightMode& mode, const Point& point,
@@ -178,12 +184,12 @@ class MarginalLikelihood {
 
   int num_points_;
   Eigen::VectorXd y_;  // [3 * points]
-  Eigen::Matrix3d local_, level_, lamp_;
+  Eigen::Matrix3d local_, level_, directional_light_;
   ProcessSpectrum spectrum_;
   RowMatrix roughness_weights_;  // [bands][rows]
   // The horizon's part of C at amplitude 1 is that of its step with itself.
   Eigen::VectorXd horizon_;  // [texels]
-  int map_height_, map_width_, num_lamps_;
+  int map_height_, map_width_, num_directional_lights_;
   double smooth_share_, rough_share_;
   double texel_variance_;  // at amplitude and roughness 1
   int num_threads_;

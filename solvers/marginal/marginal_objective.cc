@@ -22,7 +22,7 @@ MarginalObjective::MarginalObjective(const MarginalReflectance* reflectance,
 }
 
 int MarginalObjective::NumParameters() const {
-  return reflectance_->num_parameters() + LightScales::kCount;
+  return reflectance_->num_parameters() + LightHyperparameters::kCount;
 }
 
 Eigen::VectorXd MarginalObjective::LobesOf(const double* y) const {
@@ -34,24 +34,25 @@ Eigen::VectorXd MarginalObjective::LobesOf(const double* y) const {
 Eigen::VectorXd MarginalObjective::ParametersOf(const double* y) const {
   const Eigen::Index all = reflectance_->num_parameters();
   Eigen::VectorXd out =
-      kLampOffsetStd * Eigen::Map<const Eigen::VectorXd>(y, all);
+      kDirectionalLightOffsetStd * Eigen::Map<const Eigen::VectorXd>(y, all);
   out.head(prior_->num_parameters()) = LobesOf(y);
   return out;
 }
 
-LightScales MarginalObjective::ScalesOf(const double* y) const {
-  return LightScales::FromWhitened(y + reflectance_->num_parameters());
+LightHyperparameters MarginalObjective::ScalesOf(const double* y) const {
+  return LightHyperparameters::FromWhitened(y + reflectance_->num_parameters());
 }
 
 std::vector<double> MarginalObjective::Whitened(
-    const Eigen::VectorXd& parameters, const LightScales& scales) const {
+    const Eigen::VectorXd& parameters,
+    const LightHyperparameters& hyperparameters) const {
   CHECK_EQ(parameters.size(), reflectance_->num_parameters());
   const Eigen::Index n = prior_->num_parameters();
-  Eigen::VectorXd y = parameters / kLampOffsetStd;
+  Eigen::VectorXd y = parameters / kDirectionalLightOffsetStd;
   y.head(n) = prior_->factor.triangularView<Eigen::Lower>().solve(
       parameters.head(n) - prior_->mean);
   std::vector<double> out = ToVector(y);
-  const auto whitened = scales.Whitened();
+  const auto whitened = hyperparameters.Whitened();
   out.insert(out.end(), whitened.begin(), whitened.end());
   return out;
 }
@@ -86,11 +87,11 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
     out = whitened;
     out.head(n) +=
         prior_->factor.triangularView<Eigen::Lower>().transpose() * wall;
-    const auto stds = LightScales::Stds();
+    const auto stds = LightHyperparameters::Stds();
     for (Eigen::Index i = n; i < first_scale; ++i) {
-      out[i] += kLampOffsetStd * by_parameter[i];
+      out[i] += kDirectionalLightOffsetStd * by_parameter[i];
     }
-    for (int k = 0; k < LightScales::kCount; ++k) {
+    for (int k = 0; k < LightHyperparameters::kCount; ++k) {
       out[first_scale + k] += stds[k] * by_parameter[first_scale + k];
     }
   }
@@ -108,11 +109,11 @@ Eigen::MatrixXd MarginalObjective::Information(const double* y) const {
   // Both sides by the whitening.
   Eigen::MatrixXd whitening = Eigen::MatrixXd::Zero(all, all);
   whitening.topLeftCorner(n, n) = prior_->factor.triangularView<Eigen::Lower>();
-  const auto stds = LightScales::Stds();
+  const auto stds = LightHyperparameters::Stds();
   for (Eigen::Index i = n; i < first_scale; ++i) {
-    whitening(i, i) = kLampOffsetStd;
+    whitening(i, i) = kDirectionalLightOffsetStd;
   }
-  for (int k = 0; k < LightScales::kCount; ++k) {
+  for (int k = 0; k < LightHyperparameters::kCount; ++k) {
     whitening(first_scale + k, first_scale + k) = stds[k];
   }
   return Eigen::MatrixXd::Identity(all, all) +

@@ -11,17 +11,17 @@
 namespace ibrdf {
 
 // -log posterior of a reflectance, in coordinates in which the prior is
-// N(0, I): y [num_parameters + scales], lobes = mean + factor y, then the
-// lamps' offsets, then LightScales::Whitened. The light's mode of the last
-// point with a gradient is kept as the next one's start, and that of the last
-// point without one for a gradient there.
+// N(0, I): y [num_parameters + hyperparameters], lobes = mean + factor y, then
+// the directional lights' offsets, then LightHyperparameters::Whitened. The
+// light's mode of the last point with a gradient is kept as the next one's
+// start, and that of the last point without one for a gradient there.
 class MarginalObjective final : public ceres::FirstOrderFunction {
  public:
   // The light's mode is taken as found where a step gains less, nats:
   // derivatives are then good to its root.
   static constexpr double kModeTolerance = 1e-6;
-  // Of a lamp's offset, radians.
-  static constexpr double kLampOffsetStd = 0.05;
+  // Of a directional light's offset, radians.
+  static constexpr double kDirectionalLightOffsetStd = 0.05;
 
   // All must outlive *this.
   MarginalObjective(const MarginalReflectance* reflectance,
@@ -39,9 +39,10 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   // MarginalReflectance's, and the lobes' among them.
   Eigen::VectorXd ParametersOf(const double* y) const;
   Eigen::VectorXd LobesOf(const double* y) const;
-  LightScales ScalesOf(const double* y) const;
-  std::vector<double> Whitened(const Eigen::VectorXd& parameters,
-                               const LightScales& scales) const;
+  LightHyperparameters ScalesOf(const double* y) const;
+  std::vector<double> Whitened(
+      const Eigen::VectorXd& parameters,
+      const LightHyperparameters& hyperparameters) const;
   // Of the last evaluation with a gradient that succeeded: not of a trial that
   // a line search turned down.
   const MarginalValue& last_value() const { return last_value_; }

@@ -9,12 +9,12 @@ namespace ibrdf {
 
 Eigen::MatrixXd MarginalLikelihood::Information(
     const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
-    const LightScales& scales, const LightMode& mode,
+    const LightHyperparameters& hyperparameters, const LightMode& mode,
     const RowMatrix& G) const {
   const Eigen::Index P = num_points_, n = G.cols();
-  constexpr int kCount = LightScales::kCount;
+  constexpr int kCount = LightHyperparameters::kCount;
   CHECK_EQ(G.rows(), 3 * P);
-  const Light light = LightAt(scales);
+  const Light light = LightAt(hyperparameters);
   const auto linear =
       Linearise(matrices, noise, light, At(matrices, mode.level, mode.l));
   if (linear == nullptr) return {};
@@ -40,7 +40,7 @@ Eigen::MatrixXd MarginalLikelihood::Information(
   for (int c = 0; c < 3; ++c) {
     light.rough.Multiply(linear->jacobian[c].leftCols(num_texels()), &rough[c]);
   }
-  for (int b = 0; b < LightScales::kBands; ++b) {
+  for (int b = 0; b < LightHyperparameters::kBands; ++b) {
     // Only its rows of the map.
     int first = 0, last = map_height_;
     while (first < last && roughness_weights_(b, first) == 0.0) ++first;
@@ -76,16 +76,16 @@ Eigen::MatrixXd MarginalLikelihood::Information(
 
 Eigen::VectorXd MarginalLikelihood::LightVariance(
     const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
-    const LightScales& scales, const LightMode& mode) const {
+    const LightHyperparameters& hyperparameters, const LightMode& mode) const {
   const Eigen::Index t = num_texels(), P = num_points_;
-  const Light light = LightAt(scales);
+  const Light light = LightAt(hyperparameters);
   const auto linear =
       Linearise(matrices, noise, light, At(matrices, mode.level, mode.l));
   CHECK(linear != nullptr);
   RowMatrix inverse = linear->factor;
   InvertFactored(&inverse);
   const Eigen::ArrayXd roughness =
-      ByTexel(Roughness(map_height_, scales), map_width_);
+      ByTexel(Roughness(map_height_, hyperparameters), map_width_);
   // Of a texel with itself.
   const Eigen::ArrayXd correlation =
       smooth_share_ + rough_share_ * roughness.square() +

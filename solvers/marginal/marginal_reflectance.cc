@@ -12,8 +12,9 @@
 namespace ibrdf {
 namespace {
 
-// Radians, of LampSlopes: below a cell of the grid for most half-vectors.
-constexpr double kLampStep = 1e-3;
+// Radians, of DirectionalLightSlopes: below a bin of the grid for most
+// half-vectors.
+constexpr double kDirectionalLightStep = 1e-3;
 
 // Of a map of 1, on white: a point whose whole sky is hidden has 1e-4 left at
 // the horizon, which the steps of VisibilityGrid cut.
@@ -24,20 +25,19 @@ double Colour(double log_colour, int channel) {
          kMerlScale[channel];
 }
 
-// Cells that a map of constant radiance lights.
-std::vector<bool> LitCells(const ImageCells& cells,
-                           const Transport& transport) {
+// Bins that a map of constant radiance lights.
+std::vector<bool> LitCells(const NormalBins& bins, const Transport& transport) {
   BrdfGrid white;
   white.shape = transport.grid_shape();
   white.values.assign(3 * white.shape.num_nodes(), 1.0f);
   const std::vector<float> map(
       size_t{3} * transport.map_height() * transport.map_width(), 1.0f);
-  std::vector<double> E(3 * cells.points.size());
-  transport.Render(white, map.data(), E.data());
+  std::vector<double> L_o(3 * bins.points.size());
+  transport.Render(white, map.data(), L_o.data());
   std::vector<bool> lit;
-  for (int i = 0; i < cells.num_cells(); ++i) {
-    lit.push_back(std::any_of(E.begin() + 3 * cells.first[i],
-                              E.begin() + 3 * cells.first[i + 1],
+  for (int i = 0; i < bins.num_bins(); ++i) {
+    lit.push_back(std::any_of(L_o.begin() + 3 * bins.first[i],
+                              L_o.begin() + 3 * bins.first[i + 1],
                               [](double e) { return e > kLeastSeen; }));
   }
   return lit;
@@ -62,37 +62,38 @@ MarginalReflectance::MarginalReflectance(
     const LobeFactory& lobes, const std::vector<ShadingPoint>& points,
     const std::vector<double>& radiance, const LightProcess& process,
     const MarginalResolution& resolution, int num_threads,
-    std::vector<Eigen::Vector3d> lamps)
+    std::vector<Eigen::Vector3d> directional_lights)
     : resolution_(resolution),
-      cells_(GroupByNormal(points, radiance, resolution.cells)),
-      lamps_(std::move(lamps)) {
-  CHECK_GT(cells_.num_cells(), 0);
+      binned_(BinByNormal(points, radiance, resolution.bins)),
+      directional_lights_(std::move(directional_lights)) {
+  CHECK_GT(binned_.num_bins(), 0);
   TransportOptions options;
   options.grid = resolution.grid;
   options.num_threads = num_threads;
   options.quadrature = resolution.quadrature;
   options.visibility = resolution.visibility;
   const auto transport = [&] {
-    return std::make_unique<Transport>(cells_.points, resolution.map_height,
+    return std::make_unique<Transport>(binned_.points, resolution.map_height,
                                        resolution.map_width, options);
   };
   transport_ = transport();
   if (resolution.visibility != nullptr) {
     // No light explains radiance where none of the map is seen.
-    const std::vector<bool> lit = LitCells(cells_, *transport_);
+    const std::vector<bool> lit = LitCells(binned_, *transport_);
     const auto count = std::count(lit.begin(), lit.end(), true);
-    if (count > 0 && count < cells_.num_cells()) {
-      cells_ = KeepCells(cells_, lit);
+    if (count > 0 && count < binned_.num_bins()) {
+      binned_ = KeepBins(binned_, lit);
       transport_ = transport();
     }
   }
   lobes_ = lobes(resolution.grid);
   likelihood_ = std::make_unique<MarginalLikelihood>(
-      cells_.log_radiance, process, resolution.map_height, resolution.map_width,
-      static_cast<int>(lamps_.size()), num_threads);
+      binned_.log_radiance, process, resolution.map_height,
+      resolution.map_width, static_cast<int>(directional_lights_.size()),
+      num_threads);
 }
 
-Eigen::VectorXd MarginalReflectance::WithLamps(
+Eigen::VectorXd MarginalReflectance::WithDirectionalLights(
     const Eigen::VectorXd& lobes) const {
   CHECK_EQ(lobes.size(), lobes_->num_parameters());
   Eigen::VectorXd all = Eigen::VectorXd::Zero(num_parameters());
@@ -100,41 +101,46 @@ Eigen::VectorXd MarginalReflectance::WithLamps(
   return all;
 }
 
-std::vector<Eigen::Vector3d> MarginalReflectance::LampDirections(
+std::vector<Eigen::Vector3d> MarginalReflectance::DirectionalLightDirections(
     const double* parameters) const {
   std::vector<Eigen::Vector3d> directions;
   const double* offsets = parameters + lobes_->num_parameters();
-  for (const Eigen::Vector3d& lamp : lamps_) {
-    directions.push_back(MovedLamp(lamp, offsets));
+  for (const Eigen::Vector3d& directional_light : directional_lights_) {
+    directions.push_back(MovedDirectionalLight(directional_light, offsets));
     offsets += 2;
   }
   return directions;
 }
 
-LampResponses MarginalReflectance::Lamps(const double* parameters) const {
-  return LampResponses(cells_, resolution_.grid, resolution_.visibility.get(),
-                       LampDirections(parameters));
+DirectionalLightResponses MarginalReflectance::DirectionalLights(
+    const double* parameters) const {
+  return DirectionalLightResponses(binned_, resolution_.grid,
+                                   resolution_.visibility.get(),
+                                   DirectionalLightDirections(parameters));
 }
 
-std::vector<RowMatrix> MarginalReflectance::LampSlopes(
+std::vector<RowMatrix> MarginalReflectance::DirectionalLightSlopes(
     const double* parameters, const std::vector<float>& fields,
     int stride) const {
   const size_t nodes = lobes_->grid_shape().num_nodes();
   const int num_lobes = lobes_->num_lobes();
-  const auto num_lamps = static_cast<Eigen::Index>(lamps_.size());
+  const auto num_directional_lights =
+      static_cast<Eigen::Index>(directional_lights_.size());
   std::vector<RowMatrix> slopes(
-      num_lobes, RowMatrix::Zero(cells_.num_cells(), 2 * num_lamps));
-  if (num_lamps == 0) return slopes;
+      num_lobes,
+      RowMatrix::Zero(binned_.num_bins(), 2 * num_directional_lights));
+  if (num_directional_lights == 0) return slopes;
   for (int axis = 0; axis < 2; ++axis) {
-    for (const double step : {kLampStep, -kLampStep}) {
+    for (const double step : {kDirectionalLightStep, -kDirectionalLightStep}) {
       std::vector<double> moved(parameters, parameters + num_parameters());
-      for (Eigen::Index k = 0; k < num_lamps; ++k) {
+      for (Eigen::Index k = 0; k < num_directional_lights; ++k) {
         moved[lobes_->num_parameters() + 2 * k + axis] += step;
       }
-      const LampResponses responses = Lamps(moved.data());
+      const DirectionalLightResponses responses =
+          DirectionalLights(moved.data());
       for (int lobe = 0; lobe < num_lobes; ++lobe) {
         const RowMatrix of = responses.Of(&fields[lobe * stride * nodes]);
-        for (Eigen::Index k = 0; k < num_lamps; ++k) {
+        for (Eigen::Index k = 0; k < num_directional_lights; ++k) {
           slopes[lobe].col(2 * k + axis) += of.col(k) / (2.0 * step);
         }
       }
@@ -148,20 +154,21 @@ std::vector<double> MarginalReflectance::LogRadiance(
   const int H = resolution_.map_height, W = resolution_.map_width;
   const Eigen::Index t = likelihood_->num_texels(),
                      n = likelihood_->num_sources();
-  const std::vector<Eigen::Vector3d> lamps = LampDirections(parameters);
+  const std::vector<Eigen::Vector3d> directional_lights =
+      DirectionalLightDirections(parameters);
   std::vector<double> out;
   out.reserve(3 * t);
   for (int c = 0; c < 3; ++c) {
     const double* l = mode.l.data() + c * n;
     for (Eigen::Index i = 0; i < t; ++i) out.push_back(l[i] + mode.level);
-    for (size_t k = 0; k < lamps.size(); ++k) {
+    for (size_t k = 0; k < directional_lights.size(); ++k) {
       double row = 0.0, column = 0.0;
-      MapPosition(lamps[k], H, W, &row, &column);
+      MapPosition(directional_lights[k], H, W, &row, &column);
       const int r = std::clamp(static_cast<int>(row), 0, H - 1);
       const int x = std::clamp(static_cast<int>(column), 0, W - 1);
       double& texel = out[c * t + r * W + x];
       texel = std::log(std::exp(texel) + std::exp(l[t + k] + mode.level) *
-                                             kLampSolidAngle /
+                                             kDirectionalLightSolidAngle /
                                              TexelSolidAngle(r, H, W));
     }
   }
@@ -169,41 +176,45 @@ std::vector<double> MarginalReflectance::LogRadiance(
 }
 
 MarginalReflectance::FloatMatrix MarginalReflectance::CellMatrix(
-    const LampResponses& lamps, const float* field) const {
+    const DirectionalLightResponses& directional_lights,
+    const float* field) const {
   const Eigen::Index t = likelihood_->num_texels();
-  FloatMatrix by_point(static_cast<Eigen::Index>(cells_.points.size()), t);
+  FloatMatrix by_point(static_cast<Eigen::Index>(binned_.points.size()), t);
   transport_->LightMatrix(field, by_point.data());
-  FloatMatrix by_cell(cells_.num_cells(), likelihood_->num_sources());
-  for (int i = 0; i < cells_.num_cells(); ++i) {
-    const int begin = cells_.first[i], count = cells_.first[i + 1] - begin;
-    by_cell.row(i).head(t) = by_point.middleRows(begin, count).colwise().mean();
+  FloatMatrix by_bin(binned_.num_bins(), likelihood_->num_sources());
+  for (int i = 0; i < binned_.num_bins(); ++i) {
+    const int begin = binned_.first[i], count = binned_.first[i + 1] - begin;
+    by_bin.row(i).head(t) = by_point.middleRows(begin, count).colwise().mean();
   }
-  by_cell.rightCols(lamps.num_lamps()) = lamps.Of(field).cast<float>();
-  return by_cell;
+  by_bin.rightCols(directional_lights.num_directional_lights()) =
+      directional_lights.Of(field).cast<float>();
+  return by_bin;
 }
 
-void MarginalReflectance::CellMatrixGradient(const LampResponses& lamps,
-                                             const FloatMatrix& adjoint,
-                                             float* gradient) const {
+void MarginalReflectance::CellMatrixGradient(
+    const DirectionalLightResponses& directional_lights,
+    const FloatMatrix& adjoint, float* gradient) const {
   const Eigen::Index t = likelihood_->num_texels();
-  FloatMatrix by_point(static_cast<Eigen::Index>(cells_.points.size()), t);
-  for (int i = 0; i < cells_.num_cells(); ++i) {
-    const int begin = cells_.first[i], count = cells_.first[i + 1] - begin;
+  FloatMatrix by_point(static_cast<Eigen::Index>(binned_.points.size()), t);
+  for (int i = 0; i < binned_.num_bins(); ++i) {
+    const int begin = binned_.first[i], count = binned_.first[i + 1] - begin;
     by_point.middleRows(begin, count).rowwise() =
         adjoint.row(i).head(t) / static_cast<float>(count);
   }
   transport_->LightMatrixGradient(by_point.data(), gradient);
-  lamps.AddGradient(adjoint.rightCols(lamps.num_lamps()), gradient);
+  directional_lights.AddGradient(
+      adjoint.rightCols(directional_lights.num_directional_lights()), gradient);
 }
 
 std::vector<MarginalReflectance::FloatMatrix>
-MarginalReflectance::ShapeMatrices(const LampResponses& lamps,
-                                   const std::vector<float>& fields,
-                                   int stride) const {
+MarginalReflectance::ShapeMatrices(
+    const DirectionalLightResponses& directional_lights,
+    const std::vector<float>& fields, int stride) const {
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<FloatMatrix> shapes;
   for (int k = 0; k < lobes_->num_lobes(); ++k) {
-    shapes.push_back(CellMatrix(lamps, &fields[k * stride * nodes]));
+    shapes.push_back(
+        CellMatrix(directional_lights, &fields[k * stride * nodes]));
   }
   return shapes;
 }
@@ -226,27 +237,31 @@ std::array<RowMatrix, 3> MarginalReflectance::Matrices(
     const double* parameters) const {
   std::vector<float> fields;
   lobes_->Tabulate(parameters, false, &fields);
-  return Coloured(parameters, ShapeMatrices(Lamps(parameters), fields, 1));
+  return Coloured(parameters,
+                  ShapeMatrices(DirectionalLights(parameters), fields, 1));
 }
 
 MarginalValue MarginalReflectance::Evaluate(
     const double* parameters, const Eigen::VectorXd& noise,
-    const LightScales& scales, double tolerance, LightMode* mode,
-    std::vector<double>* gradient) const {
+    const LightHyperparameters& hyperparameters, double tolerance,
+    LightMode* mode, std::vector<double>* gradient) const {
   const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
   const int stride = gradient != nullptr ? 1 + size : 1;
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<float> fields;
   lobes_->Tabulate(parameters, gradient != nullptr, &fields);
-  const LampResponses lamps = Lamps(parameters);
-  const std::vector<FloatMatrix> shapes = ShapeMatrices(lamps, fields, stride);
+  const DirectionalLightResponses directional_lights =
+      DirectionalLights(parameters);
+  const std::vector<FloatMatrix> shapes =
+      ShapeMatrices(directional_lights, fields, stride);
   MarginalGradient by_matrix;
   const MarginalValue value = likelihood_->Evaluate(
-      Coloured(parameters, shapes), noise, scales, tolerance, mode,
+      Coloured(parameters, shapes), noise, hyperparameters, tolerance, mode,
       gradient != nullptr ? &by_matrix : nullptr);
   if (gradient == nullptr || !value.ok) return value;
-  gradient->assign(num_parameters() + LightScales::kCount, 0.0);
-  const std::vector<RowMatrix> slopes = LampSlopes(parameters, fields, stride);
+  gradient->assign(num_parameters() + LightHyperparameters::kCount, 0.0);
+  const std::vector<RowMatrix> slopes =
+      DirectionalLightSlopes(parameters, fields, stride);
   const Eigen::Index t = likelihood_->num_texels();
   std::vector<float> by_node(nodes);
   for (int k = 0; k < num_lobes; ++k) {
@@ -261,7 +276,7 @@ MarginalValue MarginalReflectance::Evaluate(
           colour *
           by_matrix.matrices[c].cwiseProduct(shapes[k].cast<double>()).sum();
     }
-    CellMatrixGradient(lamps, adjoint, by_node.data());
+    CellMatrixGradient(directional_lights, adjoint, by_node.data());
     for (Eigen::Index i = 0; i < slopes[k].cols(); ++i) {
       (*gradient)[lobes_->num_parameters() + i] +=
           adjoint.col(t + i / 2).cast<double>().dot(slopes[k].col(i));
@@ -275,17 +290,18 @@ MarginalValue MarginalReflectance::Evaluate(
       out[d] = sum;
     }
   }
-  std::copy(by_matrix.scales.begin(), by_matrix.scales.end(),
-            gradient->end() - LightScales::kCount);
+  std::copy(by_matrix.hyperparameters.begin(), by_matrix.hyperparameters.end(),
+            gradient->end() - LightHyperparameters::kCount);
   return value;
 }
 
 RowMatrix MarginalReflectance::LogRadianceJacobian(
     const double* parameters, const std::vector<float>& fields,
-    const LampResponses& lamps, const LightMode& mode) const {
+    const DirectionalLightResponses& directional_lights,
+    const LightMode& mode) const {
   const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
   const int num_fields = num_lobes * (1 + size);
-  const Eigen::Index P = cells_.num_cells();
+  const Eigen::Index P = binned_.num_bins();
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<const float*> field(num_fields);
   for (int i = 0; i < num_fields; ++i) field[i] = &fields[i * nodes];
@@ -297,31 +313,33 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
   const double highest = texels.maxCoeff();
   const std::vector<float> map =
       RelativeMap(texels.data(), likelihood_->num_texels());
-  const RowMatrix of_lamps = (Eigen::Map<const RowMatrix>(mode.l.data(), 3, n)
-                                  .rightCols(likelihood_->num_lamps())
-                                  .array() -
-                              highest)
-                                 .exp();
-  std::vector<float> by_point(size_t{3} * cells_.points.size() * num_fields);
+  const RowMatrix of_directional_lights =
+      (Eigen::Map<const RowMatrix>(mode.l.data(), 3, n)
+           .rightCols(likelihood_->num_directional_lights())
+           .array() -
+       highest)
+          .exp();
+  std::vector<float> by_point(size_t{3} * binned_.points.size() * num_fields);
   transport_->RenderLobes(field.data(), num_fields, map.data(),
                           by_point.data());
-  std::vector<RowMatrix> under_lamps;  // of a field [cells][3]
+  std::vector<RowMatrix> under_directional_lights;  // of a field [bins][3]
   for (int f = 0; f < num_fields; ++f) {
-    under_lamps.push_back(lamps.Of(field[f]) * of_lamps.transpose());
+    under_directional_lights.push_back(directional_lights.Of(field[f]) *
+                                       of_directional_lights.transpose());
   }
   const std::vector<RowMatrix> slopes =
-      LampSlopes(parameters, fields, 1 + size);
+      DirectionalLightSlopes(parameters, fields, 1 + size);
   RowMatrix jacobian = RowMatrix::Zero(3 * P, num_parameters());
   std::vector<double> sum(size_t{3} * num_fields);
   for (Eigen::Index i = 0; i < P; ++i) {
     std::fill(sum.begin(), sum.end(), 0.0);
-    for (int p = cells_.first[i]; p < cells_.first[i + 1]; ++p) {
+    for (int p = binned_.first[i]; p < binned_.first[i + 1]; ++p) {
       const float* out = &by_point[p * sum.size()];
       for (size_t k = 0; k < sum.size(); ++k) sum[k] += out[k];
     }
-    const double count = cells_.first[i + 1] - cells_.first[i];
+    const double count = binned_.first[i + 1] - binned_.first[i];
     for (size_t k = 0; k < sum.size(); ++k) {
-      sum[k] = sum[k] / count + under_lamps[k / 3](i, k % 3);
+      sum[k] = sum[k] / count + under_directional_lights[k / 3](i, k % 3);
     }
     for (int c = 0; c < 3; ++c) {
       double radiance = 0.0;
@@ -335,7 +353,7 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
           const double* lobe = parameters + k * lobes_->lobe_size();
           slope += Colour(lobe[size + c], c) * slopes[k](i, j);
         }
-        slope *= of_lamps(c, j / 2) / radiance;
+        slope *= of_directional_lights(c, j / 2) / radiance;
       }
       for (int k = 0; k < num_lobes; ++k) {
         const double log_colour =
@@ -353,19 +371,20 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
   return jacobian;
 }
 
-Eigen::MatrixXd MarginalReflectance::Information(const double* parameters,
-                                                 const Eigen::VectorXd& noise,
-                                                 const LightScales& scales,
-                                                 const LightMode& mode) const {
+Eigen::MatrixXd MarginalReflectance::Information(
+    const double* parameters, const Eigen::VectorXd& noise,
+    const LightHyperparameters& hyperparameters, const LightMode& mode) const {
   std::vector<float> fields;
   lobes_->Tabulate(parameters, true, &fields);
-  const LampResponses lamps = Lamps(parameters);
-  const RowMatrix G = LogRadianceJacobian(parameters, fields, lamps, mode);
+  const DirectionalLightResponses directional_lights =
+      DirectionalLights(parameters);
+  const RowMatrix G =
+      LogRadianceJacobian(parameters, fields, directional_lights, mode);
   if (!G.allFinite()) return {};
   return likelihood_->Information(
-      Coloured(parameters,
-               ShapeMatrices(lamps, fields, 1 + lobes_->code_size())),
-      noise, scales, mode, G);
+      Coloured(parameters, ShapeMatrices(directional_lights, fields,
+                                         1 + lobes_->code_size())),
+      noise, hyperparameters, mode, G);
 }
 
 }  // namespace ibrdf

@@ -14,7 +14,7 @@
 namespace ibrdf {
 
 struct MarginalResolution {
-  ImageCellOptions cells;
+  NormalBinOptions bins;
   int map_width = 32, map_height = 16;
   BrdfGridShape grid = {48, 20, 12};
   // Coarser than a render's, as the texels are.
@@ -25,9 +25,9 @@ struct MarginalResolution {
 // The map [H W, 3] of log radiance [3][H W], its largest value 1.
 std::vector<float> RelativeMap(const double* log_radiance, int num_texels);
 
-// Parameters: the lobes' as LobeModel's, then of each lamp where it is
-// (MovedLamp's offsets). Immutable but for what its callers keep; may be used
-// from several threads.
+// Parameters: the lobes' as LobeModel's, then of each directional light where
+// it is (MovedDirectionalLight's offsets). Immutable but for what its callers
+// keep; may be used from several threads.
 class MarginalReflectance {
  public:
   // radiance [points][3]. CHECKs that at least one point can be used.
@@ -36,67 +36,72 @@ class MarginalReflectance {
                       const std::vector<double>& radiance,
                       const LightProcess& process,
                       const MarginalResolution& resolution, int num_threads,
-                      std::vector<Eigen::Vector3d> lamps = {});
+                      std::vector<Eigen::Vector3d> directional_lights = {});
 
   const LobeModel& lobes() const { return *lobes_; }
   const MarginalLikelihood& likelihood() const { return *likelihood_; }
-  const ImageCells& cells() const { return cells_; }
+  const NormalBins& bins() const { return binned_; }
   const MarginalResolution& resolution() const { return resolution_; }
 
   int num_parameters() const {
-    return lobes_->num_parameters() + 2 * static_cast<int>(lamps_.size());
+    return lobes_->num_parameters() +
+           2 * static_cast<int>(directional_lights_.size());
   }
-  // Of lobes, with all lamps where the constructor was told.
-  Eigen::VectorXd WithLamps(const Eigen::VectorXd& lobes) const;
-  std::vector<Eigen::Vector3d> LampDirections(const double* parameters) const;
+  // Of lobes, with all directional lights where the constructor was told.
+  Eigen::VectorXd WithDirectionalLights(const Eigen::VectorXd& lobes) const;
+  std::vector<Eigen::Vector3d> DirectionalLightDirections(
+      const double* parameters) const;
 
   // As MarginalLikelihood::Evaluate. With gradient != nullptr it receives
-  // [num_parameters + scales].
+  // [num_parameters + hyperparameters].
   MarginalValue Evaluate(const double* parameters, const Eigen::VectorXd& noise,
-                         const LightScales& scales, double tolerance,
-                         LightMode* mode, std::vector<double>* gradient) const;
+                         const LightHyperparameters& hyperparameters,
+                         double tolerance, LightMode* mode,
+                         std::vector<double>* gradient) const;
 
   // As MarginalLikelihood::Information at the mode of these parameters.
   Eigen::MatrixXd Information(const double* parameters,
                               const Eigen::VectorXd& noise,
-                              const LightScales& scales,
+                              const LightHyperparameters& hyperparameters,
                               const LightMode& mode) const;
 
   // The matrices T_c of parameters.
   std::array<RowMatrix, 3> Matrices(const double* parameters) const;
-  // Log radiance of the texels [3][H W], a lamp's light in the texel that it is
-  // in.
+  // Log radiance of the texels [3][H W], a directional light's light in the
+  // texel that it is in.
   std::vector<double> LogRadiance(const double* parameters,
                                   const LightMode& mode) const;
 
  private:
-  using FloatMatrix = LampResponses::Matrix;
-  // d log E / d parameters [3 * cells][num_parameters], the light held.
-  RowMatrix LogRadianceJacobian(const double* parameters,
-                                const std::vector<float>& fields,
-                                const LampResponses& lamps,
-                                const LightMode& mode) const;
-  LampResponses Lamps(const double* parameters) const;
-  // d Lamps().Of(field) by the lamps' offsets, [cells][2 lamps]: by central
-  // differences, as the fields are linear between their nodes.
-  std::vector<RowMatrix> LampSlopes(const double* parameters,
-                                    const std::vector<float>& fields,
-                                    int stride) const;
+  using FloatMatrix = DirectionalLightResponses::Matrix;
+  // d log L_o / d parameters [3 * bins][num_parameters], the light held.
+  RowMatrix LogRadianceJacobian(
+      const double* parameters, const std::vector<float>& fields,
+      const DirectionalLightResponses& directional_lights,
+      const LightMode& mode) const;
+  DirectionalLightResponses DirectionalLights(const double* parameters) const;
+  // d DirectionalLights().Of(field) by the directional lights' offsets,
+  // [bins][2 directional lights]: by central differences, as the fields are
+  // linear between their nodes.
+  std::vector<RowMatrix> DirectionalLightSlopes(
+      const double* parameters, const std::vector<float>& fields,
+      int stride) const;
   // Of each lobe's shape, the first of its `stride` fields.
-  std::vector<FloatMatrix> ShapeMatrices(const LampResponses& lamps,
-                                         const std::vector<float>& fields,
-                                         int stride) const;
+  std::vector<FloatMatrix> ShapeMatrices(
+      const DirectionalLightResponses& directional_lights,
+      const std::vector<float>& fields, int stride) const;
   // T_c of lobes of those shapes and the parameters' colours.
   std::array<RowMatrix, 3> Coloured(
       const double* parameters, const std::vector<FloatMatrix>& shapes) const;
-  // [cells][sources] of a scalar field, and its transpose.
-  FloatMatrix CellMatrix(const LampResponses& lamps, const float* field) const;
-  void CellMatrixGradient(const LampResponses& lamps,
+  // [bins][sources] of a scalar field, and its transpose.
+  FloatMatrix CellMatrix(const DirectionalLightResponses& directional_lights,
+                         const float* field) const;
+  void CellMatrixGradient(const DirectionalLightResponses& directional_lights,
                           const FloatMatrix& adjoint, float* gradient) const;
 
   MarginalResolution resolution_;
-  ImageCells cells_;
-  std::vector<Eigen::Vector3d> lamps_;
+  NormalBins binned_;
+  std::vector<Eigen::Vector3d> directional_lights_;
   std::unique_ptr<Transport> transport_;
   std::unique_ptr<const LobeModel> lobes_;
   std::unique_ptr<MarginalLikelihood> likelihood_;

@@ -31,12 +31,12 @@ class Level {
         const std::vector<ShadingPoint>& points,
         const std::vector<double>& radiance,
         const MarginalResolution& resolution,
-        const std::vector<Eigen::Vector3d>& lamps,
+        const std::vector<Eigen::Vector3d>& directional_lights,
         const ReflectanceSearchOptions& options)
       : prior_(prior),
         options_(options),
         reflectance_(lobes, points, radiance, options.process, resolution,
-                     options.num_threads, lamps) {}
+                     options.num_threads, directional_lights) {}
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
 
@@ -45,21 +45,23 @@ class Level {
     return MarginalObjective(&reflectance_, &prior_, noise, mode);
   }
 
-  // -log posterior at these scales of light; infinite where it has none.
-  double Rank(const Eigen::VectorXd& lobes, const LightScales& scales,
+  // -log posterior at these hyperparameters of light; infinite where it has
+  // none.
+  double Rank(const Eigen::VectorXd& lobes,
+              const LightHyperparameters& hyperparameters,
               double* misfit) const {
     LightMode mode;
     const std::array<RowMatrix, 3> matrices =
-        reflectance_.Matrices(reflectance_.WithLamps(lobes).data());
+        reflectance_.Matrices(reflectance_.WithDirectionalLights(lobes).data());
     const MarginalLikelihood& likelihood = reflectance_.likelihood();
     const Eigen::VectorXd noise = likelihood.FindNoise(
-        matrices, options_.sigma, scales, kRankingTolerance, &mode);
+        matrices, options_.sigma, hyperparameters, kRankingTolerance, &mode);
     const MarginalValue value = likelihood.Evaluate(
-        matrices, noise, scales, kRankingTolerance, &mode, nullptr);
+        matrices, noise, hyperparameters, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
     *misfit = value.misfit;
     double of_scales = 0.0;
-    for (const double y : scales.Whitened()) of_scales += 0.5 * y * y;
+    for (const double y : hyperparameters.Whitened()) of_scales += 0.5 * y * y;
     return value.cost + prior_.Cost(lobes, nullptr) + of_scales;
   }
 
@@ -71,14 +73,15 @@ class Level {
     LightMode mode;
     Eigen::VectorXd noise;
   };
-  End Refine(const Eigen::VectorXd& parameters, const LightScales& scales,
+  End Refine(const Eigen::VectorXd& parameters,
+             const LightHyperparameters& hyperparameters,
              int iterations) const {
     End end;
     end.noise = reflectance_.likelihood().FindNoise(
-        reflectance_.Matrices(parameters.data()), options_.sigma, scales,
-        MarginalObjective::kModeTolerance, &end.mode);
+        reflectance_.Matrices(parameters.data()), options_.sigma,
+        hyperparameters, MarginalObjective::kModeTolerance, &end.mode);
     const MarginalObjective objective = Objective(end.noise, &end.mode);
-    end.y = objective.Whitened(parameters, scales);
+    end.y = objective.Whitened(parameters, hyperparameters);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
     o.should_stop = options_.should_stop;
@@ -121,10 +124,12 @@ class Search {
       : options_(options),
         image_(radiance),
         radiance_(radiance),
-        lamps_(FindLamps(points, radiance, options.most_lamps)),
+        directional_lights_(FindDirectionalLights(
+            points, radiance, options.most_directional_lights)),
         level_at_([&](const MarginalResolution& resolution) {
           return std::make_unique<Level>(lobes, prior, points, radiance_,
-                                         resolution, lamps_, options);
+                                         resolution, directional_lights_,
+                                         options);
         }) {
     for (const MaterialPrior::Material& m : prior.materials) {
       tried_.push_back(
@@ -136,10 +141,11 @@ class Search {
   // image.
   bool Start() {
     std::vector<Ranking> rankings;
-    for (const LightScales& scales : {LightScales(), LightScales::Harsh()}) {
+    for (const LightHyperparameters& hyperparameters :
+         {LightHyperparameters(), LightHyperparameters::Harsh()}) {
       Ranking& ranking = rankings.emplace_back();
       for (size_t i = 0; i < tried_.size(); ++i) {
-        ranking.push_back({static_cast<int>(i), scales});
+        ranking.push_back({static_cast<int>(i), hyperparameters});
       }
     }
     RankAll(*level_at_(options_.screen), &rankings);
@@ -155,7 +161,7 @@ class Search {
     if (!std::isfinite(rankings.front().front().cost)) return false;
     Report("rank " + std::to_string(tried_.size()) + " materials",
            rankings.front().front().cost, rankings.front().front().misfit);
-    for (int k = 0; k < options_.coarse_rounds.front().most; ++k) {
+    for (int k = 0; k < options_.coarse_stages.front().most; ++k) {
       for (const Ranked& ranked : rankings[k % rankings.size()]) {
         if (!std::isfinite(ranked.cost)) break;
         const bool taken = std::any_of(
@@ -163,13 +169,13 @@ class Search {
             [&](const Candidate& c) { return c.tried == ranked.tried; });
         if (taken) continue;
         from_.push_back({ranked.tried,
-                         coarse_->reflectance().WithLamps(
+                         coarse_->reflectance().WithDirectionalLights(
                              ToEigen(tried_[ranked.tried].parameters)),
-                         ranked.scales, 0.0});
+                         ranked.hyperparameters, 0.0});
         break;
       }
     }
-    for (const SearchRound& round : options_.coarse_rounds) {
+    for (const SearchStage& round : options_.coarse_stages) {
       from_.resize(std::min<size_t>(from_.size(), round.most));
       if (from_.empty() || !Refine("", *coarse_, round.iterations)) {
         return false;
@@ -215,21 +221,21 @@ class Search {
     result.start = tried_[best_candidate_.tried].name;
     result.cost = best_.cost;
     result.misfit = best_.value.misfit;
-    result.scales = best_candidate_.scales;
+    result.hyperparameters = best_candidate_.hyperparameters;
     if (options_.covariance) {
       result.covariance = best_level_->Covariance(&best_);
     }
     const MarginalReflectance& reflectance = best_level_->reflectance();
     result.map_width = reflectance.resolution().map_width;
     result.map_height = reflectance.resolution().map_height;
-    result.lamps =
-        reflectance.LampDirections(best_candidate_.parameters.data());
+    result.directional_lights = reflectance.DirectionalLightDirections(
+        best_candidate_.parameters.data());
     result.log_radiance = LogRadiance();
     result.log_radiance_std = ToVector(
         reflectance.likelihood()
             .LightVariance(
                 reflectance.Matrices(best_candidate_.parameters.data()),
-                best_.noise, best_candidate_.scales, best_.mode)
+                best_.noise, best_candidate_.hyperparameters, best_.mode)
             .cwiseSqrt());
     std::stable_sort(tried_.begin(), tried_.end(),
                      [](const TriedMaterial& a, const TriedMaterial& b) {
@@ -247,7 +253,7 @@ class Search {
   struct Candidate {
     int tried = 0;
     Eigen::VectorXd parameters;
-    LightScales scales;
+    LightHyperparameters hyperparameters;
     double cost = 0.0;
   };
 
@@ -264,7 +270,7 @@ class Search {
     return best_level_->reflectance().LogRadiance(
         best_candidate_.parameters.data(), best_.mode);
   }
-  // Without the lamps.
+  // Without the directional lights.
   std::vector<double> Lobes(const Candidate& candidate) const {
     const double* all = candidate.parameters.data();
     return {all, all + best_level_->reflectance().lobes().num_parameters()};
@@ -279,7 +285,7 @@ class Search {
   // Materials under light of one kind.
   struct Ranked {
     int tried = 0;
-    LightScales scales;
+    LightHyperparameters hyperparameters;
     double cost = kInfinity, misfit = 0.0;
   };
   using Ranking = std::vector<Ranked>;
@@ -296,7 +302,7 @@ class Search {
                     if (i > 0 && Stopped()) return;
                     ranked.cost =
                         level.Rank(ToEigen(tried_[ranked.tried].parameters),
-                                   ranked.scales, &ranked.misfit);
+                                   ranked.hyperparameters, &ranked.misfit);
                   });
       for (const Ranked& ranked : ranking) {
         TriedMaterial& tried = tried_[ranked.tried];
@@ -319,8 +325,8 @@ class Search {
     ParallelFor(static_cast<int64_t>(from_.size()), options_.num_threads,
                 [&](int64_t k, int) {
                   if (k > 0 && Stopped()) return;
-                  ends[k] = level.Refine(from_[k].parameters, from_[k].scales,
-                                         iterations);
+                  ends[k] = level.Refine(from_[k].parameters,
+                                         from_[k].hyperparameters, iterations);
                 });
     std::vector<Candidate> reached;
     for (size_t k = 0; k < ends.size(); ++k) {
@@ -355,7 +361,7 @@ class Search {
   const ReflectanceSearchOptions& options_;
   const std::vector<double>& image_;
   std::vector<double> radiance_;  // the image without bounces
-  const std::vector<Eigen::Vector3d> lamps_;
+  const std::vector<Eigen::Vector3d> directional_lights_;
   const std::function<std::unique_ptr<Level>(const MarginalResolution&)>
       level_at_;
   std::unique_ptr<Level> coarse_, fine_;
@@ -374,7 +380,7 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
     const std::vector<double>& radiance,
     const ReflectanceSearchOptions& options) {
   CHECK(!prior.materials.empty());
-  if (GroupByNormal(points, radiance, options.coarse.cells).num_cells() == 0) {
+  if (BinByNormal(points, radiance, options.coarse.bins).num_bins() == 0) {
     return InvalidInput("image",
                         "no pixel of the object, limb aside, is finite and "
                         "positive in all three channels");

@@ -15,7 +15,7 @@
 namespace ibrdf {
 
 // The best so far, at most so many, go on by so many steps of the descent.
-struct SearchRound {
+struct SearchStage {
   int most = 0;
   int iterations = 0;
 };
@@ -30,15 +30,16 @@ struct ReflectanceSearchOptions {
   int kept = 10;  // of each ranking
   // At the coarse resolution, the best of each going on to the next. The first
   // takes the rankings' best in turns.
-  std::vector<SearchRound> coarse_rounds = {{10, 2}, {8, 4}, {3, 6}};
+  std::vector<SearchStage> coarse_stages = {{10, 2}, {8, 4}, {3, 6}};
   // Nats above the lowest cost: ends of the coarse resolution that go on to the
   // fine one, and of those, after some steps there, the ones that are finished.
   double coarse_margin = 40.0;
   double margin = 12.0;
   int fine_iterations = 20;
-  int most_lamps = 3;  // that the image's highlights make (FindLamps)
-  // Standard deviation of log radiance between model and image, of a cell. Not
-  // the pixels' noise, which a cell averages out, but what no lobes of the
+  int most_directional_lights =
+      3;  // that the image's highlights make (FindDirectionalLights)
+  // Standard deviation of log radiance between model and image, of a bin. Not
+  // the pixels' noise, which a bin averages out, but what no lobes of the
   // model can render: were it free to fall to the noise, light and reflectance
   // would bend to every error of the model.
   double sigma = 0.03;
@@ -66,7 +67,7 @@ struct ReflectanceSearchOptions {
 struct TriedMaterial {
   std::string name;
   double first_cost = 0.0;    // coarse
-  double first_misfit = 0.0;  // mean |log E - log I| over cells
+  double first_misfit = 0.0;  // mean |log L_o - log I| over bins
   // At the finest resolution that the search came to; infinite where this start
   // did not come to it.
   double cost = 0.0;
@@ -74,12 +75,12 @@ struct TriedMaterial {
 };
 
 struct ReflectanceSearchResult {
-  std::vector<double> parameters;      // as LobeModel's
-  std::string start;                   // the material that it began from
-  double cost = 0.0;                   // -log posterior, nats, up to a constant
-  double misfit = 0.0;                 // mean |log E - log I| over cells
-  LightScales scales;                  // of the light's process
-  std::vector<Eigen::Vector3d> lamps;  // their directions
+  std::vector<double> parameters;  // as LobeModel's
+  std::string start;               // the material that it began from
+  double cost = 0.0;               // -log posterior, nats, up to a constant
+  double misfit = 0.0;             // mean |log L_o - log I| over bins
+  LightHyperparameters hyperparameters;             // of the light's process
+  std::vector<Eigen::Vector3d> directional_lights;  // their directions
   // By cost: the refined ones, then the others by their first cost.
   std::vector<TriedMaterial> tried;
   // Of the parameters (Laplace, by the Gauss-Newton Hessian); empty where it

@@ -12,7 +12,7 @@ namespace ibrdf {
 namespace {
 
 // Side of the bins of viewing directions, in components of the unit vector:
-// finer than any cell of normals, and one bin for an orthographic view.
+// finer than any bin of normals, and one bin for an orthographic view.
 constexpr double kViewBin = 0.03;
 
 struct Sums {
@@ -29,13 +29,13 @@ int Bin(double x, double side) {
 
 }  // namespace
 
-MeanCells JoinLikePoints(const std::vector<ShadingPoint>& points,
-                         const std::vector<double>& radiance, int cells_across,
-                         double min_cosine) {
+BinMeans MeanByNormal(const std::vector<ShadingPoint>& points,
+                      const std::vector<double>& radiance, int bins_across,
+                      double min_cosine) {
   CHECK_EQ(radiance.size(), 3 * points.size());
-  CHECK_GT(cells_across, 0);
-  const double side = 2.0 / cells_across;
-  std::map<std::array<int, 5>, Sums> cells;
+  CHECK_GT(bins_across, 0);
+  const double side = 2.0 / bins_across;
+  std::map<std::array<int, 5>, Sums> bins;
   for (size_t i = 0; i < points.size(); ++i) {
     const std::optional<Eigen::Vector2d> in_view =
         NormalInView(points[i], &radiance[3 * i], min_cosine);
@@ -43,17 +43,17 @@ MeanCells JoinLikePoints(const std::vector<ShadingPoint>& points,
     const Eigen::Map<const Eigen::Array3d> rgb(&radiance[3 * i]);
     const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
     const Eigen::Vector3d wo = points[i].wo.cast<double>().normalized();
-    Sums& sums = cells[{Bin(wo.x(), kViewBin), Bin(wo.y(), kViewBin),
-                        Bin(wo.z(), kViewBin), Bin(in_view->y(), side),
-                        Bin(in_view->x(), side)}];
+    Sums& sums = bins[{Bin(wo.x(), kViewBin), Bin(wo.y(), kViewBin),
+                       Bin(wo.z(), kViewBin), Bin(in_view->y(), side),
+                       Bin(in_view->x(), side)}];
     if (sums.first == nullptr) sums.first = &points[i];
     sums.normal += n;
     sums.wo += wo;
     sums.log_radiance += rgb.log();
     ++sums.count;
   }
-  MeanCells out;
-  for (const auto& [key, sums] : cells) {
+  BinMeans out;
+  for (const auto& [key, sums] : bins) {
     ShadingPoint point = *sums.first;
     point.normal = sums.normal.normalized().cast<float>();
     point.wo = sums.wo.normalized().cast<float>();

@@ -7,21 +7,21 @@
 
 namespace ibrdf {
 
-struct MeanCells {
+struct BinMeans {
   std::vector<ShadingPoint> points;  // mean normal and view; pixel of a member
   std::vector<double> radiance;      // [points * 3], geometric mean
 };
 
 // Joins points of like normals, seen along like directions: a point of distant
-// light without shadows says no more than these two, so that a cell's mean
-// radiance is that of its mean normal but for the second order in the cell's
-// size, and the noise of its pixels averages out. cells_across > 0: of the
+// light without shadows says no more than these two, so that a bin's mean
+// radiance is that of its mean normal but for the second order in the bin's
+// size, and the noise of its pixels averages out. bins_across > 0: of the
 // diameter of the disc of normals seen along an orthographic view. Points at a
 // cosine below min_cosine are left out (at the limb a pixel's centre stands
 // badly for its area), as are those that are not finite and positive in all
 // channels of radiance [points * 3].
-MeanCells JoinLikePoints(const std::vector<ShadingPoint>& points,
-                         const std::vector<double>& radiance, int cells_across,
-                         double min_cosine);
+BinMeans MeanByNormal(const std::vector<ShadingPoint>& points,
+                      const std::vector<double>& radiance, int bins_across,
+                      double min_cosine);
 
 }  // namespace ibrdf

@@ -8,20 +8,20 @@
 
 namespace ibrdf {
 
-struct ImageCells {
-  // Of each cell up to some pixels, cell by cell; cell i has
+struct NormalBins {
+  // Of each bin up to some pixels, bin by bin; bin i has
   // [first[i], first[i + 1]).
   std::vector<ShadingPoint> points;
   std::vector<int> first;
-  // Log of the mean radiance of a cell's points [3 * cells], by channel.
+  // Log of the mean radiance of a bin's points [3 * bins], by channel.
   std::vector<double> log_radiance;
 
-  int num_cells() const { return static_cast<int>(first.size()) - 1; }
+  int num_bins() const { return static_cast<int>(first.size()) - 1; }
 };
 
-struct ImageCellOptions {
-  int cells_across = 16;    // of the disc of visible normals
-  int points_per_cell = 4;  // at most
+struct NormalBinOptions {
+  int bins_across = 16;    // of the disc of visible normals
+  int points_per_bin = 4;  // at most
   // Pixels seen at a smaller cosine are left out: at the limb a pixel's centre
   // stands badly for its area.
   double min_cosine = 0.2;
@@ -36,13 +36,13 @@ std::optional<Eigen::Vector2d> NormalInView(const ShadingPoint& point,
                                             double min_cosine);
 
 // radiance [points][3]; points that are not finite and positive in all channels
-// take no part. A cell's radiance is the mean over exactly the points kept, so
+// take no part. A bin's radiance is the mean over exactly the points kept, so
 // that a model's mean over them has no error of resolution.
-ImageCells GroupByNormal(const std::vector<ShadingPoint>& points,
-                         const std::vector<double>& radiance,
-                         const ImageCellOptions& options);
+NormalBins BinByNormal(const std::vector<ShadingPoint>& points,
+                       const std::vector<double>& radiance,
+                       const NormalBinOptions& options);
 
-// Those with keep [cells] set.
-ImageCells KeepCells(const ImageCells& cells, const std::vector<bool>& keep);
+// Those with keep [bins] set.
+NormalBins KeepBins(const NormalBins& bins, const std::vector<bool>& keep);
 
 }  // namespace ibrdf

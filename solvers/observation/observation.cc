@@ -60,18 +60,18 @@ std::unique_ptr<Level> MakeFullLevel(const InverseProblem& problem) {
   return MakeLevel(problem.points, RadianceOf(problem.image, problem.points));
 }
 
-std::unique_ptr<Level> MakeCellLevel(const InverseProblem& problem,
-                                     int cells_across) {
+std::unique_ptr<Level> MakeBinnedLevel(const InverseProblem& problem,
+                                       int bins_across) {
   if (problem.transport.visibility != nullptr) return MakeThinLevel(problem);
   const std::vector<double> radiance =
       RadianceOf(problem.image, problem.points);
-  MeanCells cells =
-      JoinLikePoints(problem.points, radiance, cells_across, kMinCosine);
-  if (cells.points.empty()) return MakeLevel(problem.points, radiance);
-  return MakeLevel(std::move(cells.points), cells.radiance);
+  BinMeans bins =
+      MeanByNormal(problem.points, radiance, bins_across, kMinCosine);
+  if (bins.points.empty()) return MakeLevel(problem.points, radiance);
+  return MakeLevel(std::move(bins.points), bins.radiance);
 }
 
-LevelPair MakeLevelPair(const InverseProblem& problem, int cells_across) {
+LevelPair MakeLevelPair(const InverseProblem& problem, int bins_across) {
   size_t step = 1;  // in squares' pixels, each way
   while (problem.points.size() >
          kMostPairPoints * kOfBlocks * kOfBlocks * step * step) {
@@ -87,34 +87,33 @@ LevelPair MakeLevelPair(const InverseProblem& problem, int cells_across) {
     }
   }
   const std::vector<double> radiance = RadianceOf(problem.image, some);
-  MeanCells cells = JoinLikePoints(some, radiance, cells_across, kMinCosine);
-  return {MakeLevel(std::move(cells.points), cells.radiance),
+  BinMeans bins = MeanByNormal(some, radiance, bins_across, kMinCosine);
+  return {MakeLevel(std::move(bins.points), bins.radiance),
           MakeLevel(std::move(some), radiance)};
 }
 
-double JoiningError(const Level& pixels, const std::vector<double>& of_pixels,
-                    const std::vector<double>& of_cells, int cells_across) {
-  // Pixels that are in no cell of the image are in none here.
+double BinningError(const Level& pixels, const std::vector<double>& of_pixels,
+                    const std::vector<double>& of_bins, int bins_across) {
+  // Pixels that are in no bin of the image are in none here.
   std::vector<double> radiance = of_pixels;
   for (size_t i = 0; i < radiance.size(); ++i) {
     if (!pixels.observed.valid[i / 3]) radiance[i] = 0.0;
   }
   const std::vector<double> joined =
-      JoinLikePoints(pixels.points, radiance, cells_across, kMinCosine)
-          .radiance;
-  if (joined.empty() || joined.size() != of_cells.size()) return 0.0;
+      MeanByNormal(pixels.points, radiance, bins_across, kMinCosine).radiance;
+  if (joined.empty() || joined.size() != of_bins.size()) return 0.0;
   double sum = 0.0;
   for (size_t i = 0; i < joined.size(); ++i) {
-    sum += std::abs(std::log(of_cells[i] / joined[i]));
+    sum += std::abs(std::log(of_bins[i] / joined[i]));
   }
   return std::isfinite(sum) ? sum / static_cast<double>(joined.size()) : 0.0;
 }
 
 std::unique_ptr<Level> MakeSampleLevel(const InverseProblem& problem,
-                                       int cells_across) {
+                                       int bins_across) {
   const std::vector<ShadingPoint> points =
-      GroupByNormal(problem.points, RadianceOf(problem.image, problem.points),
-                    {cells_across, 1, kMinCosine})
+      BinByNormal(problem.points, RadianceOf(problem.image, problem.points),
+                  {bins_across, 1, kMinCosine})
           .points;
   if (points.empty()) return MakeFullLevel(problem);
   return MakeLevel(points, RadianceOf(problem.image, points));

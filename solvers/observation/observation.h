@@ -23,29 +23,29 @@ std::vector<double> RadianceOf(const Image& image,
 // All of the problem's points.
 std::unique_ptr<Level> MakeFullLevel(const InverseProblem& problem);
 
-// Points of like normals joined, cells_across > 0 of the diameter of the disc
+// Points of like normals joined, bins_across > 0 of the diameter of the disc
 // of normals; all pixels where the image has none away from the limb. With
 // shadows, which points of like normals do not share, some pixels as they are:
 // every so many rows and columns.
-std::unique_ptr<Level> MakeCellLevel(const InverseProblem& problem,
-                                     int cells_across);
+std::unique_ptr<Level> MakeBinnedLevel(const InverseProblem& problem,
+                                       int bins_across);
 
-// A ninth of the image, of a large one less, as MakeCellLevel's and pixel by
+// A ninth of the image, of a large one less, as MakeBinnedLevel's and pixel by
 // pixel.
 struct LevelPair {
-  std::unique_ptr<Level> cells, pixels;
+  std::unique_ptr<Level> bins, pixels;
 };
-LevelPair MakeLevelPair(const InverseProblem& problem, int cells_across);
+LevelPair MakeLevelPair(const InverseProblem& problem, int bins_across);
 
-// What joining leaves out of an image: mean |log cell - mean log of its pixels|
+// What joining leaves out of an image: mean |log bin - mean log of its pixels|
 // of the radiance [points * 3] that a model gives a pair's points. 0 where it
 // gives a pixel none.
-double JoiningError(const Level& pixels, const std::vector<double>& of_pixels,
-                    const std::vector<double>& of_cells, int cells_across);
+double BinningError(const Level& pixels, const std::vector<double>& of_pixels,
+                    const std::vector<double>& of_bins, int bins_across);
 
-// One pixel, as it is, of each cell of like normals; all where there is none
+// One pixel, as it is, of each bin of like normals; all where there is none
 // away from the limb.
 std::unique_ptr<Level> MakeSampleLevel(const InverseProblem& problem,
-                                       int cells_across);
+                                       int bins_across);
 
 }  // namespace ibrdf

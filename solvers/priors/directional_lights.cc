@@ -11,7 +11,8 @@ namespace ibrdf {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
-// Seen at smaller cosines, mirrored light is Fresnel's as much as a lamp's.
+// Seen at smaller cosines, mirrored light is Fresnel's as much as a directional
+// light's.
 constexpr double kMinCosine = 0.25;
 // A highlight is the brightest within this angle of mirrored directions, and
 // brighter by this factor than the median at its rim.
@@ -20,16 +21,16 @@ constexpr double kRim = 14.0;
 constexpr double kContrast = 1.1;
 // Rows of the bins of directions, of 5 degrees: far below the reach.
 constexpr int kBinRows = 36;
-// Of NearLamps: how far a lamp's direction may be off, one deviation, and the
-// least weight that counts.
+// Of NearDirectionalLights: how far a directional light's direction may be off,
+// one deviation, and the least weight that counts.
 constexpr double kSpread = 4.0;
 constexpr double kLeastWeight = 0.05;
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
-                                       const std::vector<double>& radiance,
-                                       int most) {
+std::vector<Eigen::Vector3d> FindDirectionalLights(
+    const std::vector<ShadingPoint>& points,
+    const std::vector<double>& radiance, int most) {
   std::vector<Eigen::Vector3d> mirrored;
   std::vector<double> luminance;
   // Only the brightest of a bin can be the brightest within reach, which spares
@@ -57,12 +58,13 @@ std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
   });
   const double reach = std::cos(kReach * kDegree);
   const double rim = std::cos(kRim * kDegree);
-  std::vector<Eigen::Vector3d> lamps, looked_at;
+  std::vector<Eigen::Vector3d> directional_lights, looked_at;
   for (const size_t i : order) {
-    if (static_cast<int>(lamps.size()) >= most) break;
+    if (static_cast<int>(directional_lights.size()) >= most) break;
     if (luminance[i] != brightest[bin[i]]) continue;
     // The first of equals stands for them: where a highlight is saturated there
-    // are many, each with a look at all others, and all are one lamp.
+    // are many, each with a look at all others, and all are one directional
+    // light.
     const bool near = std::any_of(
         looked_at.begin(), looked_at.end(),
         [&](const Eigen::Vector3d& d) { return d.dot(mirrored[i]) >= reach; });
@@ -87,26 +89,30 @@ std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
       if (mirrored[j].dot(mirrored[i]) < rim) continue;
       centre += std::max(luminance[j] - half, 0.0) * mirrored[j];
     }
-    lamps.push_back(centre.normalized());
+    directional_lights.push_back(centre.normalized());
   }
-  return lamps;
+  return directional_lights;
 }
 
-Eigen::Vector3d MovedLamp(const Eigen::Vector3d& lamp, const double* offsets) {
-  const Eigen::Vector3d axis = lamp.unitOrthogonal();
-  return (lamp + offsets[0] * axis + offsets[1] * lamp.cross(axis))
+Eigen::Vector3d MovedDirectionalLight(const Eigen::Vector3d& directional_light,
+                                      const double* offsets) {
+  const Eigen::Vector3d axis = directional_light.unitOrthogonal();
+  return (directional_light + offsets[0] * axis +
+          offsets[1] * directional_light.cross(axis))
       .normalized();
 }
 
-std::vector<LampTexel> NearLamps(const std::vector<Eigen::Vector3d>& lamps,
-                                 int height, int width) {
-  std::vector<LampTexel> near;
-  for (int t = 0; t < (lamps.empty() ? 0 : height * width); ++t) {
+std::vector<DirectionalLightTexel> NearDirectionalLights(
+    const std::vector<Eigen::Vector3d>& directional_lights, int height,
+    int width) {
+  std::vector<DirectionalLightTexel> near;
+  for (int t = 0; t < (directional_lights.empty() ? 0 : height * width); ++t) {
     const Eigen::Vector3d direction =
         MapDirection(t / width + 0.5, t % width + 0.5, height, width);
     double weight = 0.0;
-    for (const Eigen::Vector3d& lamp : lamps) {
-      const double angle = std::acos(std::min(direction.dot(lamp), 1.0));
+    for (const Eigen::Vector3d& directional_light : directional_lights) {
+      const double angle =
+          std::acos(std::min(direction.dot(directional_light), 1.0));
       const double spreads = angle / (kDegree * kSpread);
       weight = std::max(weight, std::exp(-0.5 * spreads * spreads));
     }

@@ -1,5 +1,6 @@
-// Compact sources of light: the sun, lamps, windows far away. A Gaussian
-// process of log radiance that is right for the rest of light holds none.
+// Compact sources of light: the sun, directional lights, windows far away. A
+// Gaussian process of log radiance that is right for the rest of light holds
+// none.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -8,28 +9,33 @@
 
 namespace ibrdf {
 
-// sr. A lamp has no width; its radiance is that of so large a piece of sky.
-inline constexpr double kLampSolidAngle = 0.1;
+// sr. A directional light has no width; its radiance is that of so large a
+// piece of sky.
+inline constexpr double kDirectionalLightSolidAngle = 0.1;
 
 // Where light that makes the image's highlights comes from if it mirrors: unit
 // directions, at most `most`, the brightest first. A highlight is a local
 // maximum of luminance over the directions around it. radiance [points][3].
-std::vector<Eigen::Vector3d> FindLamps(const std::vector<ShadingPoint>& points,
-                                       const std::vector<double>& radiance,
-                                       int most);
+std::vector<Eigen::Vector3d> FindDirectionalLights(
+    const std::vector<ShadingPoint>& points,
+    const std::vector<double>& radiance, int most);
 
-// A lamp at offsets [2], radians along two axes of its tangent plane.
-Eigen::Vector3d MovedLamp(const Eigen::Vector3d& lamp, const double* offsets);
+// A directional light at offsets [2], radians along two axes of its tangent
+// plane.
+Eigen::Vector3d MovedDirectionalLight(const Eigen::Vector3d& directional_light,
+                                      const double* offsets);
 
-// A texel of a map [H, W] in which a lamp may be.
-struct LampTexel {
-  int texel = 0;        // row * W + column
-  double weight = 0.0;  // in (0, 1]: of LightProcess::Lamp's deviations
+// A texel of a map [H, W] in which a directional light may be.
+struct DirectionalLightTexel {
+  int texel = 0;  // row * W + column
+  double weight =
+      0.0;  // in (0, 1]: of LightProcess::Directional light's deviations
 };
 
-// Those around lamps whose directions are known to some degrees, in order;
-// where lamps meet, the larger weight.
-std::vector<LampTexel> NearLamps(const std::vector<Eigen::Vector3d>& lamps,
-                                 int height, int width);
+// Those around directional lights whose directions are known to some degrees,
+// in order; where directional lights meet, the larger weight.
+std::vector<DirectionalLightTexel> NearDirectionalLights(
+    const std::vector<Eigen::Vector3d>& directional_lights, int height,
+    int width);
 
 }  // namespace ibrdf

@@ -19,7 +19,8 @@ Eigen::Matrix3d GreyAndChroma(double grey, double chroma) {
 
 }  // namespace
 
-std::array<double, LightScales::kCount> LightScales::Whitened() const {
+std::array<double, LightHyperparameters::kCount>
+LightHyperparameters::Whitened() const {
   std::array<double, kCount> y;
   y[0] = log_amplitude / kAmplitudeStd;
   for (int b = 0; b < kBands; ++b) {
@@ -28,16 +29,16 @@ std::array<double, LightScales::kCount> LightScales::Whitened() const {
   return y;
 }
 
-LightScales LightScales::FromWhitened(const double* y) {
-  LightScales scales;
-  scales.log_amplitude = kAmplitudeStd * y[0];
+LightHyperparameters LightHyperparameters::FromWhitened(const double* y) {
+  LightHyperparameters hyperparameters;
+  hyperparameters.log_amplitude = kAmplitudeStd * y[0];
   for (int b = 0; b < kBands; ++b) {
-    scales.log_roughness[b] = kMean[b] + kStd[b] * y[1 + b];
+    hyperparameters.log_roughness[b] = kMean[b] + kStd[b] * y[1 + b];
   }
-  return scales;
+  return hyperparameters;
 }
 
-std::array<double, LightScales::kCount> LightScales::Stds() {
+std::array<double, LightHyperparameters::kCount> LightHyperparameters::Stds() {
   std::array<double, kCount> stds;
   stds[0] = kAmplitudeStd;
   std::copy(kStd.begin(), kStd.end(), stds.begin() + 1);
@@ -59,8 +60,9 @@ Eigen::Matrix3d LightProcess::Level() const {
   return GreyAndChroma(level_variance, level_chroma_variance);
 }
 
-Eigen::Matrix3d LightProcess::Lamp() const {
-  return GreyAndChroma(lamp_variance, lamp_chroma_variance);
+Eigen::Matrix3d LightProcess::DirectionalLight() const {
+  return GreyAndChroma(directional_light_variance,
+                       directional_light_chroma_variance);
 }
 
 Eigen::Matrix3d ColourAxes() {
@@ -84,9 +86,9 @@ double LightProcess::Rough(const Eigen::Vector3d& a,
 }
 
 RowMatrix RoughnessWeights(int map_height) {
-  constexpr int kLast = LightScales::kBands - 1;
-  const auto& zenith = LightScales::kZenith;
-  RowMatrix weights = RowMatrix::Zero(LightScales::kBands, map_height);
+  constexpr int kLast = LightHyperparameters::kBands - 1;
+  const auto& zenith = LightHyperparameters::kZenith;
+  RowMatrix weights = RowMatrix::Zero(LightHyperparameters::kBands, map_height);
   for (int r = 0; r < map_height; ++r) {
     const double at =
         std::clamp(180.0 * (r + 0.5) / map_height, zenith[0], zenith[kLast]);
@@ -99,9 +101,10 @@ RowMatrix RoughnessWeights(int map_height) {
   return weights;
 }
 
-Eigen::VectorXd Roughness(int map_height, const LightScales& scales) {
+Eigen::VectorXd Roughness(int map_height,
+                          const LightHyperparameters& hyperparameters) {
   const Eigen::Map<const Eigen::RowVectorXd> log_roughness(
-      scales.log_roughness.data(), LightScales::kBands);
+      hyperparameters.log_roughness.data(), LightHyperparameters::kBands);
   return (log_roughness * RoughnessWeights(map_height))
       .transpose()
       .array()
@@ -122,11 +125,11 @@ Eigen::VectorXd ByTexel(const Eigen::VectorXd& by_row, int map_width) {
 
 RowMatrix LightCorrelation(int map_height, int map_width,
                            const LightProcess& process,
-                           const LightScales& scales) {
-  const Eigen::VectorXd roughness = Roughness(map_height, scales);
+                           const LightHyperparameters& hyperparameters) {
+  const Eigen::VectorXd roughness = Roughness(map_height, hyperparameters);
   const Eigen::VectorXd step = HorizonStep(map_height);
   const double horizon =
-      process.horizon_share * std::exp(-scales.log_amplitude);
+      process.horizon_share * std::exp(-hyperparameters.log_amplitude);
   std::vector<Eigen::Vector3d> directions;
   for (int r = 0; r < map_height; ++r) {
     for (int c = 0; c < map_width; ++c) {

@@ -9,9 +9,9 @@
 namespace ibrdf {
 
 // What differs from light to light, and is estimated with it: how much it
-// varies, and how rough it is by elevation. Skies are smooth; horizons, lamps
-// and windows are not.
-struct LightScales {
+// varies, and how rough it is by elevation. Skies are smooth; horizons,
+// directional lights and windows are not.
+struct LightHyperparameters {
   // Zenith angles, degrees, at which log_roughness is given; linear between
   // them, constant beyond.
   static constexpr int kBands = 4;
@@ -26,19 +26,21 @@ struct LightScales {
 
   // Where they are not estimated: the variances of all maps together, which
   // rough places make.
-  static LightScales Average() { return {0.0, {0.0, 0.0, 0.0, 0.0}}; }
+  static LightHyperparameters Average() { return {0.0, {0.0, 0.0, 0.0, 0.0}}; }
 
-  // A deviation above the mean in all: few bright lamps in the dark.
-  static LightScales Harsh() {
-    LightScales scales{kAmplitudeStd, kMean};
-    for (int b = 0; b < kBands; ++b) scales.log_roughness[b] += kStd[b];
-    return scales;
+  // A deviation above the mean in all: few bright directional lights in the
+  // dark.
+  static LightHyperparameters Harsh() {
+    LightHyperparameters hyperparameters{kAmplitudeStd, kMean};
+    for (int b = 0; b < kBands; ++b)
+      hyperparameters.log_roughness[b] += kStd[b];
+    return hyperparameters;
   }
 
   // As standard normal variables, the amplitude first.
   static constexpr int kCount = 1 + kBands;
   std::array<double, kCount> Whitened() const;
-  static LightScales FromWhitened(const double* y);
+  static LightHyperparameters FromWhitened(const double* y);
   static std::array<double, kCount> Stds();
 };
 
@@ -62,9 +64,10 @@ struct LightProcess {
   double chroma_variance = 0.12;
   double level_variance = 4.0;
   double level_chroma_variance = 0.12;
-  // Of a lamp's log radiance besides (light_lamps.h); no amplitude scales it.
-  double lamp_variance = 6.25;
-  double lamp_chroma_variance = 0.25;
+  // Of a directional light's log radiance besides (light_lamps.h); no amplitude
+  // hyperparameters it.
+  double directional_light_variance = 6.25;
+  double directional_light_chroma_variance = 0.25;
 
   // Variance of one channel's log radiance inside a square of that side, at
   // amplitude 1 and roughness 1.
@@ -72,7 +75,8 @@ struct LightProcess {
 
   Eigen::Matrix3d Local() const;  // M
   Eigen::Matrix3d Level() const;  // B
-  Eigen::Matrix3d Lamp() const;   // of a lamp, besides B
+  Eigen::Matrix3d DirectionalLight()
+      const;  // of a directional light, besides B
 
   // The first two parts of C between unit directions, without shares and
   // roughness.
@@ -81,13 +85,14 @@ struct LightProcess {
 };
 
 // Rows: grey, then two axes of chroma; orthonormal. They diagonalise Local(),
-// Level() and Lamp().
+// Level() and Directional light().
 Eigen::Matrix3d ColourAxes();
 
 // Weights of log_roughness in the rows of a map, [bands][rows].
 RowMatrix RoughnessWeights(int map_height);
 // S [rows].
-Eigen::VectorXd Roughness(int map_height, const LightScales& scales);
+Eigen::VectorXd Roughness(int map_height,
+                          const LightHyperparameters& hyperparameters);
 // h [rows]; 0 in a row that the horizon halves.
 Eigen::VectorXd HorizonStep(int map_height);
 // What texels [H W] have from their rows [H].
@@ -96,6 +101,6 @@ Eigen::VectorXd ByTexel(const Eigen::VectorXd& by_row, int map_width);
 // C between the texels of a map, [H W][H W].
 RowMatrix LightCorrelation(int map_height, int map_width,
                            const LightProcess& process,
-                           const LightScales& scales);
+                           const LightHyperparameters& hyperparameters);
 
 }  // namespace ibrdf

@@ -115,16 +115,18 @@ ProcessSpectrum::ProcessSpectrum(int height, int width,
         return process.Rough(a, b);
       }) {}
 
-LightSpectrum ProcessSpectrum::At(const LightScales& scales) const {
-  return smooth_.Plus(RoughAt(scales))
-      .PlusRows(
-          std::sqrt(process_.horizon_share * std::exp(-scales.log_amplitude)) *
-          HorizonStep(smooth_.height()));
+LightSpectrum ProcessSpectrum::At(
+    const LightHyperparameters& hyperparameters) const {
+  return smooth_.Plus(RoughAt(hyperparameters))
+      .PlusRows(std::sqrt(process_.horizon_share *
+                          std::exp(-hyperparameters.log_amplitude)) *
+                HorizonStep(smooth_.height()));
 }
 
-LightSpectrum ProcessSpectrum::RoughAt(const LightScales& scales) const {
+LightSpectrum ProcessSpectrum::RoughAt(
+    const LightHyperparameters& hyperparameters) const {
   return rough_.Scaled(process_.rough_share,
-                       Roughness(rough_.height(), scales));
+                       Roughness(rough_.height(), hyperparameters));
 }
 
 }  // namespace ibrdf

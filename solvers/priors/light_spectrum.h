@@ -47,13 +47,13 @@ class LightSpectrum {
   std::vector<RowMatrix> blocks_;
 };
 
-// The correlation of LightProcess on a map, for any scales.
+// The correlation of LightProcess on a map, for any hyperparameters.
 class ProcessSpectrum {
  public:
   ProcessSpectrum(int height, int width, const LightProcess& process);
   // All of C, and its rough part.
-  LightSpectrum At(const LightScales& scales) const;
-  LightSpectrum RoughAt(const LightScales& scales) const;
+  LightSpectrum At(const LightHyperparameters& hyperparameters) const;
+  LightSpectrum RoughAt(const LightHyperparameters& hyperparameters) const;
 
  private:
   LightProcess process_;

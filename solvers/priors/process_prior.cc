@@ -32,9 +32,10 @@ RowMatrix Precision(const RowMatrix& correlation, double local, double level,
 
 }  // namespace
 
-ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
-                           const LightScales& scales, double level,
-                           const std::vector<Eigen::Vector3d>& lamps)
+ProcessPrior::ProcessPrior(
+    int height, int width, const LightProcess& process,
+    const LightHyperparameters& hyperparameters, double level,
+    const std::vector<Eigen::Vector3d>& directional_lights)
     : height_(height),
       width_(width),
       block_rows_(std::max(height / BlockSide(width), 1)),
@@ -54,21 +55,25 @@ ProcessPrior::ProcessPrior(int height, int width, const LightProcess& process,
     column_weight_.push_back(1.0 / columns[BlockColumn(x)]);
   }
   const RowMatrix correlation =
-      LightCorrelation(block_rows_, block_columns_, process, scales);
-  const double amplitude = std::exp(scales.log_amplitude);
-  Eigen::VectorXd lamp_share = Eigen::VectorXd::Zero(correlation.rows());
-  for (const LampTexel& near : NearLamps(lamps, height, width)) {
+      LightCorrelation(block_rows_, block_columns_, process, hyperparameters);
+  const double amplitude = std::exp(hyperparameters.log_amplitude);
+  Eigen::VectorXd directional_light_share =
+      Eigen::VectorXd::Zero(correlation.rows());
+  for (const DirectionalLightTexel& near :
+       NearDirectionalLights(directional_lights, height, width)) {
     const int row = near.texel / width, column = near.texel % width;
     const double share = WeightOf(row, column) * near.weight;
-    lamp_share[BlockOf(row, column)] += share * share;
+    directional_light_share[BlockOf(row, column)] += share * share;
   }
   // Along grey the channels add up.
-  grey_ = Precision(correlation, 3 * amplitude * process.luminance_variance,
-                    3 * process.level_variance,
-                    3 * process.lamp_variance * lamp_share);
-  chroma_ = Precision(correlation, amplitude * process.chroma_variance,
-                      process.level_chroma_variance,
-                      process.lamp_chroma_variance * lamp_share);
+  grey_ = Precision(
+      correlation, 3 * amplitude * process.luminance_variance,
+      3 * process.level_variance,
+      3 * process.directional_light_variance * directional_light_share);
+  chroma_ = Precision(
+      correlation, amplitude * process.chroma_variance,
+      process.level_chroma_variance,
+      process.directional_light_chroma_variance * directional_light_share);
 }
 
 Eigen::MatrixXd ProcessPrior::Means(const float* log_map) const {

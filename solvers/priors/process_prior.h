@@ -12,13 +12,13 @@ namespace ibrdf {
 // 1/2 (D l - m)^T K^-1 (D l - m): D means of log radiance over blocks that
 // leave 32 to 63 columns, K the covariance of LightProcess between the blocks'
 // centres, m one level for all channels. Finer detail is left to others. Blocks
-// at the lamps (unit directions) vary besides by what their texels of NearLamps
-// do, each by itself.
+// at the directional lights (unit directions) vary besides by what their texels
+// of NearDirectionalLights do, each by itself.
 class ProcessPrior final : public LightPrior {
  public:
   ProcessPrior(int height, int width, const LightProcess& process,
-               const LightScales& scales, double level,
-               const std::vector<Eigen::Vector3d>& lamps = {});
+               const LightHyperparameters& hyperparameters, double level,
+               const std::vector<Eigen::Vector3d>& directional_lights = {});
 
   double Evaluate(const float* log_map, float* gradient) override;
   void AddProduct(const float* v, float* out) const override;

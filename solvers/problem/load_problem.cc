@@ -20,7 +20,7 @@ namespace {
 constexpr int kLeastKnownWidth = 128;
 // Beyond it texels are finer than pixels and rings (PointQuadrature) show them.
 constexpr int kMostKnownWidth = 256;
-// What a transport takes of a map; the rest is for emitters and bright samples.
+// What a transport takes of a map; the rest is for patches and bright samples.
 constexpr int kMostFarCells = 3 * kMaxFarSources / 4;
 
 Status LoadImage(const ImageSpec& spec, Image* image, Mask* mask) {
@@ -135,7 +135,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
       problem, *scene, inverse.points,
       inverse.known_map.has_value() ? &*inverse.known_map : nullptr,
       inverse.known_brdf.has_value() ? &*inverse.known_brdf : nullptr,
-      kWorthwhileLogError, num_threads);
+      kSolveOmissionError, num_threads);
   if (!effects.ok()) return effects.status();
   inverse.effects = *std::move(effects);
   if (inverse.effects.visibility) {
@@ -152,11 +152,11 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
     inverse.transport.visibility =
         std::make_shared<Visibility>(*scene, inverse.points, rays);
     if (inverse.effects.bounces > 0) {
-      SurfaceEmitterOptions emitters =
-          EmittersFor(inverse.points.size(), inverse.effects.bounces);
-      emitters.num_threads = num_threads;
-      inverse.transport.emitters = std::make_shared<SurfaceEmitters>(
-          *scene, inverse.points, inverse.transport.visibility, emitters);
+      RadiosityOptions patches =
+          PatchesFor(inverse.points.size(), inverse.effects.bounces);
+      patches.num_threads = num_threads;
+      inverse.transport.patches = std::make_shared<RadiosityPatches>(
+          *scene, inverse.points, inverse.transport.visibility, patches);
     }
   }
   return inverse;

@@ -93,7 +93,7 @@ Image RenderBrdfSphere(const BrdfFunction& brdf,
                        const std::vector<DirectionalLight>& lights, int size,
                        int samples_per_side) {
   const std::vector<ShadingPoint> points = SpherePoints(size, samples_per_side);
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   for (size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
     // The BRDF is isotropic: any tangents do.
@@ -112,9 +112,9 @@ Image RenderBrdfSphere(const BrdfFunction& brdf,
       radiance += brdf(angles.theta_h, angles.theta_d, angles.phi_d) *
                   light.irradiance * wi.z();
     }
-    Eigen::Map<Eigen::Array3d>(E.data() + 3 * i) = radiance;
+    Eigen::Map<Eigen::Array3d>(L_o.data() + 3 * i) = radiance;
   }
-  return PixelMeans(points, E.data(), size, size);
+  return PixelMeans(points, L_o.data(), size, size);
 }
 
 Image RenderBrdfSphere(const MerlTable& table, const Image& map, int size,
@@ -125,9 +125,9 @@ Image RenderBrdfSphere(const MerlTable& table, const Image& map, int size,
   options.near_ring_samples = 36;
   options.far_width = 32;
   options.num_threads = num_threads;
-  std::vector<double> E(3 * points.size());
-  ReferenceRenderer(map, options).Render(points, table, E.data());
-  return PixelMeans(points, E.data(), size, size);
+  std::vector<double> L_o(3 * points.size());
+  ReferenceRenderer(map, options).Render(points, table, L_o.data());
+  return PixelMeans(points, L_o.data(), size, size);
 }
 
 Mask BrdfSphereMask(int size) {

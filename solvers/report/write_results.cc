@@ -44,21 +44,22 @@ Json EffectsJson(const InverseProblem& inverse) {
                      {"hidden_90", plan.probe.hidden_90},
                      {"hidden_max", plan.probe.hidden_max},
                      {"shadowed_share", plan.probe.shadowed_share},
-                     {"log_radiance_error_without", plan.worth.unshadowed},
+                     {"log_radiance_error_without", plan.omission.unshadowed},
                      {"log_radiance_error_threshold", plan.threshold},
-                     {"seconds_predicted", plan.worth.shadow_seconds}};
+                     {"seconds_predicted", plan.omission.shadow_seconds}};
   if (const Visibility* rays = inverse.transport.visibility.get()) {
     visibility["rays"] = rays->num_rays();
     visibility["bytes"] = rays->MemoryBytes();
   }
-  Json interreflection = {{"simulated", plan.bounces > 0},
-                          {"bounces", plan.bounces},
-                          {"log_radiance_error_by_bounces", plan.worth.bounces},
-                          {"log_radiance_error_threshold", plan.threshold},
-                          {"seconds_predicted", plan.worth.bounce_seconds}};
-  if (const SurfaceEmitters* emitters = inverse.transport.emitters.get()) {
-    interreflection["emitters"] = emitters->count();
-    interreflection["bytes"] = emitters->MemoryBytes();
+  Json interreflection = {
+      {"simulated", plan.bounces > 0},
+      {"bounces", plan.bounces},
+      {"log_radiance_error_by_bounces", plan.omission.bounces},
+      {"log_radiance_error_threshold", plan.threshold},
+      {"seconds_predicted", plan.omission.bounce_seconds}};
+  if (const RadiosityPatches* patches = inverse.transport.patches.get()) {
+    interreflection["emitters"] = patches->count();
+    interreflection["bytes"] = patches->MemoryBytes();
   }
   return {{"visibility", visibility},
           {"interreflection", interreflection},
@@ -216,7 +217,7 @@ const char* StatusName(const Status& status) {
   }
 }
 
-// log E - log I with the likelihood's epsilon; 0 outside and where the pixel
+// log L_o - log I with the likelihood's epsilon; 0 outside and where the pixel
 // took no part: other programs sum over the file.
 Image Residual(const InverseProblem& inverse, const Solution& estimate) {
   Image residual(inverse.image.width, inverse.image.height);

@@ -27,10 +27,10 @@ std::vector<double> ByGaussians(const std::vector<ShadingPoint>& points,
                                 const BrdfGrid& grid, const Image& map) {
   const GaussianLight light(map);
   const GaussianTransport transport(light.lobes(), Options());
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   transport.Render(points, transport.Tabulate(grid), light.Fit(map.rgb.data()),
-                   E.data());
-  return E;
+                   L_o.data());
+  return L_o;
 }
 
 // From almost constant to the sun, above and below horizons, some dark.
@@ -78,9 +78,9 @@ TEST(GaussianTransport, LambertUnderOneGaussianMatchesBruteForce) {
   const Eigen::Vector3d t = axis.unitOrthogonal(), b = axis.cross(t);
   for (const double sharpness : {1e-3, 3.0, 17.0, 300.0, 1e4}) {
     const GaussianTransport transport({{axis, sharpness}}, Options());
-    std::vector<double> E(3 * points.size());
+    std::vector<double> L_o(3 * points.size());
     transport.Render(points, transport.Tabulate(grid),
-                     GaussianColours::Ones(1, 3), E.data());
+                     GaussianColours::Ones(1, 3), L_o.data());
     double mean_error = 0.0;
     for (size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
@@ -99,8 +99,8 @@ TEST(GaussianTransport, LambertUnderOneGaussianMatchesBruteForce) {
       }
       // Of the radiance that faces the axis.
       const double full = GaussianIntegral(sharpness) / kPi;
-      mean_error += std::abs(E[3 * i] - sum) / full / points.size();
-      EXPECT_NEAR(sum, E[3 * i], 6e-3 * full) << i << " " << sharpness;
+      mean_error += std::abs(L_o[3 * i] - sum) / full / points.size();
+      EXPECT_NEAR(sum, L_o[3 * i], 6e-3 * full) << i << " " << sharpness;
     }
     EXPECT_LT(mean_error, 1e-3) << sharpness;
   }
@@ -156,18 +156,18 @@ TEST(GaussianTransport, BothGradientsAreTransposes) {
   for (float& v : grid.values) v = g(rng);
   GaussianColours a = RandomAmplitudes(lobes.size(), 6);
   a.row(1).setZero();
-  std::vector<double> E(3 * points.size()), adjoint(E.size());
+  std::vector<double> L_o(3 * points.size()), adjoint(L_o.size());
   for (double& v : adjoint) v = g(rng);
   const GaussianTransport::Tables tables = transport.Tabulate(grid);
-  transport.Render(points, tables, a, E.data());
+  transport.Render(points, tables, a, L_o.data());
   std::vector<float> by_grid(grid.values.size());
   transport.GridGradient(points, a, adjoint.data(), by_grid.data());
   const GaussianColours by_amplitude =
       transport.AmplitudeGradient(points, tables, adjoint.data());
   double size = 0.0, sum = 0.0, grid_sum = 0.0;
-  for (size_t k = 0; k < E.size(); ++k) {
-    sum += E[k] * adjoint[k];
-    size += std::abs(E[k] * adjoint[k]);
+  for (size_t k = 0; k < L_o.size(); ++k) {
+    sum += L_o[k] * adjoint[k];
+    size += std::abs(L_o[k] * adjoint[k]);
   }
   for (size_t k = 0; k < by_grid.size(); ++k) {
     grid_sum += double{by_grid[k]} * grid.values[k];
@@ -177,8 +177,8 @@ TEST(GaussianTransport, BothGradientsAreTransposes) {
   EXPECT_NEAR(sum, a.cwiseProduct(by_amplitude).sum(), 2e-6 * size);
 }
 
-// E is linear, so that differences have no error of their own but rounding: one
-// point, one lobe and one node at a time, at ordinary and extreme ones.
+// L_o is linear, so that differences have no error of their own but rounding:
+// one point, one lobe and one node at a time, at ordinary and extreme ones.
 TEST(GaussianTransport, GradientsMatchFiniteDifferences) {
   const std::vector<SphericalGaussian> lobes = LobesOfEverySharpness();
   GaussianOptions options = Options();
@@ -194,9 +194,9 @@ TEST(GaussianTransport, GradientsMatchFiniteDifferences) {
     const std::vector<double> adjoint = {0.7, -0.4, 1.3};
     const auto value = [&](const GaussianTransport::Tables& t,
                            const GaussianColours& amplitudes) {
-      double E[3];
-      transport.Render({point}, t, amplitudes, E);
-      return adjoint[0] * E[0] + adjoint[1] * E[1] + adjoint[2] * E[2];
+      double L_o[3];
+      transport.Render({point}, t, amplitudes, L_o);
+      return adjoint[0] * L_o[0] + adjoint[1] * L_o[1] + adjoint[2] * L_o[2];
     };
     const GaussianColours by_amplitude =
         transport.AmplitudeGradient({point}, tables, adjoint.data());
@@ -248,10 +248,10 @@ TEST(GaussianTransport, MapGradientGoesThroughTheFit) {
   float scale = 0.0f;
   for (const float v : gradient) scale = std::max(scale, std::abs(v));
   const auto value = [&](const Image& at) {
-    std::vector<double> E(adjoint.size());
-    transport.Render(points, tables, light.Fit(at.rgb.data()), E.data());
+    std::vector<double> L_o(adjoint.size());
+    transport.Render(points, tables, light.Fit(at.rgb.data()), L_o.data());
     double sum = 0.0;
-    for (size_t k = 0; k < E.size(); ++k) sum += adjoint[k] * E[k];
+    for (size_t k = 0; k < L_o.size(); ++k) sum += adjoint[k] * L_o[k];
     return sum;
   };
   for (size_t k = 0; k < gradient.size(); k += 7) {
@@ -272,21 +272,21 @@ TEST(GaussianTransport, SameBitsForAnyNumberOfThreads) {
   const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGrid);
   const std::vector<double> adjoint(3 * points.size(), 0.7);
   const int threads[] = {1, 2, 8};
-  std::vector<double> E[3];
+  std::vector<double> L_o[3];
   std::vector<float> by_grid[3];
   GaussianColours by_amplitude[3];
   for (const int k : {0, 1, 2}) {
     const GaussianTransport transport(lobes, Options(threads[k]));
     const GaussianTransport::Tables tables = transport.Tabulate(grid);
-    E[k].resize(3 * points.size());
+    L_o[k].resize(3 * points.size());
     by_grid[k].resize(grid.values.size());
-    transport.Render(points, tables, a, E[k].data());
+    transport.Render(points, tables, a, L_o[k].data());
     transport.GridGradient(points, a, adjoint.data(), by_grid[k].data());
     by_amplitude[k] =
         transport.AmplitudeGradient(points, tables, adjoint.data());
   }
   for (const int k : {1, 2}) {
-    EXPECT_EQ(E[0], E[k]);
+    EXPECT_EQ(L_o[0], L_o[k]);
     EXPECT_EQ(by_grid[0], by_grid[k]);
     EXPECT_EQ(by_amplitude[0], by_amplitude[k]);
   }

@@ -25,10 +25,10 @@ HarmonicOptions Order(int order) {
 std::vector<double> ByHarmonics(const std::vector<ShadingPoint>& points,
                                 const BrdfGrid& grid, const Image& map,
                                 int order) {
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   HarmonicTransport(points, map.height, map.width, Order(order))
-      .Render(grid, map.rgb.data(), E.data());
-  return E;
+      .Render(grid, map.rgb.data(), L_o.data());
+  return L_o;
 }
 
 TEST(HarmonicTransport, WhiteFurnaceIsOneAtEveryOrderAndPoint) {
@@ -43,7 +43,7 @@ TEST(HarmonicTransport, WhiteFurnaceIsOneAtEveryOrderAndPoint) {
 }
 
 TEST(HarmonicTransport, LambertUnderALinearMapMatchesTheClosedForm) {
-  // L = 1 + u.w: E = 1 + (2/3) n.u.
+  // L = 1 + u.w: L_o = 1 + (2/3) n.u.
   const Eigen::Vector3d u = Eigen::Vector3d(0.3, 0.5, 0.8).normalized();
   const int height = 128, width = 256;
   Image map(width, height);
@@ -55,11 +55,11 @@ TEST(HarmonicTransport, LambertUnderALinearMapMatchesTheClosedForm) {
   }
   const std::vector<ShadingPoint> points = PolarAndGrazingPoints();
   const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kGrid);
-  const std::vector<double> E = ByHarmonics(points, grid, map, 2);
+  const std::vector<double> L_o = ByHarmonics(points, grid, map, 2);
   for (size_t i = 0; i < points.size(); ++i) {
     const double cosine = points[i].normal.cast<double>().dot(u);
     // Quadrature of 5.6 degree cells, as Transport's.
-    EXPECT_NEAR(1.0 + cosine * 2.0 / 3.0, E[3 * i], 3e-3) << i;
+    EXPECT_NEAR(1.0 + cosine * 2.0 / 3.0, L_o[3 * i], 3e-3) << i;
   }
 }
 
@@ -116,9 +116,9 @@ TEST(HarmonicTransport, BothGradientsAreTransposes) {
   for (float& v : grid.values) v = g(rng);
   std::vector<float> map(3 * 8 * 16), by_map(map.size());
   for (float& v : map) v = g(rng);
-  std::vector<double> E(3 * points.size()), adjoint(E.size());
+  std::vector<double> L_o(3 * points.size()), adjoint(L_o.size());
   for (double& v : adjoint) v = g(rng);
-  transport.Render(grid, map.data(), E.data());
+  transport.Render(grid, map.data(), L_o.data());
   std::vector<float> by_grid(grid.values.size());
   transport.GridGradient(map.data(), adjoint.data(), by_grid.data());
   transport.MapGradient(grid, adjoint.data(), by_map.data());
@@ -128,10 +128,10 @@ TEST(HarmonicTransport, BothGradientsAreTransposes) {
     return sum;
   };
   double size = 0.0;
-  for (size_t k = 0; k < E.size(); ++k) size += std::abs(E[k] * adjoint[k]);
+  for (size_t k = 0; k < L_o.size(); ++k) size += std::abs(L_o[k] * adjoint[k]);
   // Float results of double sums.
-  EXPECT_NEAR(dot(E, adjoint), dot(by_grid, grid.values), 1e-6 * size);
-  EXPECT_NEAR(dot(E, adjoint), dot(by_map, map), 1e-6 * size);
+  EXPECT_NEAR(dot(L_o, adjoint), dot(by_grid, grid.values), 1e-6 * size);
+  EXPECT_NEAR(dot(L_o, adjoint), dot(by_map, map), 1e-6 * size);
 }
 
 TEST(HarmonicTransport, SameBitsForAnyNumberOfThreads) {
@@ -139,20 +139,20 @@ TEST(HarmonicTransport, SameBitsForAnyNumberOfThreads) {
   const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGrid);
   const Image map = RandomMap(8, 16, 2);
   const std::vector<double> adjoint(3 * points.size(), 0.7);
-  std::vector<double> E[2];
+  std::vector<double> L_o[2];
   std::vector<float> by_grid[2], by_map[2];
   for (const int k : {0, 1}) {
     HarmonicOptions options = Order(4);
     options.num_threads = k == 0 ? 1 : 5;
     const HarmonicTransport transport(points, 8, 16, options);
-    E[k].resize(3 * points.size());
+    L_o[k].resize(3 * points.size());
     by_grid[k].resize(grid.values.size());
     by_map[k].resize(map.rgb.size());
-    transport.Render(grid, map.rgb.data(), E[k].data());
+    transport.Render(grid, map.rgb.data(), L_o[k].data());
     transport.GridGradient(map.rgb.data(), adjoint.data(), by_grid[k].data());
     transport.MapGradient(grid, adjoint.data(), by_map[k].data());
   }
-  EXPECT_EQ(E[0], E[1]);
+  EXPECT_EQ(L_o[0], L_o[1]);
   EXPECT_EQ(by_grid[0], by_grid[1]);
   EXPECT_EQ(by_map[0], by_map[1]);
 }

@@ -26,10 +26,11 @@ ReferenceOptions QuickReference() {
 
 PointRenderer Reference(const ReferenceRenderer& renderer,
                         const BrdfFunction& brdf) {
-  return [&renderer, brdf](const std::vector<ShadingPoint>& points, double* E) {
-    renderer.Render(points, brdf, E);
-    return true;
-  };
+  return
+      [&renderer, brdf](const std::vector<ShadingPoint>& points, double* L_o) {
+        renderer.Render(points, brdf, L_o);
+        return true;
+      };
 }
 
 // As documented in ReflectanceMapOptions, but for the mean, which is of all
@@ -73,15 +74,15 @@ TEST_P(ReflectanceMapCases, MeetsTheErrorAskedForAndSavesWork) {
   const ReferenceRenderer renderer(
       test.sun ? SunMap(16, 32) : SmoothMap(16, 32), QuickReference());
   const PointRenderer render = Reference(renderer, test.brdf);
-  std::vector<double> direct(3 * points.size()), E(direct.size());
+  std::vector<double> direct(3 * points.size()), L_o(direct.size());
   render(points, direct.data());
   for (const double asked : {1e-2, 1e-3}) {
     ReflectanceMapOptions options;
     options.log_error = asked;
     const StatusOr<ReflectanceMapReport> report =
-        RenderByNormal(points, render, options, E.data());
+        RenderByNormal(points, render, options, L_o.data());
     ASSERT_TRUE(report.ok());
-    EXPECT_LE(MeanLogError(E, direct), asked);
+    EXPECT_LE(MeanLogError(L_o, direct), asked);
     EXPECT_LE(report->log_error + 2.0 * report->standard_error, asked);
     EXPECT_EQ(points.size() + report->nodes,
               static_cast<size_t>(report->rendered + report->interpolated));
@@ -109,19 +110,19 @@ TEST(ReflectanceMap, WorksForTransportToo) {
   const BrdfGrid grid =
       BrdfGrid::FromFunction(Glossy(0.2, 0.4, 15), options.grid);
   const Image map = SmoothMap(16, 32);
-  const auto render = [&](const std::vector<ShadingPoint>& some, double* E) {
-    Transport(some, 16, 32, options).Render(grid, map.rgb.data(), E);
+  const auto render = [&](const std::vector<ShadingPoint>& some, double* L_o) {
+    Transport(some, 16, 32, options).Render(grid, map.rgb.data(), L_o);
     return true;
   };
-  std::vector<double> direct(3 * points.size()), E(direct.size());
+  std::vector<double> direct(3 * points.size()), L_o(direct.size());
   render(points, direct.data());
   ReflectanceMapOptions coarse;
   coarse.log_error = 0.01;
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, render, coarse, E.data());
+      RenderByNormal(points, render, coarse, L_o.data());
   ASSERT_TRUE(report.ok());
   EXPECT_GT(report->interpolated, 0);
-  EXPECT_LE(MeanLogError(E, direct), 0.01);
+  EXPECT_LE(MeanLogError(L_o, direct), 0.01);
 }
 
 TEST(ReflectanceMap, AnyViewDirectionAndRoughNormals) {
@@ -138,48 +139,48 @@ TEST(ReflectanceMap, AnyViewDirectionAndRoughNormals) {
     p.wo = wo.cast<float>();
     if (p.normal.dot(p.wo) >= kMinViewCosine) points.push_back(p);
   }
-  std::vector<double> direct(3 * points.size()), E(direct.size());
+  std::vector<double> direct(3 * points.size()), L_o(direct.size());
   render(points, direct.data());
   ReflectanceMapOptions options;
   options.log_error = 3e-3;
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, render, options, E.data());
+      RenderByNormal(points, render, options, L_o.data());
   ASSERT_TRUE(report.ok());
   EXPECT_GT(report->interpolated, 3000);
-  EXPECT_LE(MeanLogError(E, direct), 3e-3);
+  EXPECT_LE(MeanLogError(L_o, direct), 3e-3);
 }
 
 TEST(ReflectanceMap, NoiseOfTheNormalDoesNotPayAndIsRenderedDirectly) {
   // No two normals have related radiance: nothing can be interpolated.
-  const auto noise = [](const std::vector<ShadingPoint>& points, double* E) {
+  const auto noise = [](const std::vector<ShadingPoint>& points, double* L_o) {
     for (size_t i = 0; i < points.size(); ++i) {
       const double x = 1e4 * points[i].normal.x() + 7e4 * points[i].normal.y();
-      for (int c = 0; c < 3; ++c) E[3 * i + c] = 1.5 + std::sin(x * (c + 1));
+      for (int c = 0; c < 3; ++c) L_o[3 * i + c] = 1.5 + std::sin(x * (c + 1));
     }
     return true;
   };
   const std::vector<ShadingPoint> points = SpherePoints(128);
-  std::vector<double> direct(3 * points.size()), E(direct.size());
+  std::vector<double> direct(3 * points.size()), L_o(direct.size());
   noise(points, direct.data());
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, noise, {}, E.data());
+      RenderByNormal(points, noise, {}, L_o.data());
   ASSERT_TRUE(report.ok());
   EXPECT_EQ(0, report->interpolated);
-  EXPECT_EQ(direct, E);
+  EXPECT_EQ(direct, L_o);
   // What was wasted is bounded.
   EXPECT_LT(report->rendered, 1.1 * static_cast<double>(points.size()));
 }
 
 TEST(ReflectanceMap, BlackAndFewPointsAreExact) {
-  const auto black = [](const std::vector<ShadingPoint>& points, double* E) {
-    std::fill_n(E, 3 * points.size(), 0.0);
+  const auto black = [](const std::vector<ShadingPoint>& points, double* L_o) {
+    std::fill_n(L_o, 3 * points.size(), 0.0);
     return true;
   };
   for (const int size : {1, 2, 8, 64}) {
     const std::vector<ShadingPoint> points = SpherePoints(size);
-    std::vector<double> E(3 * points.size(), 1.0);
-    ASSERT_TRUE(RenderByNormal(points, black, {}, E.data()).ok());
-    for (const double e : E) EXPECT_EQ(0.0, e);
+    std::vector<double> L_o(3 * points.size(), 1.0);
+    ASSERT_TRUE(RenderByNormal(points, black, {}, L_o.data()).ok());
+    for (const double e : L_o) EXPECT_EQ(0.0, e);
   }
   EXPECT_TRUE(RenderByNormal({}, black, {}, nullptr).ok());
 }
@@ -189,14 +190,14 @@ TEST(ReflectanceMap, RefusesSeveralViewDirections) {
   camera.type = CameraType::kPerspective;
   const std::vector<ShadingPoint> points =
       FindShadingPoints(Scene::UnitSphere(), camera, 16, 16, Mask(), 1).value();
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   int calls = 0;
   const auto count = [&](const std::vector<ShadingPoint>&, double*) {
     ++calls;
     return true;
   };
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, count, {}, E.data());
+      RenderByNormal(points, count, {}, L_o.data());
   ASSERT_FALSE(report.ok());
   EXPECT_EQ(StatusCode::kInvalidInput, report.status().code());
   EXPECT_EQ(0, calls);
@@ -204,7 +205,7 @@ TEST(ReflectanceMap, RefusesSeveralViewDirections) {
 
 TEST(ReflectanceMap, StopsWhenTheRendererDoes) {
   const std::vector<ShadingPoint> points = SpherePoints(64);
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   for (int last = 0; last < 3; ++last) {
     int calls = 0;
     const auto render = [&](const std::vector<ShadingPoint>& some,
@@ -216,7 +217,7 @@ TEST(ReflectanceMap, StopsWhenTheRendererDoes) {
       return ++calls <= last;
     };
     const StatusOr<ReflectanceMapReport> report =
-        RenderByNormal(points, render, {}, E.data());
+        RenderByNormal(points, render, {}, L_o.data());
     ASSERT_FALSE(report.ok());
     EXPECT_EQ(StatusCode::kInterrupted, report.status().code());
     EXPECT_EQ(last + 1, calls);

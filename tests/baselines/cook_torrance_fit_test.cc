@@ -39,10 +39,10 @@ CookTorrance Plastic() {
 Image Render(const std::vector<ShadingPoint>& points, const CookTorrance& brdf,
              const Image& map, int size = kSize) {
   const Transport transport(points, map.height, map.width, {});
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   transport.Render(BrdfGrid::FromFunction(brdf.Function(), {}), map.rgb.data(),
-                   E.data());
-  return PixelMeans(points, E.data(), size, size);
+                   L_o.data());
+  return PixelMeans(points, L_o.data(), size, size);
 }
 
 class CookTorranceFitTest : public ::testing::Test {

@@ -19,9 +19,9 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-// Of a column's largest entry. The float kernels leave about 4e-6 in log E;
+// Of a column's largest entry. The float kernels leave about 4e-6 in log L_o;
 // over the steps of 0.01 to 0.1 that Ridders' method settles on, this is a few
-// 1e-4 of a derivative of log E of order 1.
+// 1e-4 of a derivative of log L_o of order 1.
 constexpr double kJacobianTolerance = 1e-3;
 // And of residuals, absolute: that noise over b = 0.2, times dr/dt <= 1.5. A
 // difference over a step carries it however small the column.
@@ -191,22 +191,22 @@ TEST(LogLikelihood, NoLightAndNoEpsilonIsFiniteWithoutSlope) {
   const Observations observed = MakeObservations({1, 1, 1});
   RobustLogLikelihood likelihood;
   LikelihoodDerivatives d;
-  const auto cost = [&](double E) {
-    return EvaluateLikelihood({E, 1, 1}, observed, likelihood, &d).cost;
+  const auto cost = [&](double L_o) {
+    return EvaluateLikelihood({L_o, 1, 1}, observed, likelihood, &d).cost;
   };
   likelihood.epsilon = 0.0;
-  for (const double E : {0.0, 1e-310, 1e-101}) {
-    EXPECT_TRUE(std::isfinite(cost(E))) << E;
-    EXPECT_EQ(cost(0.0), cost(E));
+  for (const double L_o : {0.0, 1e-310, 1e-101}) {
+    EXPECT_TRUE(std::isfinite(cost(L_o))) << L_o;
+    EXPECT_EQ(cost(0.0), cost(L_o));
     EXPECT_LT(d.residual[0], -1.0);
-    EXPECT_EQ(0.0, d.d_residual[0]) << E;
-    EXPECT_EQ(0.0, d.weight[0]) << E;
+    EXPECT_EQ(0.0, d.d_residual[0]) << L_o;
+    EXPECT_EQ(0.0, d.weight[0]) << L_o;
   }
-  for (const double E : {1e-99, 1e-45, 1e30, 1e300}) {
-    EXPECT_TRUE(std::isfinite(cost(E))) << E;
-    EXPECT_GT(d.d_residual[0], 0.0) << E;
-    EXPECT_TRUE(std::isfinite(d.d_residual[0])) << E;
-    EXPECT_TRUE(std::isfinite(d.weight[0])) << E;
+  for (const double L_o : {1e-99, 1e-45, 1e30, 1e300}) {
+    EXPECT_TRUE(std::isfinite(cost(L_o))) << L_o;
+    EXPECT_GT(d.d_residual[0], 0.0) << L_o;
+    EXPECT_TRUE(std::isfinite(d.d_residual[0])) << L_o;
+    EXPECT_TRUE(std::isfinite(d.weight[0])) << L_o;
   }
   // Negative radiance counts as none; from 0 on it has a slope again.
   likelihood.epsilon = 1e-6;
@@ -222,12 +222,12 @@ class RadianceCosts : public ::testing::Test {
 
   // The scene's image, off by factors of e^(+-0.3) from the parameters'.
   void ObserveUnder(const std::vector<float>& map) {
-    std::vector<double> E = scene_.Render(scene_.Parameters(), map);
-    for (size_t i = 0; i < E.size(); ++i)
-      E[i] *= std::exp(0.3 * std::sin(7.0 * i));
-    observed_ = MakeObservations(E);
+    std::vector<double> L_o = scene_.Render(scene_.Parameters(), map);
+    for (size_t i = 0; i < L_o.size(); ++i)
+      L_o[i] *= std::exp(0.3 * std::sin(7.0 * i));
+    observed_ = MakeObservations(L_o);
     // About 1e-5 of the mean radiance, as the solver takes it.
-    likelihood_.epsilon = 1e-5 * E[0];
+    likelihood_.epsilon = 1e-5 * L_o[0];
     likelihood_.scale = 0.2;
   }
 
@@ -244,14 +244,14 @@ class RadianceCosts : public ::testing::Test {
 
 TEST_F(RadianceCosts, RenderLobeModelIsTransportOfTheCombinedGrid) {
   const std::vector<double> p = scene_.Parameters();
-  std::vector<double> E;
+  std::vector<double> L_o;
   ASSERT_TRUE(RenderLobeModel(scene_.transport, scene_.lobes, p.data(),
-                              map_.data(), &E, nullptr));
+                              map_.data(), &L_o, nullptr));
   const std::vector<double> expected = scene_.Render(p, map_);
-  ASSERT_EQ(expected.size(), E.size());
+  ASSERT_EQ(expected.size(), L_o.size());
   // Float sums of some hundred terms.
-  for (size_t i = 0; i < E.size(); ++i) {
-    EXPECT_NEAR(expected[i], E[i], 2e-5 * expected[i]);
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    EXPECT_NEAR(expected[i], L_o[i], 2e-5 * expected[i]);
   }
 }
 
@@ -272,11 +272,11 @@ class BouncedRadiance : public ::testing::TestWithParam<int> {
     TransportOptions options = TinyTransportOptions();
     options.visibility =
         std::make_shared<Visibility>(scene, points_, VisibilityOptions());
-    SurfaceEmitterOptions emitters;
-    emitters.bounces = GetParam();
-    emitters.max_emitters = 200;
-    options.emitters = std::make_shared<SurfaceEmitters>(
-        scene, points_, options.visibility, emitters);
+    RadiosityOptions patches;
+    patches.bounces = GetParam();
+    patches.max_patches = 200;
+    options.patches = std::make_shared<RadiosityPatches>(
+        scene, points_, options.visibility, patches);
     transport_ = std::make_unique<Transport>(points_, 8, 16, options);
   }
   std::vector<ShadingPoint> points_;
@@ -289,16 +289,16 @@ TEST_P(BouncedRadiance, TangentsOfLobesMatchDifferences) {
   for (const double brighter : {0.0, 1.0}) {
     std::vector<double> p = scene_.Parameters();
     for (const int k : {4, 5, 6, 11, 12, 13}) p[k] += brighter;
-    std::vector<double> E, dE, direct(3 * points_.size());
+    std::vector<double> L_o, dL_o, direct(3 * points_.size());
     ASSERT_TRUE(RenderLobeModel(*transport_, scene_.lobes, p.data(), map.data(),
-                                &E, &dE));
+                                &L_o, &dL_o));
     const BrdfGrid grid = scene_.lobes.Grid(p.data());
-    std::vector<double> rendered(E.size());
+    std::vector<double> rendered(L_o.size());
     transport_->Render(grid, map.data(), rendered.data());
     transport_->RenderBounces(grid, map.data(), 0, direct.data());
-    for (size_t i = 0; i < E.size(); ++i) {
-      EXPECT_NEAR(rendered[i], E[i], 2e-5 * E[i]);
-      EXPECT_GT(E[i], 1.02 * direct[i]);
+    for (size_t i = 0; i < L_o.size(); ++i) {
+      EXPECT_NEAR(rendered[i], L_o[i], 2e-5 * L_o[i]);
+      EXPECT_GT(L_o[i], 1.02 * direct[i]);
     }
     const auto columns = static_cast<size_t>(scene_.lobes.num_parameters());
     for (size_t k = 0; k < columns; ++k) {
@@ -312,14 +312,14 @@ TEST_P(BouncedRadiance, TangentsOfLobesMatchDifferences) {
                                     map.data(), &at[place++], nullptr));
       }
       double size = 0.0;
-      for (size_t i = 0; i < E.size(); ++i) {
-        size = std::max(size, std::abs(dE[i * columns + k]));
+      for (size_t i = 0; i < L_o.size(); ++i) {
+        size = std::max(size, std::abs(dL_o[i * columns + k]));
       }
-      for (size_t i = 0; i < E.size(); ++i) {
+      for (size_t i = 0; i < L_o.size(); ++i) {
         const double numeric =
             (8 * (at[2][i] - at[1][i]) - (at[3][i] - at[0][i])) / (12 * h);
-        // Rounding of E over the step, and the step's own error.
-        EXPECT_NEAR(numeric, dE[i * columns + k], 2e-3 * size + 1e-4 * E[i])
+        // Rounding of L_o over the step, and the step's own error.
+        EXPECT_NEAR(numeric, dL_o[i * columns + k], 2e-3 * size + 1e-4 * L_o[i])
             << "parameter " << k << ", row " << i;
       }
     }
@@ -361,7 +361,7 @@ TEST_F(RadianceCosts, LobeJacobianMatchesDifferencesAtExtremePoints) {
   ExpectBlock(*Cost(map_), {beyond}, 0, kJacobianTolerance, "beyond it");
   ExpectBlock(*Cost(map_), {coinciding}, 0, kJacobianTolerance, "coinciding");
   ExpectBlock(*Cost(map_), {bright}, 0, kJacobianTolerance, "bright");
-  // Beside the other lobe, one of e^-30 is below the float noise of E:
+  // Beside the other lobe, one of e^-30 is below the float noise of L_o:
   // its columns are exact multiples of its own image instead.
   const Evaluation at = Evaluate(*Cost(map_), {middle});
   const Evaluation e = Evaluate(*Cost(map_), {faint});
@@ -387,10 +387,10 @@ TEST_F(RadianceCosts, LobeJacobianUnderAOneTexelSun) {
 }
 
 TEST_F(RadianceCosts, PointsWithoutAValueLeaveResidualAndRowsZero) {
-  std::vector<double> E = observed_.radiance;
-  E[4] = 0.0;
-  E[3 * 5] = std::numeric_limits<double>::quiet_NaN();
-  observed_ = MakeObservations(E);
+  std::vector<double> L_o = observed_.radiance;
+  L_o[4] = 0.0;
+  L_o[3 * 5] = std::numeric_limits<double>::quiet_NaN();
+  observed_ = MakeObservations(L_o);
   ASSERT_EQ(static_cast<int>(scene_.points.size()) - 2, observed_.num_valid);
   const Evaluation e = Evaluate(*Cost(map_), {scene_.Parameters()});
   ASSERT_TRUE(e.ok);

@@ -59,8 +59,8 @@ TEST_F(EffectsPlanTest, AutoShadowsWhatNeedsItAndSaysSo) {
   EXPECT_GE(groove.effects.bounces, 1);
   EXPECT_EQ(0u, groove.effects.words.find("visibility, interreflection ("))
       << groove.effects.words;
-  EXPECT_GT(groove.effects.worth.unshadowed, 0.1);
-  EXPECT_LT(groove.effects.error, kWorthwhileLogError);
+  EXPECT_GT(groove.effects.omission.unshadowed, 0.1);
+  EXPECT_LT(groove.effects.error, kSolveOmissionError);
 
   const RenderedScene dark =
       Render({"reflectance.known={lambertian: 0.02}"}).value();
@@ -71,7 +71,7 @@ TEST_F(EffectsPlanTest, AutoShadowsWhatNeedsItAndSaysSo) {
   const RenderedScene ridge = Render({"geometry.mesh=ridge.obj"}).value();
   EXPECT_FALSE(ridge.effects.visibility);
   EXPECT_EQ(0u, ridge.effects.words.find("none: "));
-  EXPECT_EQ(0.0, ridge.effects.worth.unshadowed);
+  EXPECT_EQ(0.0, ridge.effects.omission.unshadowed);
 
   const RenderedScene sphere = Render({"geometry={sphere: {}}"}).value();
   EXPECT_EQ(0, sphere.effects.probe.rays);
@@ -169,7 +169,7 @@ TEST_F(EffectsPlanTest, SolveUsesShadowsAndReportsThem) {
     EXPECT_EQ(inverse->effects.words, result["effects"].get<std::string>());
     const nlohmann::json& visibility = result["effects_plan"]["visibility"];
     EXPECT_TRUE(visibility["simulated"].get<bool>());
-    EXPECT_EQ(inverse->effects.worth.unshadowed,
+    EXPECT_EQ(inverse->effects.omission.unshadowed,
               visibility["log_radiance_error_without"].get<double>());
     EXPECT_GT(visibility["rays"].get<int64_t>(), 0);
     const nlohmann::json& bounces = result["effects_plan"]["interreflection"];

@@ -41,11 +41,11 @@ class InverseRenderingTest : public ::testing::TestWithParam<ProblemKind> {
     const FlowLobes lobes(problem_.model, 2, problem_.transport.grid, 1);
     truth_ = lobes.Grid(parameters_.data());
     const Transport transport(problem_.points, 8, 16, problem_.transport);
-    std::vector<double> E(3 * problem_.points.size());
-    transport.Render(truth_, map_.rgb.data(), E.data());
-    for (size_t i = 0; i < E.size(); ++i) {
+    std::vector<double> L_o(3 * problem_.points.size());
+    transport.Render(truth_, map_.rgb.data(), L_o.data());
+    for (size_t i = 0; i < L_o.size(); ++i) {
       problem_.image.rgb[3 * problem_.points[i / 3].pixel + i % 3] =
-          static_cast<float>(E[i] * std::exp(0.02 * std::sin(11.0 * i)));
+          static_cast<float>(L_o[i] * std::exp(0.02 * std::sin(11.0 * i)));
     }
   }
 
@@ -220,12 +220,12 @@ TEST_P(InverseRenderingTest, EveryPixelOfALargeImageIsRendered) {
   const FlowLobes lobes(problem_.model, 2, problem_.transport.grid, 1);
   const BrdfGrid grid =
       e.lobe_parameters.empty() ? truth_ : lobes.Grid(e.lobe_parameters.data());
-  std::vector<double> E(3 * problem_.points.size());
+  std::vector<double> L_o(3 * problem_.points.size());
   Transport(problem_.points, 8, 16, problem_.transport)
-      .Render(grid, e.map.rgb.data(), E.data());
-  for (size_t i = 0; i < E.size(); ++i) {
+      .Render(grid, e.map.rgb.data(), L_o.data());
+  for (size_t i = 0; i < L_o.size(); ++i) {
     const size_t at = 3 * problem_.points[i / 3].pixel + i % 3;
-    EXPECT_EQ(static_cast<float>(E[i]), e.render.rgb[at]) << i;
+    EXPECT_EQ(static_cast<float>(L_o[i]), e.render.rgb[at]) << i;
   }
 }
 
@@ -275,14 +275,14 @@ TEST_F(InverseRenderingTest, ASmallSunUnderKnownLightIsRendered) {
   problem_.map_width = map.width;
   problem_.map_height = map.height;
   problem_.solver.max_iterations = 12;
-  std::vector<double> E(3 * problem_.points.size());
+  std::vector<double> L_o(3 * problem_.points.size());
   ReferenceRenderer(map, {}).Render(
       problem_.points,
       [&](double h, double d, double p) { return truth_.Evaluate(h, d, p); },
-      E.data());
-  for (size_t i = 0; i < E.size(); ++i) {
+      L_o.data());
+  for (size_t i = 0; i < L_o.size(); ++i) {
     problem_.image.rgb[3 * problem_.points[i / 3].pixel + i % 3] =
-        static_cast<float>(E[i]);
+        static_cast<float>(L_o[i]);
   }
   const Solution e = Solve();
   EXPECT_EQ(StatusCode::kOk, e.status.code()) << e.status.message();
@@ -365,12 +365,12 @@ TEST_F(InverseRenderingTest, MirrorsMapsAreFoundFromFinerPixels) {
     brdf.f0.setConstant(0.5);
     problem_.known_brdf =
         BrdfGrid::FromFunction(brdf.Function(), problem_.transport.grid);
-    std::vector<double> E(3 * problem_.points.size());
+    std::vector<double> L_o(3 * problem_.points.size());
     Transport(problem_.points, 8, 16, problem_.transport)
-        .Render(*problem_.known_brdf, map.rgb.data(), E.data());
-    for (size_t i = 0; i < E.size(); ++i) {
+        .Render(*problem_.known_brdf, map.rgb.data(), L_o.data());
+    for (size_t i = 0; i < L_o.size(); ++i) {
       problem_.image.rgb[3 * problem_.points[i / 3].pixel + i % 3] =
-          static_cast<float>(E[i] * std::exp(0.02 * std::sin(11.0 * i)));
+          static_cast<float>(L_o[i] * std::exp(0.02 * std::sin(11.0 * i)));
     }
     const Solution e = Solve();
     const bool fine =

@@ -45,11 +45,12 @@ class RadianceTier : public ::testing::Test {
     if (!problem.ok()) return problem.status();
     return RenderScene(*problem, options);
   }
-  TierPlan Plan(const std::vector<std::string>& overrides, int threads = 0) {
+  ApproximationPlan Plan(const std::vector<std::string>& overrides,
+                         int threads = 0) {
     RenderSceneOptions options;
     options.plan_only = true;
     options.num_threads = threads;
-    return Render(overrides, options).value().effects.tier;
+    return Render(overrides, options).value().effects.approximation;
   }
   const TempDir dir_;
 };
@@ -71,8 +72,9 @@ bool Says(const RenderedScene& scene, const std::string& text) {
 
 TEST_F(RadianceTier, MatteUnderSoftLightIsRenderedInHarmonics) {
   const RenderedScene fast = Render({kPerspective}).value();
-  const TierPlan& plan = fast.effects.tier;
-  EXPECT_EQ(Tier::kHarmonics, plan.tier) << fast.effects.words;
+  const ApproximationPlan& plan = fast.effects.approximation;
+  EXPECT_EQ(Approximation::kHarmonics, plan.approximation)
+      << fast.effects.words;
   EXPECT_LE(plan.order, 8);
   EXPECT_LE(plan.predicted_error, 3e-3);
   EXPECT_GT(plan.predicted_error, 0.0);
@@ -83,69 +85,77 @@ TEST_F(RadianceTier, MatteUnderSoftLightIsRenderedInHarmonics) {
       Says(fast, "spherical harmonics up to l = " + std::to_string(plan.order) +
                      ": predicted error of log radiance"));
   const RenderedScene slow = Render({kPerspective, "effects=none"}).value();
-  EXPECT_EQ(Tier::kQuadrature, slow.effects.tier.tier);
+  EXPECT_EQ(Approximation::kQuadrature,
+            slow.effects.approximation.approximation);
   EXPECT_LT(LogDifference(fast, slow), 3e-3);
   // Seen from far away, so few normals are enough that nothing is to be gained.
-  const TierPlan by_normal = Plan({});
-  EXPECT_EQ(Tier::kReflectanceMap, by_normal.tier);
+  const ApproximationPlan by_normal = Plan({});
+  EXPECT_EQ(Approximation::kReflectanceMap, by_normal.approximation);
   EXPECT_EQ(0, by_normal.checked);
 }
 
 TEST_F(RadianceTier, MatteUnderASmallSunIsRenderedInGaussians) {
   const RenderedScene fast = Render({kHard, kPerspective}).value();
-  const TierPlan& plan = fast.effects.tier;
-  EXPECT_EQ(Tier::kGaussians, plan.tier) << fast.effects.words;
+  const ApproximationPlan& plan = fast.effects.approximation;
+  EXPECT_EQ(Approximation::kGaussians, plan.approximation)
+      << fast.effects.words;
   EXPECT_EQ(1, plan.spots);
   EXPECT_TRUE(Says(fast, "spherical Gaussians, 1 for a bright spot"))
       << fast.effects.words;
   // 0.0013.
   EXPECT_LT(plan.found_error, 2e-3);
   EXPECT_LT(plan.quadrature_error, plan.found_error);
-  const TierPlan reference = Plan({kHard, kPerspective, "quality=reference"});
-  EXPECT_EQ(Tier::kQuadrature, reference.tier);
+  const ApproximationPlan reference =
+      Plan({kHard, kPerspective, "quality=reference"});
+  EXPECT_EQ(Approximation::kQuadrature, reference.approximation);
   EXPECT_EQ(0, reference.checked);
 }
 
 TEST_F(RadianceTier, MirrorsAreLeftToTheQuadratureAndItSaysWhy) {
-  EXPECT_EQ(Tier::kQuadrature, Plan({kMirror, kPerspective}).tier);
-  EXPECT_EQ(Tier::kReflectanceMap, Plan({kMirror}).tier);
-  const TierPlan soft = Plan({kMirror});
+  EXPECT_EQ(Approximation::kQuadrature,
+            Plan({kMirror, kPerspective}).approximation);
+  EXPECT_EQ(Approximation::kReflectanceMap, Plan({kMirror}).approximation);
+  const ApproximationPlan soft = Plan({kMirror});
   EXPECT_EQ(0, soft.checked);
   EXPECT_NE(std::string::npos, soft.words.find("are not within 0.0030"))
       << soft.words;
   // A glossy surface under a sun is looked at and found to need too many.
-  const TierPlan hard = Plan({kGlossy, kHard});
-  EXPECT_EQ(Tier::kReflectanceMap, hard.tier);
+  const ApproximationPlan hard = Plan({kGlossy, kHard});
+  EXPECT_EQ(Approximation::kReflectanceMap, hard.approximation);
   EXPECT_EQ(64, hard.checked);
   EXPECT_NE(std::string::npos, hard.words.find("slower or not within"))
       << hard.words;
 }
 
 TEST_F(RadianceTier, SmallImagesAreNotWorthAChoice) {
-  const TierPlan plan = Plan({"image={width: 24, height: 24}"});
-  EXPECT_EQ(Tier::kReflectanceMap, plan.tier);
+  const ApproximationPlan plan = Plan({"image={width: 24, height: 24}"});
+  EXPECT_EQ(Approximation::kReflectanceMap, plan.approximation);
   EXPECT_EQ(0, plan.checked);
   EXPECT_EQ("", plan.words);
 }
 
 TEST_F(RadianceTier, TheUserOverrules) {
-  EXPECT_EQ(Tier::kQuadrature, Plan({"effects=none"}).tier);
-  EXPECT_EQ(Tier::kReflectanceMap, Plan({"effects=[reflectance_map]"}).tier);
-  EXPECT_EQ(Tier::kReflectanceMap, Plan({"effects=all"}).tier);
-  const TierPlan gaussians = Plan({"effects=[gaussians]"});
-  EXPECT_EQ(Tier::kGaussians, gaussians.tier);
+  EXPECT_EQ(Approximation::kQuadrature, Plan({"effects=none"}).approximation);
+  EXPECT_EQ(Approximation::kReflectanceMap,
+            Plan({"effects=[reflectance_map]"}).approximation);
+  EXPECT_EQ(Approximation::kReflectanceMap,
+            Plan({"effects=all"}).approximation);
+  const ApproximationPlan gaussians = Plan({"effects=[gaussians]"});
+  EXPECT_EQ(Approximation::kGaussians, gaussians.approximation);
   EXPECT_NE(std::string::npos, gaussians.words.find("as asked"));
   // What was asked for, as near as it comes, with its error.
-  const TierPlan mirror = Plan({"effects=[harmonics]", kMirror});
-  EXPECT_EQ(Tier::kHarmonics, mirror.tier);
+  const ApproximationPlan mirror = Plan({"effects=[harmonics]", kMirror});
+  EXPECT_EQ(Approximation::kHarmonics, mirror.approximation);
   EXPECT_GT(mirror.predicted_error, 0.1);
   EXPECT_GT(mirror.found_error, 0.1);
   // At reference quality as well, and in small images.
-  const TierPlan asked = Plan({"effects=harmonics", "quality=reference",
-                               "image={width: 16, height: 16}"});
-  EXPECT_EQ(Tier::kHarmonics, asked.tier);
+  const ApproximationPlan asked =
+      Plan({"effects=harmonics", "quality=reference",
+            "image={width: 16, height: 16}"});
+  EXPECT_EQ(Approximation::kHarmonics, asked.approximation);
   EXPECT_LE(asked.predicted_error, 3e-4);
-  EXPECT_EQ(Tier::kHarmonics, Plan({"effects=[gaussians, harmonics]"}).tier);
+  EXPECT_EQ(Approximation::kHarmonics,
+            Plan({"effects=[gaussians, harmonics]"}).approximation);
 }
 
 TEST_F(RadianceTier, PlanAndImageAreTheSameForAnyNumberOfThreads) {
@@ -157,12 +167,12 @@ TEST_F(RadianceTier, PlanAndImageAreTheSameForAnyNumberOfThreads) {
     const RenderedScene b = Render({light, kPerspective}, many).value();
     EXPECT_EQ(a.image.rgb, b.image.rgb);
     EXPECT_EQ(a.effects.words, b.effects.words);
-    EXPECT_EQ(a.effects.tier.words, Plan({light, kPerspective}).words);
+    EXPECT_EQ(a.effects.approximation.words, Plan({light, kPerspective}).words);
   }
 }
 
 // Predicted to do, found not to.
-TEST(TierRadiance, FallsBackWhereTheTruthDisagrees) {
+TEST(ApproximateRadiance, FallsBackWhereTheTruthDisagrees) {
   SkyOptions sky;
   sky.sun_irradiance = 0.0;
   const Image map = RenderSky(sky, 32, 64);
@@ -173,38 +183,38 @@ TEST(TierRadiance, FallsBackWhereTheTruthDisagrees) {
   const std::vector<ShadingPoint> points =
       FindShadingPoints(Scene::UnitSphere(), Camera(), 64, 64, Mask(), 1)
           .value();
-  TierOptions options;
+  ApproximationOptions options;
   options.harmonics = options.gaussians = true;
   const ReferenceRenderer renderer(map, {});
   double scale = 1.0;
   const PointRenderer truth = [&](const std::vector<ShadingPoint>& some,
-                                  double* E) {
-    renderer.Render(some, brdf.function, E);
-    for (size_t k = 0; k < 3 * some.size(); ++k) E[k] *= scale;
+                                  double* L_o) {
+    renderer.Render(some, brdf.function, L_o);
+    for (size_t k = 0; k < 3 * some.size(); ++k) L_o[k] *= scale;
     return true;
   };
-  TierRadiance tier(map, brdf, 0);
-  ASSERT_TRUE(tier.Choose(points, truth, truth, options));
-  EXPECT_TRUE(tier.renders());
+  ApproximateRadiance approximation(map, brdf, 0);
+  ASSERT_TRUE(approximation.Choose(points, truth, truth, options));
+  EXPECT_TRUE(approximation.renders());
   scale = 1.01;
-  ASSERT_TRUE(tier.Choose(points, truth, truth, options));
-  EXPECT_FALSE(tier.renders());
-  EXPECT_NE(std::string::npos, tier.plan().words.find("not within"));
+  ASSERT_TRUE(approximation.Choose(points, truth, truth, options));
+  EXPECT_FALSE(approximation.renders());
+  EXPECT_NE(std::string::npos, approximation.plan().words.find("not within"));
   // The quadrature may be as far off itself.
   const PointRenderer quadrature = [&](const std::vector<ShadingPoint>& some,
-                                       double* E) {
-    renderer.Render(some, brdf.function, E);
-    for (size_t k = 0; k < 3 * some.size(); ++k) E[k] *= 0.99;
+                                       double* L_o) {
+    renderer.Render(some, brdf.function, L_o);
+    for (size_t k = 0; k < 3 * some.size(); ++k) L_o[k] *= 0.99;
     return true;
   };
-  ASSERT_TRUE(tier.Choose(points, quadrature, truth, options));
-  EXPECT_TRUE(tier.renders());
-  EXPECT_GT(tier.plan().quadrature_error, 0.015);
+  ASSERT_TRUE(approximation.Choose(points, quadrature, truth, options));
+  EXPECT_TRUE(approximation.renders());
+  EXPECT_GT(approximation.plan().quadrature_error, 0.015);
   // Stopped.
   const PointRenderer stop = [](const std::vector<ShadingPoint>&, double*) {
     return false;
   };
-  EXPECT_FALSE(tier.Choose(points, truth, stop, options));
+  EXPECT_FALSE(approximation.Choose(points, truth, stop, options));
 }
 
 }  // namespace

@@ -24,9 +24,9 @@ class MeasuredEffects : public ::testing::Test {
                          quality, 2);
   }
   std::vector<double> Render(const SceneRadiance& radiance) const {
-    std::vector<double> E(3 * points_.size());
-    EXPECT_TRUE(radiance.Render(points_, nullptr, E.data()));
-    return E;
+    std::vector<double> L_o(3 * points_.size());
+    EXPECT_TRUE(radiance.Render(points_, nullptr, L_o.data()));
+    return L_o;
   }
 
   const Scene scene_ = Scene::FromMesh(TorusMesh(48, 24)).value();
@@ -40,17 +40,17 @@ class MeasuredEffects : public ::testing::Test {
 TEST_F(MeasuredEffects, WorthIsTheDifferenceOfWholeImages) {
   SceneRadiance all = With(all_);
   const SceneRadiance bare = With({});
-  const EffectsWorth worth = MeasureEffects(bare, points_, &all);
+  const OmissionErrors omission = MeasureEffects(bare, points_, &all);
   EXPECT_EQ(kMostBounces, all.bounces());
   // All points are looked at here.
   ASSERT_LE(points_.size(), 384u);
   const std::vector<double> full = Render(all);
-  EXPECT_NEAR(MeanAbsLogRatio(Render(bare), full), worth.unshadowed, 1e-12);
+  EXPECT_NEAR(MeanAbsLogRatio(Render(bare), full), omission.unshadowed, 1e-12);
   for (int b = 0; b < kMostBounces; ++b) {
     all.set_bounces(b);
-    EXPECT_NEAR(MeanAbsLogRatio(Render(all), full), worth.bounces[b], 1e-12);
+    EXPECT_NEAR(MeanAbsLogRatio(Render(all), full), omission.bounces[b], 1e-12);
   }
-  EXPECT_GT(worth.bounces[0], worth.bounces[1]);
+  EXPECT_GT(omission.bounces[0], omission.bounces[1]);
 }
 
 // A map of more cells than a transport takes lights the object like a smaller

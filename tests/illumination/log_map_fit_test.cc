@@ -15,7 +15,7 @@ namespace {
 using namespace testing;  // NOLINT
 
 constexpr int kHeight = 8, kWidth = 16, kTexels = kHeight * kWidth;
-const LightScales kScales = LightScales::Average();
+const LightHyperparameters kScales = LightHyperparameters::Average();
 
 std::vector<float> SmoothLogMap() {
   const Image map = SmoothMap(kHeight, kWidth);

@@ -18,7 +18,8 @@ namespace {
 constexpr int kHeight = 4, kWidth = 8, kTexels = kHeight * kWidth;
 constexpr int kSize = 3 * kTexels;
 constexpr double kAmplitude = 1.5;
-const LightScales kScales = {std::log(kAmplitude), {-1.0, 0.5, 0.2, -2.0}};
+const LightHyperparameters kScales = {std::log(kAmplitude),
+                                      {-1.0, 0.5, 0.2, -2.0}};
 constexpr double kFloat = 6e-8;  // half a unit in the last place, relative
 
 std::vector<float> Random(int size, unsigned seed) {
@@ -35,7 +36,7 @@ double Dot(const std::vector<float>& a, const std::vector<float>& b) {
   return sum;
 }
 
-// Without lamps and with them.
+// Without directional lights and with them.
 class ProcessIlluminationTest : public ::testing::TestWithParam<bool> {
  protected:
   std::vector<float> Forward(const std::vector<float>& parameters) {
@@ -57,25 +58,27 @@ class ProcessIlluminationTest : public ::testing::TestWithParam<bool> {
 
   const LightProcess process_;
   // Beside the centres of two texels.
-  const std::vector<Eigen::Vector3d> lamps_ =
+  const std::vector<Eigen::Vector3d> directional_lights_ =
       GetParam() ? std::vector<Eigen::Vector3d>{MapDirection(1.55, 2.52,
                                                              kHeight, kWidth),
                                                 MapDirection(2.6, 6.45, kHeight,
                                                              kWidth)}
                  : std::vector<Eigen::Vector3d>();
-  const std::unique_ptr<IlluminationModel> model_ =
-      MakeProcessIllumination(kWidth, kHeight, process_, kScales, lamps_);
+  const std::unique_ptr<IlluminationModel> model_ = MakeProcessIllumination(
+      kWidth, kHeight, process_, kScales, directional_lights_);
   const int num_parameters_ = model_->num_parameters();
 };
 
 TEST_P(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
   ASSERT_EQ(kSize, model_->num_outputs());
   EXPECT_EQ(std::vector<float>(num_parameters_, 1.0f), model_->PriorStd());
-  const std::vector<LampTexel> near = NearLamps(lamps_, kHeight, kWidth);
-  ASSERT_EQ(lamps_.size(), near.size());
+  const std::vector<DirectionalLightTexel> near =
+      NearDirectionalLights(directional_lights_, kHeight, kWidth);
+  ASSERT_EQ(directional_lights_.size(), near.size());
   ASSERT_EQ(kSize + 3 * static_cast<int>(near.size()), num_parameters_);
-  Eigen::VectorXd of_lamps = Eigen::VectorXd::Zero(kTexels);
-  for (const LampTexel& t : near) of_lamps[t.texel] = t.weight * t.weight;
+  Eigen::VectorXd of_directional_lights = Eigen::VectorXd::Zero(kTexels);
+  for (const DirectionalLightTexel& t : near)
+    of_directional_lights[t.texel] = t.weight * t.weight;
   const Eigen::MatrixXd S = Jacobian();
   const Eigen::MatrixXd covariance = S * S.transpose();
   const RowMatrix correlation =
@@ -85,7 +88,8 @@ TEST_P(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
       Eigen::MatrixXd expected =
           (kAmplitude * process_.Local()(c, d) * correlation).array() +
           process_.Level()(c, d);
-      expected.diagonal() += process_.Lamp()(c, d) * of_lamps;
+      expected.diagonal() +=
+          process_.DirectionalLight()(c, d) * of_directional_lights;
       const Eigen::MatrixXd block =
           covariance.block(c * kTexels, d * kTexels, kTexels, kTexels);
       // |S_i| |S_j| times one rounding of each entry.
@@ -158,7 +162,8 @@ TEST_P(ProcessIlluminationTest, ShiftMovesEachChannelByItsOwnAmount) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Lamps, ProcessIlluminationTest, ::testing::Bool());
+INSTANTIATE_TEST_SUITE_P(DirectionalLights, ProcessIlluminationTest,
+                         ::testing::Bool());
 
 // At the size of an estimate, and far above it.
 TEST(ProcessIllumination, LargeMapsAreConstantToo) {

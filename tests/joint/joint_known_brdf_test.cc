@@ -100,9 +100,9 @@ TEST(MirrorLike, FreeTexelsRecoverTheImageAndTheMap) {
   const LightOperator known = transport.ByLight(
       BrdfGrid::FromFunction(Glossy(0.1, 1.0, 3), transport_options.grid));
   const Image truth = SmoothMap(8, 16);
-  std::vector<double> E(3 * static_cast<size_t>(transport.num_points()));
-  known.Apply(truth.rgb.data(), E.data());
-  const Observations observed = MakeObservations(E);
+  std::vector<double> L_o(3 * static_cast<size_t>(transport.num_points()));
+  known.Apply(truth.rgb.data(), L_o.data());
+  const Observations observed = MakeObservations(L_o);
   const std::unique_ptr<IlluminationModel> light = MakeFreeIllumination(16, 8);
   const double zero[3] = {0, 0, 0};
   JointTerms terms;

@@ -58,7 +58,8 @@ double CeresCost(const JointScene& scene, const JointTerms& terms, bool unet,
       nullptr, light.data());
   double cost = 0.0;
   EXPECT_TRUE(problem.Evaluate({}, &cost, nullptr, nullptr, nullptr));
-  ProcessPrior process(8, 16, LightProcess(), LightScales::Average(), 0.0);
+  ProcessPrior process(8, 16, LightProcess(), LightHyperparameters::Average(),
+                       0.0);
   return cost + process.Evaluate(log_map.data(), nullptr);
 }
 
@@ -96,7 +97,7 @@ TEST_P(JointMethodTest, CostNeverRisesAndIsTheOneOfCeresCosts) {
     EXPECT_FALSE(summary.stopped);
     EXPECT_EQ(objective.Evaluate(start).total(), summary.start.total());
     EXPECT_LT(summary.end.total(), summary.start.total());
-    // The same code at the same state: E by one operator or by one render,
+    // The same code at the same state: L_o by one operator or by one render,
     // whose products are the same but may round differently.
     EXPECT_NEAR(objective.Evaluate(state).total(), summary.end.total(),
                 1e-5 * summary.end.total());

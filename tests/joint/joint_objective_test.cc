@@ -13,7 +13,7 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-// The float kernels leave some 1e-6 of E; over the steps of about 0.01 that
+// The float kernels leave some 1e-6 of L_o; over the steps of about 0.01 that
 // Ridders' method settles on, a few 1e-4 of a derivative.
 constexpr double kDifferenceTolerance = 1e-3;
 // Two sums of one float kernel's products in different order.
@@ -44,13 +44,13 @@ TEST_P(JointObjectiveTest, RadianceAndResidualsFollowTheirTangents) {
   ASSERT_TRUE(std::isfinite(objective_.Linearise(state_).total()));
   for (const unsigned seed : {1u, 2u, 3u}) {
     const Eigen::VectorXd v = RandomDirection(objective_, seed);
-    const Eigen::VectorXd dE = objective_.RadianceJvp(v);
+    const Eigen::VectorXd dL_o = objective_.RadianceJvp(v);
     const Eigen::VectorXd dr = objective_.ResidualJvp(v);
-    const Eigen::VectorXd numeric_E = Numeric(v, [&](const JointState& s) {
+    const Eigen::VectorXd numeric_L_o = Numeric(v, [&](const JointState& s) {
       objective_.Evaluate(s);
       return objective_.radiance();
     });
-    EXPECT_LT((dE - numeric_E).norm(), kDifferenceTolerance * dE.norm());
+    EXPECT_LT((dL_o - numeric_L_o).norm(), kDifferenceTolerance * dL_o.norm());
     const Eigen::VectorXd numeric_r = Numeric(v, [&](const JointState& s) {
       objective_.Evaluate(s);
       LikelihoodDerivatives d;
@@ -86,11 +86,11 @@ TEST_P(JointObjectiveTest, TangentsAndAdjointsAreTransposes) {
   objective_.Linearise(state_);
   for (const unsigned seed : {1u, 2u, 3u}) {
     const Eigen::VectorXd v = RandomDirection(objective_, seed);
-    const Eigen::VectorXd dE = objective_.RadianceJvp(v);
+    const Eigen::VectorXd dL_o = objective_.RadianceJvp(v);
     const Eigen::VectorXd a =
-        dE.array() * Eigen::ArrayXd::LinSpaced(dE.size(), 0.5, 1.5);
-    EXPECT_NEAR(a.dot(dE), objective_.RadianceVjp(a).dot(v),
-                kRounding * a.norm() * dE.norm());
+        dL_o.array() * Eigen::ArrayXd::LinSpaced(dL_o.size(), 0.5, 1.5);
+    EXPECT_NEAR(a.dot(dL_o), objective_.RadianceVjp(a).dot(v),
+                kRounding * a.norm() * dL_o.norm());
     const Eigen::VectorXd dr = objective_.ResidualJvp(v);
     EXPECT_NEAR(dr.squaredNorm(), objective_.ResidualVjp(dr).dot(v),
                 kRounding * dr.squaredNorm());
@@ -110,7 +110,7 @@ TEST_P(JointObjectiveTest, LikelihoodAndPriorsMakeUpTheGradient) {
 TEST_P(JointObjectiveTest, ProductIsTheGaussNewtonMatrix) {
   const Eigen::Index n = objective_.size(), m = objective_.num_residuals();
   objective_.Linearise(state_);
-  const std::vector<double> E = objective_.radiance();
+  const std::vector<double> L_o = objective_.radiance();
   Eigen::MatrixXd J(m, n), H(n, n), prior(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, i);
@@ -121,7 +121,7 @@ TEST_P(JointObjectiveTest, ProductIsTheGaussNewtonMatrix) {
   Eigen::VectorXd w(m);
   const RobustLogLikelihood& l = objective_.terms().likelihood;
   for (Eigen::Index i = 0; i < m; ++i) {
-    const double e = E[i] + l.epsilon;
+    const double e = L_o[i] + l.epsilon;
     const double t =
         std::log(e / (scene_.observed.radiance[i] + l.epsilon)) / l.scale;
     w[i] = 1 / (l.scale * l.scale * e * e * std::sqrt(t * t + 0.25));

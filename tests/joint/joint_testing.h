@@ -47,9 +47,9 @@ struct JointScene {
                    : MakeFreeIllumination(16, 8)) {
     truth = TinyScene().Parameters();
     grid = lobes.Grid(truth.data());
-    std::vector<double> E(3 * points.size());
-    transport.Render(grid, SmoothMap(8, 16).rgb.data(), E.data());
-    observed = MakeObservations(E);
+    std::vector<double> L_o(3 * points.size());
+    transport.Render(grid, SmoothMap(8, 16).rgb.data(), L_o.data());
+    observed = MakeObservations(L_o);
     const double zero[3] = {0, 0, 0};
     mean = light->ConstantMap(zero);
   }
@@ -102,7 +102,8 @@ struct JointScene {
   const NeuralBrdfModel model = SmoothTinyModel(2);
   const FlowLobes lobes{model, 2, TinyTransportOptions().grid, 1};
   const std::unique_ptr<IlluminationModel> light;
-  ProcessPrior process{8, 16, LightProcess(), LightScales::Average(), 0.0};
+  ProcessPrior process{8, 16, LightProcess(), LightHyperparameters::Average(),
+                       0.0};
   std::vector<double> truth;
   BrdfGrid grid;
   Observations observed;

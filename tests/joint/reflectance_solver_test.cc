@@ -36,12 +36,12 @@ class ReflectanceSolverTest : public ::testing::Test {
   }
   // The objective, from its definition.
   double Cost(const std::vector<double>& parameters) const {
-    const std::vector<double> E = scene_.Render(parameters, map_);
+    const std::vector<double> L_o = scene_.Render(parameters, map_);
     double sum = LobePriorCostValue(scene_.lobes, options_.prior, parameters);
-    for (size_t i = 0; i < E.size(); ++i) {
+    for (size_t i = 0; i < L_o.size(); ++i) {
       if (!observed_.valid[i / 3]) continue;
       const double r = RobustResidual(
-          (std::log(E[i] + options_.likelihood.epsilon) -
+          (std::log(L_o[i] + options_.likelihood.epsilon) -
            std::log(observed_.radiance[i] + options_.likelihood.epsilon)) /
               options_.likelihood.scale,
           options_.likelihood.delta, nullptr);
@@ -50,12 +50,12 @@ class ReflectanceSolverTest : public ::testing::Test {
     return sum;
   }
   double Misfit(const std::vector<double>& parameters) const {
-    const std::vector<double> E = scene_.Render(parameters, map_);
+    const std::vector<double> L_o = scene_.Render(parameters, map_);
     double sum = 0.0;
-    for (size_t i = 0; i < E.size(); ++i) {
-      sum += std::abs(std::log(E[i] / observed_.radiance[i]));
+    for (size_t i = 0; i < L_o.size(); ++i) {
+      sum += std::abs(std::log(L_o[i] / observed_.radiance[i]));
     }
-    return sum / static_cast<double>(E.size());
+    return sum / static_cast<double>(L_o.size());
   }
 
   const TinyScene scene_;

@@ -72,16 +72,16 @@ TEST(ProceduralSky, SunIrradianceIsThatAskedAtAnySize) {
 TEST(ProceduralSky, IrradianceOfAnUpwardSurfaceIsOfTheSizeOfItsParts) {
   const SkyOptions options;
   const Image map = RenderSky(options, 64, 128);
-  double E = 0.0;
+  double L_o = 0.0;
   for (int r = 0; r < 32; ++r) {
     for (int c = 0; c < 128; ++c) {
-      E += TexelSolidAngle(r, 64, 128) * std::cos(kPi * (r + 0.5) / 64) *
-           map.At(c, r)[1];
+      L_o += TexelSolidAngle(r, 64, 128) * std::cos(kPi * (r + 0.5) / 64) *
+             map.At(c, r)[1];
     }
   }
   const double sun = options.sun_irradiance * std::cos(40 * kPi / 180);
-  EXPECT_GT(E, 0.9 * sun);
-  EXPECT_LT(E, sun + 3 * kPi * options.zenith_radiance);
+  EXPECT_GT(L_o, 0.9 * sun);
+  EXPECT_LT(L_o, sun + 3 * kPi * options.zenith_radiance);
 }
 
 TEST(ProceduralSky, HasStructureWithoutTheSun) {

@@ -16,15 +16,15 @@ constexpr int kHeight = 4, kWidth = 8, kTexels = kHeight * kWidth;
 constexpr int kPoints = 6;
 
 // Lobes of a width in radians about random directions, as matrices of three
-// like channels; lamps in random directions.
+// like channels; directional lights in random directions.
 std::array<RowMatrix, 3> Lobes(double width, int points = kPoints,
-                               int lamps = 0) {
+                               int directional_lights = 0) {
   std::mt19937_64 rng(7);
   std::normal_distribution<double> g;
   const auto direction = [&] {
     return Eigen::Vector3d(g(rng), g(rng), g(rng)).normalized();
   };
-  RowMatrix T(points, kTexels + lamps);
+  RowMatrix T(points, kTexels + directional_lights);
   for (int p = 0; p < points; ++p) {
     const Eigen::Vector3d axis = direction();
     for (int r = 0; r < kHeight; ++r) {
@@ -35,7 +35,7 @@ std::array<RowMatrix, 3> Lobes(double width, int points = kPoints,
                                (std::exp((x - 1) / (width * width)) + 1e-4);
       }
     }
-    for (int k = 0; k < lamps; ++k) {
+    for (int k = 0; k < directional_lights; ++k) {
       const double x = axis.dot(direction());
       T(p, kTexels + k) = 0.3 * (std::exp((x - 1) / (width * width)) + 1e-4);
     }
@@ -44,18 +44,21 @@ std::array<RowMatrix, 3> Lobes(double width, int points = kPoints,
 }
 
 Eigen::VectorXd DrawLight(const LightProcess& process, double amplitude,
-                          uint64_t seed, int lamps = 0) {
-  LightScales scales;
-  scales.log_amplitude = std::log(amplitude);
-  const RowMatrix C = LightCorrelation(kHeight, kWidth, process, scales);
-  const int n = kTexels + lamps;
+                          uint64_t seed, int directional_lights = 0) {
+  LightHyperparameters hyperparameters;
+  hyperparameters.log_amplitude = std::log(amplitude);
+  const RowMatrix C =
+      LightCorrelation(kHeight, kWidth, process, hyperparameters);
+  const int n = kTexels + directional_lights;
   Eigen::MatrixXd K(3 * n, 3 * n);
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
       Eigen::MatrixXd local = Eigen::MatrixXd::Zero(n, n);
       local.topLeftCorner(kTexels, kTexels) =
           amplitude * process.Local()(c, d) * C;
-      local.diagonal().tail(lamps).setConstant(process.Lamp()(c, d));
+      local.diagonal()
+          .tail(directional_lights)
+          .setConstant(process.DirectionalLight()(c, d));
       K.block(c * n, d * n, n, n) = local.array() + process.Level()(c, d);
     }
   }
@@ -70,9 +73,9 @@ std::vector<double> LogRadiance(const std::array<RowMatrix, 3>& T,
                                 const Eigen::VectorXd& l) {
   std::vector<double> y;
   for (int c = 0; c < 3; ++c) {
-    const Eigen::VectorXd E =
+    const Eigen::VectorXd L_o =
         T[c] * l.segment(c * T[c].cols(), T[c].cols()).array().exp().matrix();
-    for (const double e : E) y.push_back(std::log(e));
+    for (const double e : L_o) y.push_back(std::log(e));
   }
   return y;
 }
@@ -89,17 +92,21 @@ LightProcess Proper() {
 }
 
 // Of no band like another.
-LightScales Rough() { return {0.3, {-1.5, 0.4, -0.3, 0.8}}; }
+LightHyperparameters Rough() { return {0.3, {-1.5, 0.4, -0.3, 0.8}}; }
 
 // Scale `k` moved, the amplitude first.
-LightScales Moved(LightScales scales, int k, double step) {
-  (k == 0 ? scales.log_amplitude : scales.log_roughness[k - 1]) += step;
-  return scales;
+LightHyperparameters Moved(LightHyperparameters hyperparameters, int k,
+                           double step) {
+  (k == 0 ? hyperparameters.log_amplitude
+          : hyperparameters.log_roughness[k - 1]) += step;
+  return hyperparameters;
 }
 
 MarginalLikelihood Likelihood(std::vector<double> y,
-                              const LightProcess& process, int lamps = 0) {
-  return MarginalLikelihood(std::move(y), process, kHeight, kWidth, lamps, 1);
+                              const LightProcess& process,
+                              int directional_lights = 0) {
+  return MarginalLikelihood(std::move(y), process, kHeight, kWidth,
+                            directional_lights, 1);
 }
 
 // Nats, of the mode: its last steps shrink slowly, and the log determinant
@@ -107,33 +114,36 @@ MarginalLikelihood Likelihood(std::vector<double> y,
 constexpr double kTight = 1e-18;
 
 TEST(MarginalLikelihood, GradientMatchesDifferences) {
-  for (const auto& [width, lamps] :
+  for (const auto& [width, directional_lights] :
        {std::pair(0.3, 0), std::pair(1.0, 0), std::pair(0.3, 2)}) {
-    std::array<RowMatrix, 3> T = Lobes(width, kPoints, lamps);
-    std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 2, lamps));
+    std::array<RowMatrix, 3> T = Lobes(width, kPoints, directional_lights);
+    std::vector<double> y =
+        LogRadiance(T, DrawLight(Proper(), 1.0, 2, directional_lights));
     // Not what the model can render: the mode keeps residuals.
     for (size_t i = 0; i < y.size(); ++i) y[i] += 0.2 * std::sin(5.0 * i);
-    const MarginalLikelihood likelihood = Likelihood(y, Proper(), lamps);
+    const MarginalLikelihood likelihood =
+        Likelihood(y, Proper(), directional_lights);
     const auto cost = [&](const std::array<RowMatrix, 3>& matrices,
-                          const LightScales& scales,
+                          const LightHyperparameters& hyperparameters,
                           MarginalGradient* gradient) {
       LightMode mode;
-      mode.l = mode.dual = Eigen::VectorXd::Zero(3 * likelihood.num_sources());
+      mode.l = mode.representers =
+          Eigen::VectorXd::Zero(3 * likelihood.num_sources());
       const MarginalValue value = likelihood.Evaluate(
-          matrices, Noise(0.1), scales, kTight, &mode, gradient);
+          matrices, Noise(0.1), hyperparameters, kTight, &mode, gradient);
       EXPECT_TRUE(value.ok);
       return value.cost;
     };
     MarginalGradient gradient;
-    const LightScales scales = Rough();
-    cost(T, scales, &gradient);
+    const LightHyperparameters hyperparameters = Rough();
+    cost(T, hyperparameters, &gradient);
     const double h = 1e-3;
-    for (int k = 0; k < LightScales::kCount; ++k) {
-      const double numeric = (cost(T, Moved(scales, k, h), nullptr) -
-                              cost(T, Moved(scales, k, -h), nullptr)) /
+    for (int k = 0; k < LightHyperparameters::kCount; ++k) {
+      const double numeric = (cost(T, Moved(hyperparameters, k, h), nullptr) -
+                              cost(T, Moved(hyperparameters, k, -h), nullptr)) /
                              (2 * h);
-      EXPECT_NEAR(numeric, gradient.scales[k],
-                  1e-3 * std::abs(gradient.scales[k]) + 1e-3)
+      EXPECT_NEAR(numeric, gradient.hyperparameters[k],
+                  1e-3 * std::abs(gradient.hyperparameters[k]) + 1e-3)
           << k;
     }
     std::mt19937_64 rng(1);
@@ -148,24 +158,26 @@ TEST(MarginalLikelihood, GradientMatchesDifferences) {
         down[c] -= h * direction;
         expected += gradient.matrices[c].cwiseProduct(direction).sum();
       }
-      EXPECT_NEAR(
-          (cost(up, scales, nullptr) - cost(down, scales, nullptr)) / (2 * h),
-          expected, 2e-3 * std::abs(expected) + 2e-3)
+      EXPECT_NEAR((cost(up, hyperparameters, nullptr) -
+                   cost(down, hyperparameters, nullptr)) /
+                      (2 * h),
+                  expected, 2e-3 * std::abs(expected) + 2e-3)
           << width;
     }
   }
 }
 
 TEST(MarginalLikelihood, ModeIsWhereThePosteriorIsFlat) {
-  constexpr int kLamps = 2, kSources = kTexels + kLamps;
-  const std::array<RowMatrix, 3> T = Lobes(0.5, kPoints, kLamps);
+  constexpr int kDirectionalLights = 2, kSources = kTexels + kDirectionalLights;
+  const std::array<RowMatrix, 3> T = Lobes(0.5, kPoints, kDirectionalLights);
   const std::vector<double> y =
-      LogRadiance(T, DrawLight(Proper(), 1.0, 3, kLamps));
-  const MarginalLikelihood likelihood = Likelihood(y, Proper(), kLamps);
+      LogRadiance(T, DrawLight(Proper(), 1.0, 3, kDirectionalLights));
+  const MarginalLikelihood likelihood =
+      Likelihood(y, Proper(), kDirectionalLights);
   LightMode mode;
   ASSERT_TRUE(
       likelihood.Evaluate(T, Noise(0.05), {}, kTight, &mode, nullptr).ok);
-  // g = J^T D^-1 (y - log E), at the point itself.
+  // g = J^T D^-1 (y - log L_o), at the point itself.
   const std::vector<double> at =
       LogRadiance(T, (mode.l.array() + mode.level).matrix());
   for (int c = 0; c < 3; ++c) {
@@ -177,26 +189,29 @@ TEST(MarginalLikelihood, ModeIsWhereThePosteriorIsFlat) {
       expected += (y[i] - at[i]) / (0.05 * 0.05 * std::exp(at[i])) *
                   T[c].row(p).transpose().cwiseProduct(L);
     }
-    EXPECT_LT((expected - mode.dual.segment(c * kSources, kSources)).norm(),
-              1e-4 * expected.norm());
+    EXPECT_LT(
+        (expected - mode.representers.segment(c * kSources, kSources)).norm(),
+        1e-4 * expected.norm());
   }
 }
 
 // The integral itself, by drawing light from the prior.
 TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
-  const int points = 2, lamps = 1;
-  const std::array<RowMatrix, 3> T = Lobes(0.8, points, lamps);
+  const int points = 2, directional_lights = 1;
+  const std::array<RowMatrix, 3> T = Lobes(0.8, points, directional_lights);
   LightProcess process = Proper();
-  process.lamp_variance = 0.02;
-  process.lamp_chroma_variance = 0.005;
+  process.directional_light_variance = 0.02;
+  process.directional_light_chroma_variance = 0.005;
   process.level_variance = 0.01;
   process.level_chroma_variance = 0.002;
   process.horizon_share = 0.02;
   const double log_amplitude = std::log(0.02), sigma = 0.15;
   const auto evidence = [&](const std::vector<double>& y) {
-    const MarginalLikelihood likelihood(y, process, kHeight, kWidth, lamps, 1);
+    const MarginalLikelihood likelihood(y, process, kHeight, kWidth,
+                                        directional_lights, 1);
     LightMode mode;
-    mode.l = mode.dual = Eigen::VectorXd::Zero(3 * likelihood.num_sources());
+    mode.l = mode.representers =
+        Eigen::VectorXd::Zero(3 * likelihood.num_sources());
     return -likelihood
                 .Evaluate(T, Noise(sigma, points), {log_amplitude}, kTight,
                           &mode, nullptr)
@@ -207,7 +222,7 @@ TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
     const int count = 20000;
     for (int k = 0; k < count; ++k) {
       const std::vector<double> at =
-          LogRadiance(T, DrawLight(process, 0.02, 100 + k, lamps));
+          LogRadiance(T, DrawLight(process, 0.02, 100 + k, directional_lights));
       double square = 0.0;
       for (size_t i = 0; i < y.size(); ++i) {
         square += (y[i] - at[i]) * (y[i] - at[i]) / (sigma * sigma);
@@ -217,7 +232,7 @@ TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
     return std::log(sum) - y.size() * std::log(sigma);
   };
   const std::vector<double> likely =
-      LogRadiance(T, DrawLight(process, 0.02, 5, lamps));
+      LogRadiance(T, DrawLight(process, 0.02, 5, directional_lights));
   std::vector<double> unlikely = likely;
   unlikely[0] += 0.3;
   unlikely[3] -= 0.2;

@@ -17,22 +17,23 @@ using namespace testing;  // NOLINT
 
 class MarginalReflectanceTest : public MarginalTest {};
 
-// Gradient at x against differences, of these parameters and all scales.
+// Gradient at x against differences, of these parameters and all
+// hyperparameters.
 void ExpectGradient(const MarginalReflectance& reflectance,
                     const std::vector<double>& x,
                     const std::vector<int>& parameters) {
   const int n = reflectance.num_parameters();
   ASSERT_EQ(n, static_cast<int>(x.size()));
   const Eigen::VectorXd noise =
-      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
+      Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.0025);
   const auto evaluate = [&](const std::vector<double>& at,
-                            const LightScales& scales,
+                            const LightHyperparameters& hyperparameters,
                             std::vector<double>* gradient) {
     LightMode mode;
-    mode.l = mode.dual =
+    mode.l = mode.representers =
         Eigen::VectorXd::Zero(3 * reflectance.likelihood().num_sources());
-    const MarginalValue value =
-        reflectance.Evaluate(at.data(), noise, scales, 1e-12, &mode, gradient);
+    const MarginalValue value = reflectance.Evaluate(
+        at.data(), noise, hyperparameters, 1e-12, &mode, gradient);
     EXPECT_TRUE(value.ok);
     return std::vector<double>{value.cost};
   };
@@ -47,10 +48,10 @@ void ExpectGradient(const MarginalReflectance& reflectance,
         [&](double t) {
           std::vector<double> at = x;
           if (i < n) at[i] += t;
-          LightScales scales = {0.2};
-          if (i == n) scales.log_amplitude += t;
-          if (i > n) scales.log_roughness[i - n - 1] += t;
-          return evaluate(at, scales, nullptr);
+          LightHyperparameters hyperparameters = {0.2};
+          if (i == n) hyperparameters.log_amplitude += t;
+          if (i > n) hyperparameters.log_roughness[i - n - 1] += t;
+          return evaluate(at, hyperparameters, nullptr);
         },
         0.05)[0];
     // The lobes' tables are float.
@@ -61,7 +62,7 @@ void ExpectGradient(const MarginalReflectance& reflectance,
 TEST_F(MarginalReflectanceTest, GradientMatchesDifferences) {
   const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
                                         points_, radiance_, LightProcess(),
-                                        resolution_, 1, kLamps);
+                                        resolution_, 1, kDirectionalLights);
   ASSERT_EQ(18, reflectance.num_parameters());
   // Away from the truth, and at it.
   for (const double away : {0.2, 0.0}) {
@@ -76,7 +77,7 @@ TEST_F(MarginalReflectanceTest, GradientMatchesDifferences) {
 TEST_F(MarginalReflectanceTest, GradientOfCookTorranceMatchesDifferences) {
   const MarginalReflectance reflectance(CookTorranceLobes::Factory(1), points_,
                                         radiance_, LightProcess(), resolution_,
-                                        1, kLamps);
+                                        1, kDirectionalLights);
   ASSERT_EQ(14, reflectance.num_parameters());
   // A glossy paint, and a rough metal.
   for (const double roughness : {0.15, 0.6}) {
@@ -112,12 +113,10 @@ TEST_F(MarginalReflectanceTest, CellsThatSeeNoLightAreLeftOut) {
   const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
                                         points, radiance, LightProcess(),
                                         resolution_, 1);
-  const int kept = reflectance.cells().num_cells();
+  const int kept = reflectance.bins().num_bins();
   EXPECT_GT(kept, 1);
-  EXPECT_LT(kept,
-            GroupByNormal(points, radiance, resolution_.cells).num_cells());
-  ASSERT_EQ(3 * kept,
-            static_cast<int>(reflectance.cells().log_radiance.size()));
+  EXPECT_LT(kept, BinByNormal(points, radiance, resolution_.bins).num_bins());
+  ASSERT_EQ(3 * kept, static_cast<int>(reflectance.bins().log_radiance.size()));
   LightMode mode;
   EXPECT_TRUE(reflectance
                   .Evaluate(truth_.data(),
@@ -135,7 +134,7 @@ TEST_F(MarginalReflectanceTest, LastValueIsOfTheLastGradient) {
   LightMode mode;
   const MarginalObjective objective(
       &reflectance, &prior,
-      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.01),
+      Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.01),
       &mode);
   std::vector<double> y(objective.NumParameters(), 0.1), gradient(y.size());
   double cost = 0.0;
@@ -151,12 +150,12 @@ TEST_F(MarginalReflectanceTest, LastValueIsOfTheLastGradient) {
 TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
   const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
                                         points_, radiance_, LightProcess(),
-                                        resolution_, 1, kLamps);
+                                        resolution_, 1, kDirectionalLights);
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   LightMode mode;
   const MarginalObjective objective(
       &reflectance, &prior,
-      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.01),
+      Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.01),
       &mode);
   ASSERT_EQ(23, objective.NumParameters());
   Eigen::VectorXd x(18);
@@ -182,17 +181,17 @@ TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
   }
 }
 
-// G^T A^-1 G with G by differences of log E under the mode's light and A put
+// G^T A^-1 G with G by differences of log L_o under the mode's light and A put
 // together densely. A clamped colour and a code beyond the ball among them.
 TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
   const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
                                         points_, radiance_, LightProcess(),
-                                        resolution_, 1, kLamps);
-  const int P = reflectance.cells().num_cells(), t = 128, s = t + 2;
-  const int n = 18, all = n + LightScales::kCount;
+                                        resolution_, 1, kDirectionalLights);
+  const int P = reflectance.bins().num_bins(), t = 128, s = t + 2;
+  const int n = 18, all = n + LightHyperparameters::kCount;
   Eigen::VectorXd noise(3 * P);
   for (int i = 0; i < 3 * P; ++i) noise[i] = 0.002 + 1e-4 * (i % 7);
-  const LightScales scales = {0.3, {-1.0, 0.3, 0.2, -0.5}};
+  const LightHyperparameters hyperparameters = {0.3, {-1.0, 0.3, 0.2, -0.5}};
   const LightProcess process;
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   for (const bool extreme : {false, true}) {
@@ -205,19 +204,21 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
     }
     LightMode mode;
     ASSERT_TRUE(
-        reflectance.Evaluate(x.data(), noise, scales, 1e-6, &mode, nullptr).ok);
+        reflectance
+            .Evaluate(x.data(), noise, hyperparameters, 1e-6, &mode, nullptr)
+            .ok);
     const Eigen::VectorXd L = (mode.l.array() + mode.level).exp();
     const auto radiance = [&](const std::vector<double>& at) {
       const std::array<RowMatrix, 3> T = reflectance.Matrices(at.data());
-      Eigen::VectorXd E(3 * P);
+      Eigen::VectorXd L_o(3 * P);
       for (int c = 0; c < 3; ++c) {
-        E.segment(c * P, P) = T[c] * L.segment(c * s, s);
+        L_o.segment(c * P, P) = T[c] * L.segment(c * s, s);
       }
-      return E;
+      return L_o;
     };
     RowMatrix G(3 * P, n);
     for (int i = 0; i < n; ++i) {
-      // Along a lamp's way tables have kinks.
+      // Along a directional light's way tables have kinks.
       const double h = i < 14 ? 0.01 : 0.001;
       std::vector<double> up = x, down = x;
       up[i] += h;
@@ -226,25 +227,27 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
           (radiance(up).array().log() - radiance(down).array().log()) / (2 * h);
     }
     const std::array<RowMatrix, 3> T = reflectance.Matrices(x.data());
-    const Eigen::VectorXd E = radiance(x);
+    const Eigen::VectorXd L_o = radiance(x);
     Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * P, 3 * s);
     Eigen::MatrixXd K1 = Eigen::MatrixXd::Zero(3 * s, 3 * s), K2(3 * s, 3 * s);
     LightProcess scaled = process;
     scaled.horizon_share = 0.0;
-    const RowMatrix C = LightCorrelation(8, 16, scaled, scales);
-    const RowMatrix horizon = LightCorrelation(8, 16, process, scales) - C;
+    const RowMatrix C = LightCorrelation(8, 16, scaled, hyperparameters);
+    const RowMatrix horizon =
+        LightCorrelation(8, 16, process, hyperparameters) - C;
     for (int c = 0; c < 3; ++c) {
       J.block(c * P, c * s, P, s) =
-          E.segment(c * P, P).cwiseInverse().asDiagonal() * T[c] *
+          L_o.segment(c * P, P).cwiseInverse().asDiagonal() * T[c] *
           L.segment(c * s, s).asDiagonal();
       for (int d = 0; d < 3; ++d) {
         K1.block(c * s, d * s, t, t) =
-            std::exp(scales.log_amplitude) * process.Local()(c, d) * C;
+            std::exp(hyperparameters.log_amplitude) * process.Local()(c, d) * C;
         auto level = K2.block(c * s, d * s, s, s);
         level.setConstant(process.Level()(c, d));
-        level.topLeftCorner(t, t) +=
-            std::exp(scales.log_amplitude) * process.Local()(c, d) * horizon;
-        level.diagonal().tail(s - t).array() += process.Lamp()(c, d);
+        level.topLeftCorner(t, t) += std::exp(hyperparameters.log_amplitude) *
+                                     process.Local()(c, d) * horizon;
+        level.diagonal().tail(s - t).array() +=
+            process.DirectionalLight()(c, d);
       }
     }
     const Eigen::MatrixXd A1 = J * K1 * J.transpose();
@@ -254,16 +257,16 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
     const Eigen::MatrixXd expected = G.transpose() * llt.solve(G);
     const Eigen::MatrixXd X = llt.solve(A1);
     const Eigen::MatrixXd found =
-        reflectance.Information(x.data(), noise, scales, mode);
+        reflectance.Information(x.data(), noise, hyperparameters, mode);
     ASSERT_EQ(all, found.rows());
     // Tables and sums of the renderer are float.
     EXPECT_LT((found.topLeftCorner(n, n) - expected).norm(),
               5e-3 * expected.norm());
     // A^-1 dA / d scale, the amplitude's and, by differences of K, the others'.
     std::vector<Eigen::MatrixXd> by = {X};
-    for (int b = 0; b < LightScales::kBands; ++b) {
+    for (int b = 0; b < LightHyperparameters::kBands; ++b) {
       const auto correlation = [&](double step) {
-        LightScales moved = scales;
+        LightHyperparameters moved = hyperparameters;
         moved.log_roughness[b] += step;
         return LightCorrelation(8, 16, process, moved);
       };
@@ -272,13 +275,14 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
       for (int c = 0; c < 3; ++c) {
         for (int d = 0; d < 3; ++d) {
           K.block(c * s, d * s, t, t) =
-              std::exp(scales.log_amplitude) * process.Local()(c, d) * moved;
+              std::exp(hyperparameters.log_amplitude) * process.Local()(c, d) *
+              moved;
         }
       }
       by.push_back(llt.solve(J * K * J.transpose()));
     }
-    for (int a = 0; a < LightScales::kCount; ++a) {
-      for (int b = 0; b < LightScales::kCount; ++b) {
+    for (int a = 0; a < LightHyperparameters::kCount; ++a) {
+      for (int b = 0; b < LightHyperparameters::kCount; ++b) {
         EXPECT_NEAR(0.5 * (by[a] * by[b]).trace(), found(n + a, n + b),
                     1e-3 * std::sqrt(found(n + a, n + a) * found(n + b, n + b)))
             << a << " " << b;
@@ -292,17 +296,17 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
     // Of the objective: the prior whitened, and the wall of that code.
     const MarginalObjective objective(&reflectance, &prior, noise, &mode);
     const std::vector<double> y = objective.Whitened(
-        Eigen::Map<const Eigen::VectorXd>(x.data(), n), scales);
+        Eigen::Map<const Eigen::VectorXd>(x.data(), n), hyperparameters);
     Eigen::MatrixXd rest = objective.Information(y.data());
     ASSERT_EQ(all, rest.rows());
     Eigen::MatrixXd whitening = Eigen::MatrixXd::Zero(all, all);
     whitening.topLeftCorner(14, 14) = prior.factor;
-    const auto stds = LightScales::Stds();
-    for (int k = 0; k < LightScales::kCount; ++k) {
+    const auto stds = LightHyperparameters::Stds();
+    for (int k = 0; k < LightHyperparameters::kCount; ++k) {
       whitening(n + k, n + k) = stds[k];
     }
     for (int i = 14; i < n; ++i) {
-      whitening(i, i) = MarginalObjective::kLampOffsetStd;
+      whitening(i, i) = MarginalObjective::kDirectionalLightOffsetStd;
     }
     rest -= whitening.transpose() * found * whitening;
     rest -= Eigen::MatrixXd::Identity(all, all);
@@ -327,7 +331,7 @@ TEST_F(MarginalReflectanceTest, DescentEndsWhereNewtonGainsNothing) {
                                         resolution_, 1);
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   const Eigen::VectorXd noise =
-      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
+      Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.0025);
   for (const double away : {0.3, 4.0}) {
     LightMode mode;
     const MarginalObjective objective(&reflectance, &prior, noise, &mode);

@@ -12,14 +12,14 @@ namespace ibrdf {
 namespace testing {
 
 // One in front, one behind the sphere.
-inline const std::vector<Eigen::Vector3d> kLamps = {
+inline const std::vector<Eigen::Vector3d> kDirectionalLights = {
     Eigen::Vector3d(0.6, 0.5, 0.6).normalized(),
     Eigen::Vector3d(-0.8, 0.1, -0.5).normalized()};
 
 class MarginalTest : public ::testing::Test {
  protected:
   MarginalTest() {
-    resolution_.cells = {6, 3, 0.2};
+    resolution_.bins = {6, 3, 0.2};
     resolution_.map_width = 16;
     resolution_.map_height = 8;
     resolution_.grid = TinyTransportOptions().grid;

@@ -23,7 +23,7 @@ class ReflectanceSearchTest : public MarginalTest {
     ReflectanceSearchOptions options;
     options.screen = options.coarse = options.fine = resolution_;
     options.kept = 3;
-    options.coarse_rounds = {{3, 1}, {2, 3}};
+    options.coarse_stages = {{3, 1}, {2, 3}};
     options.fine_iterations = 4;
     options.num_threads = 1;
     return options;
@@ -69,8 +69,8 @@ TEST_F(ReflectanceSearchTest, AmongCookTorranceExplainsItsOwn) {
   }
 }
 
-// The reflectance does not move, and the light of a lamp in dim surroundings
-// is found with it.
+// The reflectance does not move, and the light of a directional light in dim
+// surroundings is found with it.
 TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
   CookTorrance paint;
   paint.diffuse = {0.1, 0.07, 0.04};
@@ -82,10 +82,11 @@ TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
   const std::vector<ShadingPoint> points = SpherePoints(24);
   Image map = SmoothMap(16, 32);
   double row = 0.0, column = 0.0;
-  MapPosition(kLamps[0], 16, 32, &row, &column);
+  MapPosition(kDirectionalLights[0], 16, 32, &row, &column);
   row = std::floor(row);
   column = std::floor(column);
-  const Eigen::Vector3d lamp = MapDirection(row + 0.5, column + 0.5, 16, 32);
+  const Eigen::Vector3d directional_light =
+      MapDirection(row + 0.5, column + 0.5, 16, 32);
   for (int c = 0; c < 3; ++c) {
     map.rgb[3 * static_cast<size_t>(row * 32 + column) + c] *= 200.0f;
   }
@@ -108,8 +109,9 @@ TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
   for (size_t i = 0; i < parameters.size(); ++i) {
     EXPECT_NEAR(parameters[i], found->parameters[i], 1e-6);
   }
-  ASSERT_FALSE(found->lamps.empty());
-  EXPECT_GT(found->lamps[0].dot(lamp), std::cos(5.0 * M_PI / 180.0));
+  ASSERT_FALSE(found->directional_lights.empty());
+  EXPECT_GT(found->directional_lights[0].dot(directional_light),
+            std::cos(5.0 * M_PI / 180.0));
   // All resolutions are one: costs compare.
   EXPECT_LT(found->cost, found->tried[0].first_cost);
   EXPECT_LT(found->misfit, found->tried[0].first_misfit);

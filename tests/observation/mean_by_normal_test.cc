@@ -25,7 +25,7 @@ std::vector<double> RandomRadiance(size_t points, unsigned seed) {
   return radiance;
 }
 
-void ExpectSame(const MeanCells& a, const MeanCells& b) {
+void ExpectSame(const BinMeans& a, const BinMeans& b) {
   ASSERT_EQ(a.points.size(), b.points.size());
   EXPECT_EQ(a.radiance, b.radiance);
   for (size_t i = 0; i < a.points.size(); ++i) {
@@ -35,22 +35,21 @@ void ExpectSame(const MeanCells& a, const MeanCells& b) {
   }
 }
 
-TEST(JoinLikePoints, ASphereBecomesADiscOfCells) {
+TEST(MeanByNormal, ASphereBecomesADiscOfCells) {
   const std::vector<ShadingPoint> points = SpherePoints(48);
   const std::vector<double> radiance = RandomRadiance(points.size(), 1);
   size_t before = 0;
   for (const int across : {1, 4, 12, 24}) {
-    const MeanCells cells =
-        JoinLikePoints(points, radiance, across, kMinCosine);
-    ASSERT_EQ(3 * cells.points.size(), cells.radiance.size());
-    EXPECT_GT(cells.points.size(), before);
-    EXPECT_LE(cells.points.size(),
+    const BinMeans bins = MeanByNormal(points, radiance, across, kMinCosine);
+    ASSERT_EQ(3 * bins.points.size(), bins.radiance.size());
+    EXPECT_GT(bins.points.size(), before);
+    EXPECT_LE(bins.points.size(),
               std::min<size_t>((across + 1) * (across + 1), points.size()));
-    before = cells.points.size();
-    for (const ShadingPoint& p : cells.points) {
+    before = bins.points.size();
+    for (const ShadingPoint& p : bins.points) {
       EXPECT_NEAR(1.0, p.normal.norm(), 1e-6);  // float
       EXPECT_EQ(Eigen::Vector3f(0, 0, 1), p.wo);
-      // Near a member, within a cell's diagonal on the disc; a mean's depth
+      // Near a member, within a bin's diagonal on the disc; a mean's depth
       // shortens it once more by less than that.
       const auto member = std::find_if(
           points.begin(), points.end(),
@@ -60,24 +59,24 @@ TEST(JoinLikePoints, ASphereBecomesADiscOfCells) {
                 2 * std::sqrt(2.0) * 2 / across);
     }
   }
-  // So fine that every point has a cell of its own.
-  const MeanCells all = JoinLikePoints(points, radiance, 1000, 0.0);
+  // So fine that every point has a bin of its own.
+  const BinMeans all = MeanByNormal(points, radiance, 1000, 0.0);
   EXPECT_EQ(points.size(), all.points.size());
 }
 
-TEST(JoinLikePoints, ConstantRadianceStays) {
+TEST(MeanByNormal, ConstantRadianceStays) {
   const std::vector<ShadingPoint> points = SpherePoints(24);
   std::vector<double> radiance;
   for (size_t i = 0; i < points.size(); ++i) {
     radiance.insert(radiance.end(), {2.0, 3e-5, 7e4});
   }
-  const MeanCells cells = JoinLikePoints(points, radiance, 6, kMinCosine);
-  for (size_t i = 0; i < cells.radiance.size(); ++i) {
-    EXPECT_NEAR(1.0, cells.radiance[i] / radiance[i % 3], 10 * kRounding);
+  const BinMeans bins = MeanByNormal(points, radiance, 6, kMinCosine);
+  for (size_t i = 0; i < bins.radiance.size(); ++i) {
+    EXPECT_NEAR(1.0, bins.radiance[i] / radiance[i % 3], 10 * kRounding);
   }
 }
 
-TEST(JoinLikePoints, InvalidAndGrazingPointsAreLeftOut) {
+TEST(MeanByNormal, InvalidAndGrazingPointsAreLeftOut) {
   const std::vector<ShadingPoint> points = SpherePoints(24);
   std::vector<double> radiance = RandomRadiance(points.size(), 2);
   const double bad[] = {std::numeric_limits<double>::quiet_NaN(), 0.0,
@@ -93,30 +92,30 @@ TEST(JoinLikePoints, InvalidAndGrazingPointsAreLeftOut) {
     for (int c = 0; c < 3; ++c) kept_radiance.push_back(radiance[3 * i + c]);
   }
   ASSERT_LT(kept.size(), 0.8 * points.size() - 4);  // some graze
-  ExpectSame(JoinLikePoints(kept, kept_radiance, 8, 0.0),
-             JoinLikePoints(points, radiance, 8, kMinCosine));
+  ExpectSame(MeanByNormal(kept, kept_radiance, 8, 0.0),
+             MeanByNormal(points, radiance, 8, kMinCosine));
 
   std::fill(radiance.begin(), radiance.end(), 0.0);
-  EXPECT_TRUE(JoinLikePoints(points, radiance, 8, kMinCosine).points.empty());
+  EXPECT_TRUE(MeanByNormal(points, radiance, 8, kMinCosine).points.empty());
 }
 
-TEST(JoinLikePoints, ViewsFromOtherDirectionsStayApart) {
+TEST(MeanByNormal, ViewsFromOtherDirectionsStayApart) {
   ShadingPoint a = PointAt(0.3, 0.4), b = a;
   const std::vector<double> radiance = {1, 2, 3, 4, 5, 6};
-  EXPECT_EQ(1u, JoinLikePoints({a, b}, radiance, 4, kMinCosine).points.size());
+  EXPECT_EQ(1u, MeanByNormal({a, b}, radiance, 4, kMinCosine).points.size());
   // Around the normal, so that all cosines are the same.
   b.wo = Eigen::AngleAxisf(0.4f, a.normal) * a.wo;
-  EXPECT_EQ(2u, JoinLikePoints({a, b}, radiance, 4, kMinCosine).points.size());
-  // A whole image in perspective: a cell's members see along like directions.
+  EXPECT_EQ(2u, MeanByNormal({a, b}, radiance, 4, kMinCosine).points.size());
+  // A whole image in perspective: a bin's members see along like directions.
   Camera camera;
   camera.type = CameraType::kPerspective;
   camera.fov_degrees = 50.0;
   camera.from = {0.0, 0.0, 2.5};
   const std::vector<ShadingPoint> points =
       FindShadingPoints(Scene::UnitSphere(), camera, 32, 32, Mask(), 1).value();
-  const MeanCells cells =
-      JoinLikePoints(points, RandomRadiance(points.size(), 3), 4, kMinCosine);
-  for (const ShadingPoint& p : cells.points) {
+  const BinMeans bins =
+      MeanByNormal(points, RandomRadiance(points.size(), 3), 4, kMinCosine);
+  for (const ShadingPoint& p : bins.points) {
     const auto member =
         std::find_if(points.begin(), points.end(),
                      [&](const ShadingPoint& m) { return m.pixel == p.pixel; });
@@ -124,16 +123,16 @@ TEST(JoinLikePoints, ViewsFromOtherDirectionsStayApart) {
     EXPECT_LT((member->wo - p.wo).norm(), 0.06f);
   }
   // One view alone would leave fewer.
-  const MeanCells one_view =
-      JoinLikePoints(SpherePoints(32),
-                     RandomRadiance(SpherePoints(32).size(), 3), 4, kMinCosine);
-  EXPECT_GT(cells.points.size(), one_view.points.size());
+  const BinMeans one_view =
+      MeanByNormal(SpherePoints(32), RandomRadiance(SpherePoints(32).size(), 3),
+                   4, kMinCosine);
+  EXPECT_GT(bins.points.size(), one_view.points.size());
 }
 
-TEST(JoinLikePoints, NoiseAveragesAsLogarithms) {
+TEST(MeanByNormal, NoiseAveragesAsLogarithms) {
   const ShadingPoint p = PointAt(0.5, 1.0);
-  const MeanCells two =
-      JoinLikePoints({p, p}, {1.0, 2.0, 1e-3, 4.0, 2.0, 1e3}, 8, kMinCosine);
+  const BinMeans two =
+      MeanByNormal({p, p}, {1.0, 2.0, 1e-3, 4.0, 2.0, 1e3}, 8, kMinCosine);
   ASSERT_EQ(3u, two.radiance.size());
   EXPECT_NEAR(2.0, two.radiance[0], kRounding);
   EXPECT_NEAR(2.0, two.radiance[1], kRounding);
@@ -145,8 +144,8 @@ TEST(JoinLikePoints, NoiseAveragesAsLogarithms) {
   std::normal_distribution<double> g;
   std::vector<double> radiance(3 * n);
   for (double& e : radiance) e = std::exp(sigma * g(rng));
-  const MeanCells many =
-      JoinLikePoints(std::vector<ShadingPoint>(n, p), radiance, 8, kMinCosine);
+  const BinMeans many =
+      MeanByNormal(std::vector<ShadingPoint>(n, p), radiance, 8, kMinCosine);
   ASSERT_EQ(3u, many.radiance.size());
   // Four standard deviations of a mean.
   for (const double e : many.radiance) {
@@ -154,30 +153,30 @@ TEST(JoinLikePoints, NoiseAveragesAsLogarithms) {
   }
 }
 
-TEST(JoinLikePoints, OrderIsThatOfTheCells) {
+TEST(MeanByNormal, OrderIsThatOfTheCells) {
   std::vector<ShadingPoint> points = SpherePoints(24);
   std::vector<double> radiance = RandomRadiance(points.size(), 5);
-  const MeanCells cells = JoinLikePoints(points, radiance, 8, kMinCosine);
-  ExpectSame(cells, JoinLikePoints(points, radiance, 8, kMinCosine));
+  const BinMeans bins = MeanByNormal(points, radiance, 8, kMinCosine);
+  ExpectSame(bins, MeanByNormal(points, radiance, 8, kMinCosine));
   // Whatever order the points come in.
   std::reverse(points.begin(), points.end());
   std::reverse(radiance.begin(), radiance.end());
   for (size_t i = 0; i < points.size(); ++i) {
     std::swap(radiance[3 * i], radiance[3 * i + 2]);
   }
-  const MeanCells reversed = JoinLikePoints(points, radiance, 8, kMinCosine);
-  ASSERT_EQ(cells.points.size(), reversed.points.size());
-  for (size_t i = 0; i < cells.points.size(); ++i) {
-    EXPECT_LT((cells.points[i].normal - reversed.points[i].normal).norm(),
+  const BinMeans reversed = MeanByNormal(points, radiance, 8, kMinCosine);
+  ASSERT_EQ(bins.points.size(), reversed.points.size());
+  for (size_t i = 0; i < bins.points.size(); ++i) {
+    EXPECT_LT((bins.points[i].normal - reversed.points[i].normal).norm(),
               1e-6f);
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(1.0, cells.radiance[3 * i + c] / reversed.radiance[3 * i + c],
+      EXPECT_NEAR(1.0, bins.radiance[3 * i + c] / reversed.radiance[3 * i + c],
                   kRounding);
     }
   }
 }
 
-// Members spread over one cell in each of some places on a Lambertian sphere,
+// Members spread over one bin in each of some places on a Lambertian sphere,
 // in a map of contrast 2, and the renders of members and of their mean point.
 struct RenderedCells {
   double worst_error = 0.0;   // of the mean point's log radiance
@@ -199,14 +198,14 @@ RenderedCells RenderCells(int across) {
   TransportOptions options = TinyTransportOptions();
   const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(0.5), options.grid);
   const auto render = [&](const std::vector<ShadingPoint>& points) {
-    std::vector<double> E(3 * points.size());
+    std::vector<double> L_o(3 * points.size());
     Transport(points, kMapHeight, kMapWidth, options)
-        .Render(grid, map.rgb.data(), E.data());
-    return E;
+        .Render(grid, map.rgb.data(), L_o.data());
+    return L_o;
   };
-  // |t.grad E| <= (max L - min L) pi / 2 and |t.H t E| <= pi max L (a great
-  // circle's integral of cos^2, and E itself) in units of albedo / pi, with
-  // E >= pi min L: of log E's curvature, max L / min L + (contrast / 2)^2.
+  // |t.grad L_o| <= (max L - min L) pi / 2 and |t.H t L_o| <= pi max L (a great
+  // circle's integral of cos^2, and L_o itself) in units of albedo / pi, with
+  // L_o >= pi min L: of log L_o's curvature, max L / min L + (contrast / 2)^2.
   constexpr double kCurvature = 2.0 + 0.25;
   std::mt19937 rng(6);
   std::uniform_real_distribution<double> uniform(-0.49, 0.49);
@@ -222,16 +221,16 @@ RenderedCells RenderCells(int across) {
       }
     }
   }
-  const std::vector<double> E = render(members);
-  std::vector<double> radiance;  // of the cells
+  const std::vector<double> L_o = render(members);
+  std::vector<double> radiance;  // of the bins
   for (size_t first = 0; first < members.size(); first += kMembers) {
-    const MeanCells cell = JoinLikePoints(
+    const BinMeans bin = MeanByNormal(
         {members.begin() + first, members.begin() + first + kMembers},
-        {E.begin() + 3 * first, E.begin() + 3 * (first + kMembers)}, across,
+        {L_o.begin() + 3 * first, L_o.begin() + 3 * (first + kMembers)}, across,
         0.05);
-    EXPECT_EQ(1u, cell.points.size());
-    means.push_back(cell.points[0]);
-    radiance.insert(radiance.end(), cell.radiance.begin(), cell.radiance.end());
+    EXPECT_EQ(1u, bin.points.size());
+    means.push_back(bin.points[0]);
+    radiance.insert(radiance.end(), bin.radiance.begin(), bin.radiance.end());
   }
   const std::vector<double> at_mean = render(means);
   RenderedCells out;
@@ -248,20 +247,20 @@ RenderedCells RenderCells(int across) {
       EXPECT_LT(error, 0.5 * kCurvature * mean_square);
       out.worst_error = std::max(out.worst_error, error);
       for (size_t m = kMembers * i; m < kMembers * (i + 1); ++m) {
-        out.worst_spread =
-            std::max(out.worst_spread, std::abs(std::log(E[3 * m + c]) - mean));
+        out.worst_spread = std::max(out.worst_spread,
+                                    std::abs(std::log(L_o[3 * m + c]) - mean));
       }
     }
   }
   return out;
 }
 
-TEST(JoinLikePoints, AMeanPointRendersTheMeanToSecondOrder) {
+TEST(MeanByNormal, AMeanPointRendersTheMeanToSecondOrder) {
   const RenderedCells coarse = RenderCells(8), fine = RenderCells(32);
   // A member in the place of the mean would be off by the first order.
   EXPECT_LT(coarse.worst_error, coarse.worst_spread / 4);
   EXPECT_LT(fine.worst_error, fine.worst_spread / 8);
-  // Cells of a quarter of the size: 16 times less, were there no quadrature.
+  // Bins of a quarter of the size: 16 times less, were there no quadrature.
   EXPECT_LT(fine.worst_error, coarse.worst_error / 8);
 }
 

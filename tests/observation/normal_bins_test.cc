@@ -11,35 +11,34 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-TEST(ImageCells, RadianceIsTheMeanOfTheirPoints) {
+TEST(NormalBins, RadianceIsTheMeanOfTheirPoints) {
   const std::vector<ShadingPoint> points = SpherePoints(20);
   std::vector<double> radiance;
   for (size_t i = 0; i < 3 * points.size(); ++i) radiance.push_back(1.0 + i);
   radiance[3 * 100 + 1] = -1.0;
-  const ImageCells cells = GroupByNormal(points, radiance, {5, 3, 0.2});
-  ASSERT_GT(cells.num_cells(), 10);
-  ASSERT_LE(cells.num_cells(), 25);
-  for (int i = 0; i < cells.num_cells(); ++i) {
-    const int begin = cells.first[i], end = cells.first[i + 1];
+  const NormalBins bins = BinByNormal(points, radiance, {5, 3, 0.2});
+  ASSERT_GT(bins.num_bins(), 10);
+  ASSERT_LE(bins.num_bins(), 25);
+  for (int i = 0; i < bins.num_bins(); ++i) {
+    const int begin = bins.first[i], end = bins.first[i + 1];
     ASSERT_GT(end, begin);
     ASSERT_LE(end - begin, 3);
     double sum = 0.0;
     for (int k = begin; k < end; ++k) {
-      EXPECT_NE(points[100].pixel, cells.points[k].pixel);
-      EXPECT_GE(cells.points[k].normal.dot(cells.points[k].wo), 0.2f);
+      EXPECT_NE(points[100].pixel, bins.points[k].pixel);
+      EXPECT_GE(bins.points[k].normal.dot(bins.points[k].wo), 0.2f);
       const auto at = std::find_if(points.begin(), points.end(),
                                    [&](const ShadingPoint& p) {
-                                     return p.pixel == cells.points[k].pixel;
+                                     return p.pixel == bins.points[k].pixel;
                                    });
       sum += radiance[3 * (at - points.begin()) + 2];
-      // Like normals: within a cell's diagonal.
-      EXPECT_LT((cells.points[k].normal - cells.points[begin].normal)
-                    .head<2>()
-                    .norm(),
-                0.4f * std::sqrt(2.0f) + 1e-3f);
+      // Like normals: within a bin's diagonal.
+      EXPECT_LT(
+          (bins.points[k].normal - bins.points[begin].normal).head<2>().norm(),
+          0.4f * std::sqrt(2.0f) + 1e-3f);
     }
     EXPECT_NEAR(std::log(sum / (end - begin)),
-                cells.log_radiance[2 * cells.num_cells() + i], 1e-12);
+                bins.log_radiance[2 * bins.num_bins() + i], 1e-12);
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 using namespace testing;  // NOLINT
 
 constexpr int kSize = 72;    // pixels a side
-constexpr int kAcross = 24;  // 3x3 pixels to a cell
+constexpr int kAcross = 24;  // 3x3 pixels to a bin
 constexpr double kMinCosine = 0.1;
 
 // Of radiance that is another in every pixel; one of them is black.
@@ -40,12 +40,12 @@ TEST(LevelPair, IsANinthOfTheImageAndItsCells) {
     blocks.insert(p.pixel / kSize / 8 * 100 + p.pixel % kSize / 8);
   }
   EXPECT_GE(blocks.size(), 8u);  // of nine, corners may miss the sphere
-  const MeanCells cells = JoinLikePoints(
+  const BinMeans bins = MeanByNormal(
       pair.pixels->points, RadianceOf(problem.image, pair.pixels->points),
       kAcross, kMinCosine);
-  ASSERT_EQ(cells.points.size(), pair.cells->points.size());
-  EXPECT_LT(3 * cells.points.size(), pair.pixels->points.size());
-  EXPECT_EQ(cells.radiance, pair.cells->observed.radiance);
+  ASSERT_EQ(bins.points.size(), pair.bins->points.size());
+  EXPECT_LT(3 * bins.points.size(), pair.pixels->points.size());
+  EXPECT_EQ(bins.radiance, pair.bins->observed.radiance);
 }
 
 // All pixels of the pair are transported at once.
@@ -58,28 +58,28 @@ TEST(LevelPair, OfALargeImageIsThinner) {
   const LevelPair pair = MakeLevelPair(problem, kAcross);
   EXPECT_LT(pair.pixels->points.size(), 9000u);
   EXPECT_GT(pair.pixels->points.size(), 4000u);
-  EXPECT_GT(pair.cells->points.size(), 300u);
+  EXPECT_GT(pair.bins->points.size(), 300u);
 }
 
-TEST(JoiningError, IsTheMeanDifferenceOfLogarithms) {
+TEST(BinningError, IsTheMeanDifferenceOfLogarithms) {
   const InverseProblem problem = SphereProblem();
   const LevelPair pair = MakeLevelPair(problem, kAcross);
   const std::vector<double> of_pixels =
       RadianceOf(problem.image, pair.pixels->points);
-  std::vector<double> of_cells = pair.cells->observed.radiance;
+  std::vector<double> of_bins = pair.bins->observed.radiance;
   const auto error = [&](const std::vector<double>& pixels,
-                         const std::vector<double>& cells) {
-    return JoiningError(*pair.pixels, pixels, cells, kAcross);
+                         const std::vector<double>& bins) {
+    return BinningError(*pair.pixels, pixels, bins, kAcross);
   };
-  EXPECT_LT(error(of_pixels, of_cells), 1e-12);
-  for (size_t i = 0; i < of_cells.size(); ++i) {
-    of_cells[i] *= std::exp(i % 3 == 0 ? 0.3 : i % 3 == 1 ? -0.3 : 0.0);
+  EXPECT_LT(error(of_pixels, of_bins), 1e-12);
+  for (size_t i = 0; i < of_bins.size(); ++i) {
+    of_bins[i] *= std::exp(i % 3 == 0 ? 0.3 : i % 3 == 1 ? -0.3 : 0.0);
   }
-  EXPECT_NEAR(0.2, error(of_pixels, of_cells), 1e-12);
+  EXPECT_NEAR(0.2, error(of_pixels, of_bins), 1e-12);
   // A model that is black where the image is not.
-  EXPECT_EQ(0.0, error(std::vector<double>(of_pixels.size(), 0.0), of_cells));
-  of_cells[0] = 0.0;
-  EXPECT_EQ(0.0, error(of_pixels, of_cells));
+  EXPECT_EQ(0.0, error(std::vector<double>(of_pixels.size(), 0.0), of_bins));
+  of_bins[0] = 0.0;
+  EXPECT_EQ(0.0, error(of_pixels, of_bins));
 }
 
 }  // namespace

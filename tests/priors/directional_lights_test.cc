@@ -1,4 +1,5 @@
-// Lamps: where an image's highlights put them, and what they add to it.
+// DirectionalLights: where an image's highlights put them, and what they add to
+// it.
 #include "ibrdf/solvers/priors/directional_lights.h"
 
 #include <gtest/gtest.h>
@@ -57,28 +58,30 @@ Eigen::Vector3d Unit(double x, double y, double z) {
   return Eigen::Vector3d(x, y, z).normalized();
 }
 
-TEST(FindLamps, HighlightsTellDirectionsTheBrightestFirst) {
+TEST(FindDirectionalLights, HighlightsTellDirectionsTheBrightestFirst) {
   const std::vector<ShadingPoint> points = SpherePoints(64);
   const Eigen::Vector3d front = Unit(0.5, 0.6, 0.6), back = Unit(-0.8, 0, -0.5);
   const std::vector<double> radiance =
       Highlights(points, {{front, 2.0, 5.0}, {back, 6.0, 4.0}});
-  const std::vector<Eigen::Vector3d> lamps = FindLamps(points, radiance, 3);
-  ASSERT_EQ(2u, lamps.size());
-  EXPECT_LT(DegreesBetween(back, lamps[0]), 1.5);
-  EXPECT_LT(DegreesBetween(front, lamps[1]), 1.0);
-  EXPECT_EQ(1u, FindLamps(points, radiance, 1).size());
-  EXPECT_TRUE(FindLamps(points, radiance, 0).empty());
+  const std::vector<Eigen::Vector3d> directional_lights =
+      FindDirectionalLights(points, radiance, 3);
+  ASSERT_EQ(2u, directional_lights.size());
+  EXPECT_LT(DegreesBetween(back, directional_lights[0]), 1.5);
+  EXPECT_LT(DegreesBetween(front, directional_lights[1]), 1.0);
+  EXPECT_EQ(1u, FindDirectionalLights(points, radiance, 1).size());
+  EXPECT_TRUE(FindDirectionalLights(points, radiance, 0).empty());
 }
 
-TEST(FindLamps, ShouldersOfAWideHighlightAreNoLamps) {
+TEST(FindDirectionalLights, ShouldersOfAWideHighlightAreNoDirectionalLights) {
   const std::vector<ShadingPoint> points = SpherePoints(64);
   const std::vector<double> radiance =
       Highlights(points, {{Unit(0.3, 0.6, 0.7), 20.0, 14.0}});
-  EXPECT_EQ(1u, FindLamps(points, radiance, 5).size());
+  EXPECT_EQ(1u, FindDirectionalLights(points, radiance, 5).size());
 }
 
-// A facet that mirrors a lamp has pixels of one normal and one radiance.
-TEST(FindLamps, EqualPixelsAreOneLamp) {
+// A facet that mirrors a directional light has pixels of one normal and one
+// radiance.
+TEST(FindDirectionalLights, EqualPixelsAreOneDirectionalLight) {
   std::vector<ShadingPoint> points = SpherePoints(64);
   std::vector<double> radiance = Highlights(points, {});
   const size_t facet = points.size() / 2 + 10;
@@ -86,49 +89,53 @@ TEST(FindLamps, EqualPixelsAreOneLamp) {
     points.push_back(points[facet]);
     radiance.insert(radiance.end(), {9.0, 9.0, 9.0});
   }
-  EXPECT_EQ(1u, FindLamps(points, radiance, 3).size());
+  EXPECT_EQ(1u, FindDirectionalLights(points, radiance, 3).size());
 }
 
-TEST(FindLamps, NoiseIsNoLamp) {
+TEST(FindDirectionalLights, NoiseIsNoDirectionalLight) {
   const std::vector<ShadingPoint> points = SpherePoints(64);
-  EXPECT_TRUE(FindLamps(points, Highlights(points, {}), 5).empty());
+  EXPECT_TRUE(FindDirectionalLights(points, Highlights(points, {}), 5).empty());
 }
 
-TEST(FindLamps, PixelsThatAreNotLightTakeNoPart) {
+TEST(FindDirectionalLights, PixelsThatAreNotLightTakeNoPart) {
   const std::vector<ShadingPoint> points = SpherePoints(64);
-  const Eigen::Vector3d lamp = Unit(0.5, 0.6, 0.6);
-  std::vector<double> radiance = Highlights(points, {{lamp, 5.0, 5.0}});
+  const Eigen::Vector3d directional_light = Unit(0.5, 0.6, 0.6);
+  std::vector<double> radiance =
+      Highlights(points, {{directional_light, 5.0, 5.0}});
   for (size_t i = 0; i < points.size(); i += 7) {
     for (int c = 0; c < 3; ++c) {
       radiance[3 * i + c] =
           i % 2 == 0 ? std::numeric_limits<double>::infinity() : -1.0;
     }
   }
-  const std::vector<Eigen::Vector3d> lamps = FindLamps(points, radiance, 5);
-  ASSERT_EQ(1u, lamps.size());
-  EXPECT_LT(DegreesBetween(lamp, lamps[0]), 1.0);
-  EXPECT_TRUE(FindLamps({}, {}, 3).empty());
+  const std::vector<Eigen::Vector3d> directional_lights =
+      FindDirectionalLights(points, radiance, 5);
+  ASSERT_EQ(1u, directional_lights.size());
+  EXPECT_LT(DegreesBetween(directional_light, directional_lights[0]), 1.0);
+  EXPECT_TRUE(FindDirectionalLights({}, {}, 3).empty());
 }
 
-TEST(MovedLamp, OffsetsAreTangentsOfAngles) {
-  const Eigen::Vector3d lamp = Unit(-0.4, 0.3, -0.8);
+TEST(MovedDirectionalLight, OffsetsAreTangentsOfAngles) {
+  const Eigen::Vector3d directional_light = Unit(-0.4, 0.3, -0.8);
   for (const auto& [x, y] : {std::pair(0.0, 0.0), std::pair(0.05, 0.0),
                              std::pair(0.0, -2.0), std::pair(0.3, 0.4)}) {
     const double offsets[2] = {x, y};
-    const Eigen::Vector3d moved = MovedLamp(lamp, offsets);
+    const Eigen::Vector3d moved =
+        MovedDirectionalLight(directional_light, offsets);
     EXPECT_NEAR(1.0, moved.norm(), 1e-12);
     EXPECT_NEAR(std::atan(std::hypot(x, y)) / kDegree,
-                DegreesBetween(lamp, moved), 1e-9);
+                DegreesBetween(directional_light, moved), 1e-9);
   }
 }
 
-TEST(NearLamps, TexelsWithinSomeDegreesTheNearestMost) {
+TEST(NearDirectionalLights, TexelsWithinSomeDegreesTheNearestMost) {
   const int H = 64, W = 128;
   // At the pole, across the map's edge, and two that meet.
-  const std::vector<Eigen::Vector3d> lamps = {
+  const std::vector<Eigen::Vector3d> directional_lights = {
       Unit(0.01, 1.0, 0.0), MapDirection(30.5, 0.1, H, W),
       MapDirection(40.5, 60.5, H, W), MapDirection(40.5, 62.5, H, W)};
-  const std::vector<LampTexel> near = NearLamps(lamps, H, W);
+  const std::vector<DirectionalLightTexel> near =
+      NearDirectionalLights(directional_lights, H, W);
   std::vector<double> weights(H * W, 0.0);
   for (size_t i = 0; i < near.size(); ++i) {
     if (i > 0) {
@@ -139,21 +146,21 @@ TEST(NearLamps, TexelsWithinSomeDegreesTheNearestMost) {
   for (int r = 0; r < H; ++r) {
     for (int x = 0; x < W; ++x) {
       double nearest = 180.0;
-      for (const Eigen::Vector3d& lamp : lamps) {
+      for (const Eigen::Vector3d& directional_light : directional_lights) {
         nearest = std::min(
-            nearest,
-            DegreesBetween(lamp, MapDirection(r + 0.5, x + 0.5, H, W)));
+            nearest, DegreesBetween(directional_light,
+                                    MapDirection(r + 0.5, x + 0.5, H, W)));
       }
       const double weight = std::exp(-0.5 * nearest * nearest / 16.0);
       EXPECT_NEAR(weight < 0.05 ? 0.0 : weight, weights[r * W + x], 1e-9);
     }
   }
-  EXPECT_TRUE(NearLamps({}, H, W).empty());
+  EXPECT_TRUE(NearDirectionalLights({}, H, W).empty());
 }
 
-class LampResponsesTest : public ::testing::Test {
+class DirectionalLightResponsesTest : public ::testing::Test {
  protected:
-  LampResponsesTest() {
+  DirectionalLightResponsesTest() {
     // Smooth, so that its table is close to it.
     const auto brdf = [](double h, double d, double p) -> Eigen::Array3d {
       return {0.4 + 0.3 * std::cos(2 * h) + 0.1 * d + 0.05 * std::cos(2 * p), 0,
@@ -161,36 +168,37 @@ class LampResponsesTest : public ::testing::Test {
     };
     grid_ = BrdfGrid::FromFunction(brdf, {48, 20, 12});
     const std::vector<ShadingPoint> points = SpherePoints(12);
-    cells_ = GroupByNormal(points, std::vector<double>(3 * points.size(), 1.0),
-                           {6, 3, 0.2});
+    cells_ = BinByNormal(points, std::vector<double>(3 * points.size(), 1.0),
+                         {6, 3, 0.2});
   }
   BrdfGrid grid_;
-  ImageCells cells_;
+  NormalBins cells_;
   // In front, grazing and behind.
-  const std::vector<Eigen::Vector3d> lamps_ = {
+  const std::vector<Eigen::Vector3d> directional_lights_ = {
       Unit(0.3, 0.5, 0.8), Unit(0.9, 0.1, -0.2), Unit(0.05, 0.0, -1.0)};
 };
 
-TEST_F(LampResponsesTest, AreTheReflectedRadianceOfEachPoint) {
-  const LampResponses responses(cells_, grid_.shape, nullptr, lamps_);
+TEST_F(DirectionalLightResponsesTest, AreTheReflectedRadianceOfEachPoint) {
+  const DirectionalLightResponses responses(cells_, grid_.shape, nullptr,
+                                            directional_lights_);
   const RowMatrix found = responses.Of(grid_.Channel(0));
-  ASSERT_EQ(cells_.num_cells(), found.rows());
+  ASSERT_EQ(cells_.num_bins(), found.rows());
   ASSERT_EQ(3, found.cols());
   double most = 0.0;
-  for (int i = 0; i < cells_.num_cells(); ++i) {
+  for (int i = 0; i < cells_.num_bins(); ++i) {
     for (int k = 0; k < 3; ++k) {
       double sum = 0.0;
       for (int p = cells_.first[i]; p < cells_.first[i + 1]; ++p) {
         const Eigen::Vector3d n = cells_.points[p].normal.cast<double>();
         const Eigen::Vector3d wo = cells_.points[p].wo.cast<double>();
-        const double cosine = n.dot(lamps_[k]);
+        const double cosine = n.dot(directional_lights_[k]);
         if (cosine <= 0.0) continue;
         const Eigen::Vector3d a = n.unitOrthogonal(), b = n.cross(a);
         const auto local = [&](const Eigen::Vector3d& v) {
           return Eigen::Vector3d(v.dot(a), v.dot(b), v.dot(n));
         };
-        const HalfDiff x = ToHalfDiff(local(lamps_[k]), local(wo));
-        sum += kLampSolidAngle * cosine *
+        const HalfDiff x = ToHalfDiff(local(directional_lights_[k]), local(wo));
+        sum += kDirectionalLightSolidAngle * cosine *
                grid_.Evaluate(x.theta_h, x.theta_d, x.phi_d)[0];
       }
       sum /= cells_.first[i + 1] - cells_.first[i];
@@ -202,9 +210,10 @@ TEST_F(LampResponsesTest, AreTheReflectedRadianceOfEachPoint) {
   EXPECT_EQ(0.0, found.col(2).maxCoeff());  // seen by nothing
 }
 
-TEST_F(LampResponsesTest, GradientIsTheTranspose) {
-  const LampResponses responses(cells_, grid_.shape, nullptr, lamps_);
-  LampResponses::Matrix adjoint(cells_.num_cells(), 3);
+TEST_F(DirectionalLightResponsesTest, GradientIsTheTranspose) {
+  const DirectionalLightResponses responses(cells_, grid_.shape, nullptr,
+                                            directional_lights_);
+  DirectionalLightResponses::Matrix adjoint(cells_.num_bins(), 3);
   for (Eigen::Index i = 0; i < adjoint.size(); ++i) {
     adjoint.data()[i] = static_cast<float>(std::sin(1.0 + 2.0 * i));
   }
@@ -220,9 +229,9 @@ TEST_F(LampResponsesTest, GradientIsTheTranspose) {
   EXPECT_GT(std::abs(expected), 1e-3);
 }
 
-// A sun in one texel over dim light: with a lamp there the true reflectance is
-// the more likely by far, and the map has the sun where it is.
-TEST(Lamps, ExplainASun) {
+// A sun in one texel over dim light: with a directional light there the true
+// reflectance is the more likely by far, and the map has the sun where it is.
+TEST(DirectionalLights, ExplainASun) {
   const NeuralBrdfModel model = SmoothTinyModel(4);
   const std::vector<ShadingPoint> points = SpherePoints(24);
   const std::vector<double> truth = TinyLobes();
@@ -237,7 +246,7 @@ TEST(Lamps, ExplainASun) {
   const std::vector<double> radiance = RenderTinyLobes(model, points, map);
 
   MarginalResolution resolution;
-  resolution.cells = {8, 3, 0.2};
+  resolution.bins = {8, 3, 0.2};
   resolution.map_width = 16;
   resolution.map_height = 8;
   resolution.grid = TinyTransportOptions().grid;

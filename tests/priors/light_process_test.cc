@@ -9,21 +9,23 @@ namespace ibrdf {
 namespace {
 
 // Of no band like another.
-constexpr LightScales kRough = {0.3, {-1.5, 0.4, -0.3, 0.8}};
+constexpr LightHyperparameters kRough = {0.3, {-1.5, 0.4, -0.3, 0.8}};
 
 TEST(LightProcess, ScalesAreWhitened) {
-  const LightScales scales = kRough;
-  const auto y = scales.Whitened();
-  const LightScales back = LightScales::FromWhitened(y.data());
-  EXPECT_NEAR(scales.log_amplitude, back.log_amplitude, 1e-14);
-  for (int b = 0; b < LightScales::kBands; ++b) {
-    EXPECT_NEAR(scales.log_roughness[b], back.log_roughness[b], 1e-14);
+  const LightHyperparameters hyperparameters = kRough;
+  const auto y = hyperparameters.Whitened();
+  const LightHyperparameters back =
+      LightHyperparameters::FromWhitened(y.data());
+  EXPECT_NEAR(hyperparameters.log_amplitude, back.log_amplitude, 1e-14);
+  for (int b = 0; b < LightHyperparameters::kBands; ++b) {
+    EXPECT_NEAR(hyperparameters.log_roughness[b], back.log_roughness[b], 1e-14);
   }
-  for (const double mean : LightScales().Whitened()) EXPECT_EQ(0.0, mean);
+  for (const double mean : LightHyperparameters().Whitened())
+    EXPECT_EQ(0.0, mean);
 }
 
 TEST(LightProcess, HarshLightIsADeviationAboveTheMean) {
-  for (const double y : LightScales::Harsh().Whitened()) {
+  for (const double y : LightHyperparameters::Harsh().Whitened()) {
     EXPECT_NEAR(1.0, y, 1e-12);
   }
 }
@@ -46,10 +48,11 @@ TEST(LightProcess, HorizonIsAStepThatNoAmplitudeScales) {
   LightProcess without = process;
   without.horizon_share = 0.0;
   for (const double log_amplitude : {-3.0, 0.0, 1.5}) {
-    const LightScales scales{log_amplitude, LightScales::kMean};
-    const RowMatrix step =
-        std::exp(log_amplitude) * (LightCorrelation(8, 16, process, scales) -
-                                   LightCorrelation(8, 16, without, scales));
+    const LightHyperparameters hyperparameters{log_amplitude,
+                                               LightHyperparameters::kMean};
+    const RowMatrix step = std::exp(log_amplitude) *
+                           (LightCorrelation(8, 16, process, hyperparameters) -
+                            LightCorrelation(8, 16, without, hyperparameters));
     for (int i = 0; i < step.rows(); ++i) {
       for (int j = 0; j < step.cols(); ++j) {
         const double side = (i < 4 * 16) == (j < 4 * 16) ? 0.25 : -0.25;

@@ -29,13 +29,14 @@ class LightSpectrumTest
     process.smooth_degrees = process.rough_degrees = degrees_;
     return process;
   }
-  const LightScales scales_{0.7, {-1.0, 0.5, 0.2, -2.0}};
+  const LightHyperparameters hyperparameters_{0.7, {-1.0, 0.5, 0.2, -2.0}};
   const ProcessSpectrum process_{height_, width_, Process()};
-  const LightSpectrum spectrum_ = process_.At(scales_);
+  const LightSpectrum spectrum_ = process_.At(hyperparameters_);
 };
 
 TEST_P(LightSpectrumTest, ProductIsThatOfTheDenseCorrelation) {
-  const RowMatrix dense = LightCorrelation(height_, width_, Process(), scales_);
+  const RowMatrix dense =
+      LightCorrelation(height_, width_, Process(), hyperparameters_);
   RowMatrix product;
   spectrum_.Multiply(RowMatrix::Identity(dense.rows(), dense.rows()), &product);
   ASSERT_EQ(dense.rows(), product.rows());
@@ -56,10 +57,11 @@ TEST_P(LightSpectrumTest, ProductIsThatOfTheDenseCorrelation) {
 TEST_P(LightSpectrumTest, RoughPartIsWhatIsLeftWithoutTheOthers) {
   LightProcess process = Process();
   process.smooth_share = process.horizon_share = 0.0;
-  const RowMatrix dense = LightCorrelation(height_, width_, process, scales_);
+  const RowMatrix dense =
+      LightCorrelation(height_, width_, process, hyperparameters_);
   RowMatrix product;
-  process_.RoughAt(scales_).Multiply(
-      RowMatrix::Identity(dense.rows(), dense.rows()), &product);
+  process_.RoughAt(hyperparameters_)
+      .Multiply(RowMatrix::Identity(dense.rows(), dense.rows()), &product);
   EXPECT_LT((product - dense).cwiseAbs().maxCoeff(), kOpposite);
 }
 

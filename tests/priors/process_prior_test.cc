@@ -57,14 +57,16 @@ TEST(ProcessPrior, GradientAndProductMatchDifferences) {
 // ProcessIllumination draws: both by unit vectors.
 TEST(ProcessPrior, PrecisionIsOfTheMapsThatAreDrawn) {
   const int height = 8, width = 16, n = 3 * height * width;
-  const LightScales scales = {0.4, {1.0, 0.5, 1.2, 0.8}};
-  const std::vector<Eigen::Vector3d> lamps = {
+  const LightHyperparameters hyperparameters = {0.4, {1.0, 0.5, 1.2, 0.8}};
+  const std::vector<Eigen::Vector3d> directional_lights = {
       MapDirection(3.4, 5.3, height, width),
       MapDirection(1.7, 11.7, height, width)};
-  ASSERT_FALSE(NearLamps(lamps, height, width).empty());
-  const ProcessPrior prior(height, width, LightProcess(), scales, 0.0, lamps);
-  const std::unique_ptr<IlluminationModel> drawn =
-      MakeProcessIllumination(width, height, LightProcess(), scales, lamps);
+  ASSERT_FALSE(
+      NearDirectionalLights(directional_lights, height, width).empty());
+  const ProcessPrior prior(height, width, LightProcess(), hyperparameters, 0.0,
+                           directional_lights);
+  const std::unique_ptr<IlluminationModel> drawn = MakeProcessIllumination(
+      width, height, LightProcess(), hyperparameters, directional_lights);
   const Eigen::MatrixXd S = testing::JacobianOf(drawn.get());
   Eigen::MatrixXd precision(n, n);
   std::vector<float> unit(n, 0.0f), column(n);
@@ -77,7 +79,8 @@ TEST(ProcessPrior, PrecisionIsOfTheMapsThatAreDrawn) {
         Eigen::Map<const Eigen::VectorXf>(column.data(), n).cast<double>();
   }
   // The precision in float has an error of its largest entries in all
-  // directions; of rough light that is far less than what the lamps change.
+  // directions; of rough light that is far less than what the directional
+  // lights change.
   const Eigen::MatrixXd identity = S.transpose() * precision * S;
   const Eigen::MatrixXd projector = identity * identity;
   const double rounding =

@@ -120,22 +120,22 @@ std::vector<double> RenderConstant(const Transport& transport,
                                    int bounces) {
   const Image map = testing::ConstantMap(transport.map_height(),
                                          transport.map_width(), light);
-  std::vector<double> E(size_t{3} * transport.num_points());
-  transport.RenderBounces(grid, map.rgb.data(), bounces, E.data());
-  return E;
+  std::vector<double> L_o(size_t{3} * transport.num_points());
+  transport.RenderBounces(grid, map.rgb.data(), bounces, L_o.data());
+  return L_o;
 }
 
 // A sphere in constant light; the error is that against twice the nodes along
 // every axis, and less than twice the finer rule's own.
 void AssertPassive(const CookTorrance& brdf, float light, double most_error,
-                   const std::vector<double>& E,
+                   const std::vector<double>& L_o,
                    const std::vector<double>& fine) {
-  for (size_t i = 0; i < E.size(); ++i) {
+  for (size_t i = 0; i < L_o.size(); ++i) {
     const double most = brdf.diffuse[i % 3] + brdf.specular[i % 3];
-    const double error = std::abs(E[i] - fine[i]) / light;
+    const double error = std::abs(L_o[i] - fine[i]) / light;
     RC_ASSERT(error <= most_error);
     RC_ASSERT(fine[i] / light <= most + error + 1e-5);
-    RC_ASSERT(E[i] / light <= most + 2 * error + 1e-5);
+    RC_ASSERT(L_o[i] / light <= most + 2 * error + 1e-5);
   }
 }
 
@@ -149,12 +149,12 @@ TEST(EnergyProperty, ConvexObjectsAreNoBrighterThanTheirAlbedo) {
   CheckSome(10, [&] {
     const CookTorrance brdf = AnyPassiveCookTorrance(0.02);
     const auto light = static_cast<float>(*Magnitude(1e-6, 1e6));
-    std::vector<double> E(3 * points.size()), fine(E.size());
+    std::vector<double> L_o(3 * points.size()), fine(L_o.size());
     ReferenceRenderer(testing::ConstantMap(32, 64, light), usual)
-        .Render(points, brdf.Function(), E.data());
+        .Render(points, brdf.Function(), L_o.data());
     ReferenceRenderer(testing::ConstantMap(64, 128, light), twice)
         .Render(points, brdf.Function(), fine.data());
-    AssertPassive(brdf, light, 0.02, E, fine);
+    AssertPassive(brdf, light, 0.02, L_o, fine);
   });
 }
 
@@ -208,13 +208,13 @@ TEST(EnergyProperty, BowlsAreNoBrighterThanTheirAlbedo) {
     TransportOptions options;
     options.grid = {12, 8, 6};
     VisibilityOptions rays;
-    SurfaceEmitterOptions few;
+    RadiosityOptions few;
     options.num_threads = rays.num_threads = few.num_threads = 1;
     rays.rows = 64;
-    few.max_emitters = 200;
+    few.max_patches = 200;
     few.bounces = kBounces;
     options.visibility = std::make_shared<Visibility>(scene, bowl.points, rays);
-    options.emitters = std::make_shared<SurfaceEmitters>(
+    options.patches = std::make_shared<RadiosityPatches>(
         scene, bowl.points, options.visibility, few);
     bowl.transport = std::make_unique<Transport>(bowl.points, 8, 16, options);
     bowls[degrees] = std::move(bowl);
@@ -227,13 +227,13 @@ TEST(EnergyProperty, BowlsAreNoBrighterThanTheirAlbedo) {
                                                  bowl.transport->grid_shape());
     std::vector<double> before(3 * bowl.points.size(), 0.0);
     for (int bounces = 0; bounces <= kBounces; ++bounces) {
-      const std::vector<double> E =
+      const std::vector<double> L_o =
           RenderConstant(*bowl.transport, grid, light, bounces);
-      for (size_t i = 0; i < E.size(); ++i) {
-        RC_ASSERT(E[i] / light <= albedo * (1 + 2e-5));
-        RC_ASSERT(E[i] >= before[i] * (1 - 2e-5));
+      for (size_t i = 0; i < L_o.size(); ++i) {
+        RC_ASSERT(L_o[i] / light <= albedo * (1 + 2e-5));
+        RC_ASSERT(L_o[i] >= before[i] * (1 - 2e-5));
       }
-      before = E;
+      before = L_o;
     }
   });
 }

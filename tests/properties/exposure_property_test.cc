@@ -33,14 +33,14 @@ RC_GTEST_PROP(ExposureProperty, RendersScaleWithTheLight, ()) {
       BrdfGrid::FromFunction(brdf.Function(), transport.grid_shape());
   const Image map = AnyMap(8, 16);
   const double s = *Magnitude(1e-6, 1e6);
-  std::vector<double> E(3 * points.size()), F(E.size());
-  transport.Render(grid, map.rgb.data(), E.data());
+  std::vector<double> L_o(3 * points.size()), F(L_o.size());
+  transport.Render(grid, map.rgb.data(), L_o.data());
   transport.Render(grid, Times(map, s).rgb.data(), F.data());
-  for (size_t i = 0; i < E.size(); ++i) {
+  for (size_t i = 0; i < L_o.size(); ++i) {
     // All terms are >= 0: each is rounded at the texel, the block's sum and the
     // product, and then in a sum of some hundred floats in eight lanes.
     constexpr double kRounding = 40 * 6e-8;
-    RC_ASSERT(std::abs(F[i] - s * E[i]) <= kRounding * F[i]);
+    RC_ASSERT(std::abs(F[i] - s * L_o[i]) <= kRounding * F[i]);
   }
 }
 
@@ -72,11 +72,11 @@ InverseProblem SmallProblem(ProblemKind kind, int materials, int iterations) {
       FlowLobes(p.model, 2, p.transport.grid, 1).Grid(lobes.data());
   Image map = testing::SmoothMap(8, 16);
   const Transport transport(p.points, 8, 16, p.transport);
-  std::vector<double> E(3 * p.points.size());
-  transport.Render(truth, map.rgb.data(), E.data());
-  for (size_t i = 0; i < E.size(); ++i) {
+  std::vector<double> L_o(3 * p.points.size());
+  transport.Render(truth, map.rgb.data(), L_o.data());
+  for (size_t i = 0; i < L_o.size(); ++i) {
     p.image.rgb[3 * p.points[i / 3].pixel + i % 3] = static_cast<float>(
-        E[i] * std::exp(0.02 * std::sin(11.0 * static_cast<double>(i))));
+        L_o[i] * std::exp(0.02 * std::sin(11.0 * static_cast<double>(i))));
   }
   if (kind == ProblemKind::kReflectance) p.known_map = map;
   if (kind == ProblemKind::kIllumination) p.known_brdf = truth;

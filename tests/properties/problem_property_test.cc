@@ -177,9 +177,9 @@ Problem AnyProblem() {
     for (int e = 0; e < kNumEffects; ++e) {
       const auto effect = static_cast<Effect>(e);
       // These two know none and are not listed with them.
-      const bool tier =
+      const bool approximation =
           effect == Effect::kHarmonics || effect == Effect::kGaussians;
-      if ((tier && shadows) || !*rc::gen::arbitrary<bool>()) continue;
+      if ((approximation && shadows) || !*rc::gen::arbitrary<bool>()) continue;
       shadows = shadows || effect == Effect::kVisibility ||
                 effect == Effect::kInterreflection;
       p.effects.list.push_back(effect);

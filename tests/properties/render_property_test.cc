@@ -49,9 +49,9 @@ BrdfGrid AnyGrid() {
 std::vector<double> Render(const std::vector<ShadingPoint>& points,
                            const BrdfGrid& grid, const Image& map) {
   const Transport transport(points, kHeight, kWidth, Options());
-  std::vector<double> E(3 * points.size());
-  transport.Render(grid, map.rgb.data(), E.data());
-  return E;
+  std::vector<double> L_o(3 * points.size());
+  transport.Render(grid, map.rgb.data(), L_o.data());
+  return L_o;
 }
 
 RC_GTEST_PROP(RenderProperty, IsLinearInLight, ()) {
@@ -80,9 +80,9 @@ RC_GTEST_PROP(RenderProperty, PowersOfTwoOfLightChangeNoDigit, ()) {
   const int exponent = *rc::gen::inRange(-30, 31);
   Image scaled = map;
   for (float& v : scaled.rgb) v = std::ldexp(v, exponent);
-  const std::vector<double> E = Render(points, grid, map),
+  const std::vector<double> L_o = Render(points, grid, map),
                             F = Render(points, grid, scaled);
-  for (int c = 0; c < 3; ++c) RC_ASSERT(F[c] == std::ldexp(E[c], exponent));
+  for (int c = 0; c < 3; ++c) RC_ASSERT(F[c] == std::ldexp(L_o[c], exponent));
 }
 
 // Lambertian of albedo 1 under light of 1.
@@ -93,8 +93,8 @@ RC_GTEST_PROP(RenderProperty, WhiteFurnaceIsWhite, ()) {
   BrdfGrid grid(Options().grid);
   std::fill(grid.values.begin(), grid.values.end(),
             static_cast<float>(1.0 / kPi));
-  for (const double E : Render(points, grid, map)) {
-    RC_ASSERT(std::abs(E - 1.0) <= 1e-4);
+  for (const double L_o : Render(points, grid, map)) {
+    RC_ASSERT(std::abs(L_o - 1.0) <= 1e-4);
   }
 }
 
@@ -104,7 +104,7 @@ RC_GTEST_PROP(RenderProperty, TurningEverythingChangesNothing, ()) {
   ShadingPoint p = AnyPoint();
   const BrdfGrid grid = AnyGrid();
   const Image map = AnyMap(kHeight, kWidth);
-  const std::vector<double> E = Render({p}, grid, map);
+  const std::vector<double> L_o = Render({p}, grid, map);
   const int texels = *rc::gen::inRange(0, kWidth);
   Image turned = map;
   for (int y = 0; y < kHeight; ++y) {
@@ -124,7 +124,8 @@ RC_GTEST_PROP(RenderProperty, TurningEverythingChangesNothing, ()) {
   if (p.normal.dot(p.wo) > 1 - 1e-6f) return;
   const double bright = *std::max_element(map.rgb.begin(), map.rgb.end());
   for (int c = 0; c < 3; ++c) {
-    RC_ASSERT(std::abs(E[c] - F[c]) <= 1e-4 * (E[c] + F[c]) + 1e-5 * bright);
+    RC_ASSERT(std::abs(L_o[c] - F[c]) <=
+              1e-4 * (L_o[c] + F[c]) + 1e-5 * bright);
   }
 }
 
@@ -135,15 +136,15 @@ RC_GTEST_PROP(RenderProperty, MatteIsBetweenTheDarkestAndBrightestLight, ()) {
   BrdfGrid grid(Options().grid);
   std::fill(grid.values.begin(), grid.values.end(),
             static_cast<float>(albedo / kPi));
-  const std::vector<double> E = Render({AnyPoint()}, grid, map);
+  const std::vector<double> L_o = Render({AnyPoint()}, grid, map);
   for (int c = 0; c < 3; ++c) {
     float low = map.rgb[c], high = low;
     for (size_t i = c; i < map.rgb.size(); i += 3) {
       low = std::min(low, map.rgb[i]);
       high = std::max(high, map.rgb[i]);
     }
-    RC_ASSERT(E[c] >= albedo * low * (1 - 1e-4));
-    RC_ASSERT(E[c] <= albedo * high * (1 + 1e-4));
+    RC_ASSERT(L_o[c] >= albedo * low * (1 - 1e-4));
+    RC_ASSERT(L_o[c] <= albedo * high * (1 + 1e-4));
   }
 }
 
@@ -154,8 +155,8 @@ RC_GTEST_PROP(RenderProperty, OperatorsAndTransposesAgree, ()) {
   const Image map = AnyMap(kHeight, kWidth);
   const Transport transport(points, kHeight, kWidth, Options());
   const LightOperator light = transport.ByLight(grid);
-  std::vector<double> E(9), applied(9), adjoint(9);
-  transport.Render(grid, map.rgb.data(), E.data());
+  std::vector<double> L_o(9), applied(9), adjoint(9);
+  transport.Render(grid, map.rgb.data(), L_o.data());
   light.Apply(map.rgb.data(), applied.data());
   for (double& v : adjoint) v = *Between(0.0, 1.0);
   std::vector<float> by_map(map.rgb.size()), by_grid(grid.values.size());
@@ -163,8 +164,8 @@ RC_GTEST_PROP(RenderProperty, OperatorsAndTransposesAgree, ()) {
   transport.GridGradient(grid, map.rgb.data(), adjoint.data(), by_grid.data());
   double left = 0.0, by_light = 0.0, by_brdf = 0.0;
   for (int i = 0; i < 9; ++i) {
-    RC_ASSERT(std::abs(E[i] - applied[i]) <= 1e-5 * E[i]);
-    left += adjoint[i] * E[i];
+    RC_ASSERT(std::abs(L_o[i] - applied[i]) <= 1e-5 * L_o[i]);
+    left += adjoint[i] * L_o[i];
   }
   for (size_t i = 0; i < by_map.size(); ++i) {
     by_light += static_cast<double>(by_map[i]) * map.rgb[i];

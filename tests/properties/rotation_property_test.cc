@@ -55,10 +55,10 @@ TransportOptions Options() {
 
 std::vector<double> Render(const std::vector<ShadingPoint>& points,
                            const BrdfGrid& grid, const Image& map) {
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   Transport(points, map.height, map.width, Options())
-      .Render(grid, map.rgb.data(), E.data());
-  return E;
+      .Render(grid, map.rgb.data(), L_o.data());
+  return L_o;
 }
 
 // An ellipsoid, turned with its camera; without its limb, where the grid of a

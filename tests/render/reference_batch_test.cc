@@ -57,9 +57,9 @@ std::vector<double> Batch(const MerlTableStack& tables,
                           const ReferenceOptions& options) {
   std::vector<const Image*> pointers;
   for (const Image& map : maps) pointers.push_back(&map);
-  std::vector<double> E(3 * tables.count() * maps.size() * points.size());
-  ReferenceBatch(tables, pointers, options).Render(points, E.data());
-  return E;
+  std::vector<double> L_o(3 * tables.count() * maps.size() * points.size());
+  ReferenceBatch(tables, pointers, options).Render(points, L_o.data());
+  return L_o;
 }
 
 // With bright texels as the batch has them.
@@ -67,9 +67,9 @@ std::vector<double> Single(const MerlTable& table, const Image& map,
                            const std::vector<ShadingPoint>& points,
                            ReferenceOptions options) {
   options.split_bright = false;
-  std::vector<double> E(3 * points.size());
-  ReferenceRenderer(map, options).Render(points, table, E.data());
-  return E;
+  std::vector<double> L_o(3 * points.size());
+  ReferenceRenderer(map, options).Render(points, table, L_o.data());
+  return L_o;
 }
 
 // A smooth sky and a hard sun of 9 texels, 10^9 times as bright.
@@ -95,7 +95,7 @@ TEST(ReferenceBatch, IsTheSingleRendererWhereBothTakeEveryTexel) {
   ReferenceOptions options;
   options.near_rings = 24;
   options.near_ring_samples = 64;
-  const std::vector<double> E = Batch(tables, maps, points, options);
+  const std::vector<double> L_o = Batch(tables, maps, points, options);
   const size_t image = 3 * points.size();
   for (int m = 0; m < tables.count(); ++m) {
     for (size_t l = 0; l < maps.size(); ++l) {
@@ -103,7 +103,8 @@ TEST(ReferenceBatch, IsTheSingleRendererWhereBothTakeEveryTexel) {
           Single(Tables()[m % Tables().size()], maps[l], points, options);
       for (size_t i = 0; i < image; ++i) {
         // Float sums of up to 128 products.
-        ASSERT_NEAR(1.0, E[image * (m * maps.size() + l) + i] / single[i], 2e-5)
+        ASSERT_NEAR(1.0, L_o[image * (m * maps.size() + l) + i] / single[i],
+                    2e-5)
             << m << " " << l << " " << i;
       }
     }
@@ -135,7 +136,7 @@ TEST(ReferenceBatch, BlocksAgreeWithEveryTexel) {
   const ReferenceOptions blocks;
   ReferenceOptions texels;
   texels.far_width = 512;
-  const std::vector<double> E = Batch(tables, maps, points, blocks);
+  const std::vector<double> L_o = Batch(tables, maps, points, blocks);
   const size_t image = 3 * points.size();
   for (int m = 0; m < tables.count(); ++m) {
     for (size_t l = 0; l < maps.size(); ++l) {
@@ -143,8 +144,8 @@ TEST(ReferenceBatch, BlocksAgreeWithEveryTexel) {
           Single(Tables()[m], maps[l], points, texels);
       double sum = 0.0;
       for (size_t i = 0; i < image; ++i) {
-        sum +=
-            std::abs(std::log(E[image * (m * maps.size() + l) + i] / exact[i]));
+        sum += std::abs(
+            std::log(L_o[image * (m * maps.size() + l) + i] / exact[i]));
       }
       // What the header promises.
       EXPECT_LT(sum / static_cast<double>(image), 1e-3) << m << " " << l;
@@ -185,14 +186,14 @@ TEST(ReferenceBatch, ExtremesStayFinite) {
                                       PointAt(89.99 * kPi / 180, 2.0)};
   ReferenceOptions options;
   options.far_width = 16;
-  const std::vector<double> E = Batch(tables, maps, points, options);
-  for (size_t i = 0; i < E.size(); ++i) {
-    ASSERT_TRUE(std::isfinite(E[i]));
+  const std::vector<double> L_o = Batch(tables, maps, points, options);
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    ASSERT_TRUE(std::isfinite(L_o[i]));
     const size_t image = i / (3 * points.size());
     if (image != 2) {
-      EXPECT_EQ(0.0, E[i]);
+      EXPECT_EQ(0.0, L_o[i]);
     } else {
-      EXPECT_GT(E[i], 0.0);
+      EXPECT_GT(L_o[i], 0.0);
     }
   }
 }

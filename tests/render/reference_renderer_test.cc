@@ -20,15 +20,15 @@ std::vector<ShadingPoint> Fan() {
 
 TEST(ReferenceRenderer, WhiteFurnaceIsOne) {
   const std::vector<ShadingPoint> points = SpherePoints(12);
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   ReferenceRenderer(ConstantMap(64, 128, 1.0f), {})
-      .Render(points, Lambertian(1.0), E.data());
-  for (const double e : E) EXPECT_NEAR(1.0, e, 1e-6);
+      .Render(points, Lambertian(1.0), L_o.data());
+  for (const double e : L_o) EXPECT_NEAR(1.0, e, 1e-6);
 }
 
 TEST(ReferenceRenderer, LambertUnderACosineLobeMatchesTheClosedForm) {
-  // L = max(u.w, 0) on albedo 1 with normal n = u: E = 1/pi int cos^2 = 2/3.
-  // L = 1 + u.w: E = 1 + (2/3) n.u for any n.
+  // L = max(u.w, 0) on albedo 1 with normal n = u: L_o = 1/pi int cos^2 = 2/3.
+  // L = 1 + u.w: L_o = 1 + (2/3) n.u for any n.
   const int height = 128, width = 256;
   const Eigen::Vector3d u = Eigen::Vector3d(0.3, 0.5, 0.8).normalized();
   Image map(width, height);
@@ -42,16 +42,16 @@ TEST(ReferenceRenderer, LambertUnderACosineLobeMatchesTheClosedForm) {
   std::vector<ShadingPoint> points = Fan();
   points.push_back(points[0]);
   points.back().normal = u.cast<float>();
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   ReferenceOptions options;
   options.far_width = width;
-  ReferenceRenderer(map, options).Render(points, Lambertian(1.0), E.data());
+  ReferenceRenderer(map, options).Render(points, Lambertian(1.0), L_o.data());
   // Midpoint rule on texels of 1.4 degrees.
   constexpr double kTolerance = 2e-4;
-  EXPECT_NEAR(2.0 / 3.0, E[3 * (points.size() - 1)], kTolerance);
+  EXPECT_NEAR(2.0 / 3.0, L_o[3 * (points.size() - 1)], kTolerance);
   for (size_t i = 0; i < points.size(); ++i) {
     const double cosine = points[i].normal.cast<double>().dot(u);
-    EXPECT_NEAR(1.0 + cosine * 2.0 / 3.0, E[3 * i + 1], kTolerance);
+    EXPECT_NEAR(1.0 + cosine * 2.0 / 3.0, L_o[3 * i + 1], kTolerance);
   }
 }
 
@@ -61,15 +61,15 @@ TEST(ReferenceRenderer, AgreesWithHalfVectorQuadratureOnASmoothMap) {
   const ReferenceRenderer renderer(map, {});
   for (const BrdfFunction& brdf :
        {Lambertian(0.7), Glossy(0.1, 0.5, 10), Glossy(0.02, 0.5, 2)}) {
-    std::vector<double> E(3 * points.size());
-    renderer.Render(points, brdf, E.data());
+    std::vector<double> L_o(3 * points.size());
+    renderer.Render(points, brdf, L_o.data());
     for (size_t i = 0; i < points.size(); ++i) {
       const Eigen::Array3d slow =
           BruteForceRadiance(points[i], brdf, map, 240, 360);
       // Cells of 2.8 degrees against texel interpolation: second order in the
       // cell, (2.8 degrees)^2 = 0.24 % times curvatures of order one.
       for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(1.0, E[3 * i + c] / slow[c], 4e-3) << i << " " << c;
+        EXPECT_NEAR(1.0, L_o[3 * i + c] / slow[c], 4e-3) << i << " " << c;
       }
     }
   }
@@ -82,15 +82,15 @@ TEST(ReferenceRenderer, AgreesWithHalfVectorQuadratureUnderAOneTexelSun) {
   const std::vector<ShadingPoint> points = Fan();
   const ReferenceRenderer renderer(map, {});
   for (const BrdfFunction& brdf : {Lambertian(0.7), Glossy(0.1, 0.5, 10)}) {
-    std::vector<double> E(3 * points.size());
-    renderer.Render(points, brdf, E.data());
+    std::vector<double> L_o(3 * points.size());
+    renderer.Render(points, brdf, L_o.data());
     for (size_t i = 0; i < points.size(); ++i) {
       const Eigen::Array3d slow =
           BruteForceRadiance(points[i], brdf, map, 600, 1200);
       // The far rule has the sun as a point of the texel's solid angle, the
       // slow one as the bilinear hat around it, 2.8 degrees to its edges.
       for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(1.0, E[3 * i + c] / slow[c], 0.02) << i << " " << c;
+        EXPECT_NEAR(1.0, L_o[3 * i + c] / slow[c], 0.02) << i << " " << c;
       }
     }
   }
@@ -148,8 +148,8 @@ TEST(ReferenceRenderer, PixelMeansWeighByCoverage) {
   std::vector<ShadingPoint> points(3, PointAt(0, 0));
   points[1].pixel = points[2].pixel = 2;
   points[2].coverage = 0.5f;
-  const double E[] = {1, 2, 3, 3, 3, 3, 6, 6, 6};
-  const Image image = PixelMeans(points, E, 2, 2);
+  const double L_o[] = {1, 2, 3, 3, 3, 3, 6, 6, 6};
+  const Image image = PixelMeans(points, L_o, 2, 2);
   EXPECT_FLOAT_EQ(2.0f, image.At(0, 0)[1]);
   EXPECT_FLOAT_EQ(4.0f, image.At(0, 1)[0]);
   EXPECT_FLOAT_EQ(0.0f, image.At(1, 1)[2]);

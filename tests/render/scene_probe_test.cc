@@ -57,13 +57,13 @@ TEST(SceneProbe, HiddenShareOfAWallIsTheClosedForm) {
   // Constant light on a matte floor: the hidden share is lost.
   const Image map = ConstantMap(16, 32, 2.0f);
   const BrdfGrid matte = BrdfGrid::FromFunction(Lambertian(0.5), {24, 12, 8});
-  EffectsWorth worth = PredictEffects(scene, points, {{&map, &matte}}, {});
-  EXPECT_GT(worth.shadow_seconds, 0.0);
+  OmissionErrors omission = PredictEffects(scene, points, {{&map, &matte}}, {});
+  EXPECT_GT(omission.shadow_seconds, 0.0);
   // A black wall gives nothing back.
   const BrdfGrid black = BrdfGrid::FromFunction(Lambertian(1e-9), {24, 12, 8});
-  worth = PredictEffects(scene, points, {{&map, &black}}, {});
-  EXPECT_NEAR(-0.75 * std::log(1 - hidden), worth.unshadowed, 5e-3);
-  EXPECT_LT(worth.bounces[0], 1e-6);
+  omission = PredictEffects(scene, points, {{&map, &black}}, {});
+  EXPECT_NEAR(-0.75 * std::log(1 - hidden), omission.unshadowed, 5e-3);
+  EXPECT_LT(omission.bounces[0], 1e-6);
 }
 
 // The inside of half a sphere: half of all light comes from it, so that a matte
@@ -87,16 +87,16 @@ TEST(SceneProbe, BouncesOfABowlAreWorthTheClosedForm) {
   const double albedo = 0.6;
   const BrdfGrid matte =
       BrdfGrid::FromFunction(Lambertian(albedo), {24, 12, 8});
-  const EffectsWorth worth = PredictEffects(Scene::FromMesh(bowl).value(),
-                                            points, {{&map, &matte}}, {});
+  const OmissionErrors omission = PredictEffects(Scene::FromMesh(bowl).value(),
+                                                 points, {{&map, &matte}}, {});
   const auto sum = [&](int b) {
     return (1 - std::pow(albedo / 2, b + 1)) / (1 - albedo / 2);
   };
   for (int b = 0; b < kMostBounces; ++b) {
-    EXPECT_NEAR(std::log(sum(kMostBounces) / sum(b)), worth.bounces[b], 0.01)
+    EXPECT_NEAR(std::log(sum(kMostBounces) / sum(b)), omission.bounces[b], 0.01)
         << b;
   }
-  EXPECT_EQ(0.0, worth.bounces[kMostBounces]);
+  EXPECT_EQ(0.0, omission.bounces[kMostBounces]);
 }
 
 TEST(SceneProbe, WorstLookCountsAndThreadsDoNot) {
@@ -109,15 +109,15 @@ TEST(SceneProbe, WorstLookCountsAndThreadsDoNot) {
   const BrdfGrid matte = BrdfGrid::FromFunction(Lambertian(0.5), {24, 12, 8});
   SceneProbeOptions one;
   one.num_threads = 1;
-  const EffectsWorth gentle =
+  const OmissionErrors gentle =
       PredictEffects(scene, points, {{&soft, &matte}}, one);
-  const EffectsWorth both =
+  const OmissionErrors both =
       PredictEffects(scene, points, {{&soft, &matte}, {&hard, &matte}}, one);
   // What the hole of the torus hides it gives back in part.
   EXPECT_GT(gentle.unshadowed, 0.02);
   EXPECT_GT(gentle.bounces[0], 0.02);
   EXPECT_GT(both.unshadowed, gentle.unshadowed);
-  const EffectsWorth all =
+  const OmissionErrors all =
       PredictEffects(scene, points, {{&soft, &matte}, {&hard, &matte}}, {});
   EXPECT_EQ(both.unshadowed, all.unshadowed);
   EXPECT_EQ(both.bounces, all.bounces);

@@ -106,9 +106,9 @@ TEST_F(SolveProblemTest, QuadratureLevelsAreOfOrderedCostAndTheSameLight) {
     EXPECT_GT(bytes, 1.5 * before) << level;
     before = bytes;
     const Image map = testing::SmoothMap(64, 128);
-    std::vector<double> E(3 * p->points.size());
-    transport.Render(*p->known_brdf, map.rgb.data(), E.data());
-    const double sum = std::accumulate(E.begin(), E.end(), 0.0);
+    std::vector<double> L_o(3 * p->points.size());
+    transport.Render(*p->known_brdf, map.rgb.data(), L_o.data());
+    const double sum = std::accumulate(L_o.begin(), L_o.end(), 0.0);
     least = std::min(least, sum);
     most = std::max(most, sum);
   }

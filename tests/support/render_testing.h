@@ -158,10 +158,10 @@ inline std::vector<double> Direct(const std::vector<ShadingPoint>& points,
                                   const BrdfGrid& grid, const Image& map) {
   TransportOptions options;
   options.grid = grid.shape;
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   Transport(points, map.height, map.width, options)
-      .Render(grid, map.rgb.data(), E.data());
-  return E;
+      .Render(grid, map.rgb.data(), L_o.data());
+  return L_o;
 }
 
 }  // namespace testing

@@ -153,12 +153,12 @@ inline Eigen::Array3d BruteForceShadowed(const Scene& scene,
         light = LookUpMap(map, wi);
       } else if (bounces > 0 &&
                  scene.Intersect({point.position, wi}, false, &hit)) {
-        ShadingPoint emitter{};
-        emitter.normal = hit.normal.cast<float>();
-        emitter.wo = -wi.cast<float>();
-        emitter.position = hit.position;
-        light = BruteForceShadowed(scene, emitter, brdf, map, bounces - 1,
-                                   rings, samples, power);
+        ShadingPoint patch{};
+        patch.normal = hit.normal.cast<float>();
+        patch.wo = -wi.cast<float>();
+        patch.position = hit.position;
+        light = BruteForceShadowed(scene, patch, brdf, map, bounces - 1, rings,
+                                   samples, power);
       } else {
         continue;
       }

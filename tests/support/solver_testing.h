@@ -46,7 +46,7 @@ inline std::vector<double> TinyLobes() {
           -0.5, 0.1,  0.3, -0.2, 3.0, 2.5, 3.3};
 }
 
-// E [points][3] of TinyLobes under a map, tables of TinyTransportOptions and
+// L_o [points][3] of TinyLobes under a map, tables of TinyTransportOptions and
 // the default quadrature.
 inline std::vector<double> RenderTinyLobes(
     const NeuralBrdfModel& model, const std::vector<ShadingPoint>& points,
@@ -54,11 +54,11 @@ inline std::vector<double> RenderTinyLobes(
   TransportOptions options;
   options.grid = TinyTransportOptions().grid;
   options.num_threads = 1;
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   Transport(points, map.height, map.width, options)
       .Render(FlowLobes(model, 2, options.grid, 1).Grid(TinyLobes().data()),
-              map.rgb.data(), E.data());
-  return E;
+              map.rgb.data(), L_o.data());
+  return L_o;
 }
 
 // d log map / d parameters [outputs][parameters] of a linear model, by unit
@@ -86,12 +86,12 @@ struct TinyScene {
   const FlowLobes lobes{model, 2, TinyTransportOptions().grid, 1};
 
   std::vector<double> Parameters() const { return TinyLobes(); }
-  // E of the parameters under a map.
+  // L_o of the parameters under a map.
   std::vector<double> Render(const std::vector<double>& parameters,
                              const std::vector<float>& map) const {
-    std::vector<double> E(3 * points.size());
-    transport.Render(lobes.Grid(parameters.data()), map.data(), E.data());
-    return E;
+    std::vector<double> L_o(3 * points.size());
+    transport.Render(lobes.Grid(parameters.data()), map.data(), L_o.data());
+    return L_o;
   }
 };
 

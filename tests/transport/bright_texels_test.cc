@@ -53,7 +53,7 @@ TEST(BrightTexels, RingsDoNotMissCoarseTexels) {
   EXPECT_EQ(map.rgb, split.rest.rgb);
 }
 
-TEST(BrightTexels, AWideLampIsLeftToTheRings) {
+TEST(BrightTexels, AWideDirectionalLightIsLeftToTheRings) {
   Image map = ConstantMap(64, 128, 0.01f);
   for (int r = 8; r < 16; ++r) {
     for (int c = 8; c < 16; ++c) {
@@ -139,13 +139,13 @@ TEST(BrightTexels, CoarseRingsShowASunToo) {
       MapDirection(30.5, 30.5, height, width), {0, 2, 5, 8, 11, 14, 20, 40});
   for (const BrdfFunction& brdf :
        {Lambertian(0.7), Glossy(0.1, 0.5, 10), Glossy(0.02, 0.5, 3)}) {
-    std::vector<double> E(3 * points.size());
-    ReferenceRenderer(map, Coarser({})).Render(points, brdf, E.data());
+    std::vector<double> L_o(3 * points.size());
+    ReferenceRenderer(map, Coarser({})).Render(points, brdf, L_o.data());
     for (size_t i = 0; i < points.size(); ++i) {
       const Eigen::Array3d slow =
           BruteForceRadiance(points[i], brdf, map, 800, 1600);
       for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(1.0, E[3 * i + c] / slow[c], 0.01) << i << " " << c;
+        EXPECT_NEAR(1.0, L_o[3 * i + c] / slow[c], 0.01) << i << " " << c;
       }
     }
   }

@@ -39,9 +39,9 @@ TransportOptions WithBright(const BrightTexels& split,
 
 std::vector<double> Render(const Transport& transport, const BrdfGrid& grid,
                            const Image& map) {
-  std::vector<double> E(3 * static_cast<size_t>(transport.num_points()));
-  transport.Render(grid, map.rgb.data(), E.data());
-  return E;
+  std::vector<double> L_o(3 * static_cast<size_t>(transport.num_points()));
+  transport.Render(grid, map.rgb.data(), L_o.data());
+  return L_o;
 }
 
 TEST(BrightTransport, ShowsASunThatRingsMiss) {
@@ -57,14 +57,14 @@ TEST(BrightTransport, ShowsASunThatRingsMiss) {
     const BrdfFunction tabulated = [&grid](double h, double d, double p) {
       return grid.Evaluate(h, d, p);
     };
-    const std::vector<double> E = Render(by_samples, grid, split.rest);
+    const std::vector<double> L_o = Render(by_samples, grid, split.rest);
     const std::vector<double> rings = Render(by_rings, grid, map);
     double most = 0.0, most_rings = 0.0;
     for (size_t i = 0; i < points.size(); ++i) {
       const Eigen::Array3d slow =
           BruteForceRadiance(points[i], tabulated, map, 500, 1000);
       for (int c = 0; c < 3; ++c) {
-        most = std::max(most, std::abs(E[3 * i + c] / slow[c] - 1.0));
+        most = std::max(most, std::abs(L_o[3 * i + c] / slow[c] - 1.0));
         most_rings =
             std::max(most_rings, std::abs(rings[3 * i + c] / slow[c] - 1.0));
       }
@@ -81,7 +81,7 @@ TEST(BrightTransport, ProductsAgree) {
   const std::vector<ShadingPoint> points = SunnyPoints();
   const Transport transport(points, kHeight, kWidth, WithBright(split));
   const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 4), {});
-  const std::vector<double> E = Render(transport, grid, split.rest);
+  const std::vector<double> L_o = Render(transport, grid, split.rest);
 
   const float* fields[] = {grid.Channel(0), grid.Channel(1), grid.Channel(2)};
   std::vector<float> lobes(9 * points.size()), stored(lobes.size());
@@ -89,29 +89,29 @@ TEST(BrightTransport, ProductsAgree) {
   transport.ByReflectance(split.rest.rgb.data())
       .Apply(fields, 3, stored.data());
   EXPECT_EQ(lobes, stored);
-  for (size_t i = 0; i < E.size(); ++i) {
-    EXPECT_NEAR(E[i], lobes[i / 3 * 9 + i % 3 * 4], 2e-5 * E[i]) << i;
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    EXPECT_NEAR(L_o[i], lobes[i / 3 * 9 + i % 3 * 4], 2e-5 * L_o[i]) << i;
   }
 
-  // E is linear in the grid, and ByLight is what the map alone adds.
+  // L_o is linear in the grid, and ByLight is what the map alone adds.
   std::mt19937 rng(4);
   std::normal_distribution<double> gauss;
-  std::vector<double> adjoint(E.size());
+  std::vector<double> adjoint(L_o.size());
   for (double& a : adjoint) a = gauss(rng);
   std::vector<float> gradient(grid.values.size());
   transport.GridGradient(grid, split.rest.rgb.data(), adjoint.data(),
                          gradient.data());
   double by_points = 0.0, by_nodes = 0.0, size = 0.0;
-  for (size_t i = 0; i < E.size(); ++i) {
-    by_points += adjoint[i] * E[i];
-    size += std::abs(adjoint[i] * E[i]);
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    by_points += adjoint[i] * L_o[i];
+    size += std::abs(adjoint[i] * L_o[i]);
   }
   for (size_t i = 0; i < gradient.size(); ++i) {
     by_nodes += static_cast<double>(gradient[i]) * grid.values[i];
   }
   EXPECT_NEAR(by_points, by_nodes, 1e-5 * size);
 
-  std::vector<double> by_map(E.size());
+  std::vector<double> by_map(L_o.size());
   transport.ByLight(grid).Apply(split.rest.rgb.data(), by_map.data());
   const std::vector<double> rest =
       Render(Transport(points, kHeight, kWidth, {}), grid, split.rest);
@@ -128,10 +128,10 @@ class ShadowedSun : public ::testing::Test {
     auto visibility =
         std::make_shared<Visibility>(scene_, points_, VisibilityOptions());
     options.visibility = visibility;
-    SurfaceEmitterOptions how;
+    RadiosityOptions how;
     how.bounces = 2;
-    options.emitters =
-        std::make_shared<SurfaceEmitters>(scene_, points_, visibility, how);
+    options.patches =
+        std::make_shared<RadiosityPatches>(scene_, points_, visibility, how);
     options_ = WithBright(split_, options);
   }
 
@@ -147,8 +147,8 @@ class ShadowedSun : public ::testing::Test {
 TEST_F(ShadowedSun, IsSeenWhereNothingHidesIt) {
   const BrdfGrid matte = BrdfGrid::FromFunction(Lambertian(0.6), {});
   TransportOptions no_bounce = options_;
-  no_bounce.emitters = nullptr;
-  const std::vector<double> E =
+  no_bounce.patches = nullptr;
+  const std::vector<double> L_o =
       Render(Transport(points_, kHeight, kWidth, no_bounce), matte, black_);
   const std::vector<double> lit =
       Render(Transport(points_, kHeight, kWidth, options_), matte, black_);
@@ -168,14 +168,14 @@ TEST_F(ShadowedSun, IsSeenWhereNothingHidesIt) {
                    ? grid.VisibleAlong(hidden_bits, n, s.direction)
                    : 1.0);
     }
-    EXPECT_NEAR(slow, E[3 * i], 1e-4 * slow) << i;
-    EXPECT_GE(lit[3 * i], E[3 * i]) << i;
+    EXPECT_NEAR(slow, L_o[3 * i], 1e-4 * slow) << i;
+    EXPECT_GE(lit[3 * i], L_o[3 * i]) << i;
     hidden += n.dot(options_.bright[0].direction) > 0.05 && slow == 0.0;
   }
   EXPECT_GT(hidden, 1);
   EXPECT_GT(faced, hidden + 3);
   double direct = 0.0, all = 0.0;
-  for (size_t i = 0; i < E.size(); ++i) direct += E[i], all += lit[i];
+  for (size_t i = 0; i < L_o.size(); ++i) direct += L_o[i], all += lit[i];
   EXPECT_GT(all, 1.004 * direct);
 }
 
@@ -204,12 +204,12 @@ TEST_F(ShadowedSun, GridGradientMatchesDifferences) {
     for (size_t i = 0; i < moved.values.size(); ++i) {
       moved.values[i] += step * direction.values[i];
     }
-    const std::vector<double> E = Render(transport, moved, split_.rest);
+    const std::vector<double> L_o = Render(transport, moved, split_.rest);
     double sum = 0.0;
     size = 0.0;
-    for (size_t i = 0; i < E.size(); ++i) {
-      sum += adjoint[i] * E[i];
-      size += std::abs(adjoint[i] * E[i]);
+    for (size_t i = 0; i < L_o.size(); ++i) {
+      sum += adjoint[i] * L_o[i];
+      size += std::abs(adjoint[i] * L_o[i]);
     }
     return sum;
   };

@@ -39,8 +39,8 @@ TEST_F(LightMatrixTest, TimesTheMapIsTheRender) {
     std::copy(field.begin(), field.end(), grid.Channel(c));
   }
   const Image map = RandomMap(8, 16, 5);
-  std::vector<double> E(3 * points_.size());
-  transport_.Render(grid, map.rgb.data(), E.data());
+  std::vector<double> L_o(3 * points_.size());
+  transport_.Render(grid, map.rgb.data(), L_o.data());
   for (size_t i = 0; i < points_.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       double sum = 0.0;
@@ -49,7 +49,7 @@ TEST_F(LightMatrixTest, TimesTheMapIsTheRender) {
             static_cast<double>(matrix[i * texels_ + t]) * map.rgb[3 * t + c];
       }
       // Sums of some thousand floats.
-      EXPECT_NEAR(E[3 * i + c], sum, 1e-4 * E[3 * i + c]) << i;
+      EXPECT_NEAR(L_o[3 * i + c], sum, 1e-4 * L_o[3 * i + c]) << i;
     }
   }
 }

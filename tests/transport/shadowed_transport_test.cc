@@ -66,19 +66,20 @@ TEST(ShadowedTransport, TorusMatchesBruteForceFromMatteToGlossy) {
       std::make_shared<VisibilityGrid>(Torus(), kReferenceShadowRows);
   for (const BrdfFunction& brdf :
        {Lambertian(0.7), Glossy(0.1, 0.5, 12), Glossy(0.05, 0.6, 3)}) {
-    std::vector<double> brute, E(3 * points.size()), R(E.size()),
-        bare(E.size());
+    std::vector<double> brute, L_o(3 * points.size()), R(L_o.size()),
+        bare(L_o.size());
     for (const ShadingPoint& p : points) {
       const Eigen::Array3d e =
           BruteForceShadowed(Torus(), p, brdf, map, 0, 90, 180, 3);
       for (int c = 0; c < 3; ++c) brute.push_back(e[c]);
     }
     const BrdfGrid grid = BrdfGrid::FromFunction(brdf, options.grid);
-    Transport(points, 64, 128, options).Render(grid, map.rgb.data(), E.data());
+    Transport(points, 64, 128, options)
+        .Render(grid, map.rgb.data(), L_o.data());
     Transport(points, 64, 128, {}).Render(grid, map.rgb.data(), bare.data());
     ReferenceRenderer(map, reference).Render(points, brdf, R.data());
     // What the transport differs by without shadows, plus edges of the grid.
-    EXPECT_LT(MeanLogError(E, brute), 0.015);
+    EXPECT_LT(MeanLogError(L_o, brute), 0.015);
     EXPECT_LT(MeanLogError(R, brute), 0.005);
     // The test can tell: shadows are worth several times that.
     EXPECT_GT(MeanLogError(bare, brute), 0.04);
@@ -119,9 +120,9 @@ TEST(ShadowedTransport, SunBehindAWallIsDarkAndBesideItIsNot) {
   }
   const TransportOptions options = Shadowed(scene, points);
   const BrdfGrid white = BrdfGrid::FromFunction(Lambertian(1), options.grid);
-  std::vector<double> E(12), R(12), bare(12), bare_reference(12);
+  std::vector<double> L_o(12), R(12), bare(12), bare_reference(12);
   Transport(points, height, width, options)
-      .Render(white, map.rgb.data(), E.data());
+      .Render(white, map.rgb.data(), L_o.data());
   Transport(points, height, width, {})
       .Render(white, map.rgb.data(), bare.data());
   ReferenceOptions reference;
@@ -131,7 +132,7 @@ TEST(ShadowedTransport, SunBehindAWallIsDarkAndBesideItIsNot) {
   ReferenceRenderer(map, {}).Render(points, Lambertian(1),
                                     bare_reference.data());
   for (const auto& [e, lit] :
-       {std::pair{E, bare}, std::pair{R, bare_reference}}) {
+       {std::pair{L_o, bare}, std::pair{R, bare_reference}}) {
     EXPECT_EQ(0.0, e[0]);
     EXPECT_EQ(0.0, e[3]);
     EXPECT_NEAR(lit[6], e[6], kFloatSums * lit[6]);
@@ -152,18 +153,18 @@ TEST(ShadowedTransport, ThePointInTheDarkIsBlackAndItsDerivativesAreZero) {
   const Transport transport({p}, 16, 32, options);
   const BrdfGrid white = BrdfGrid::FromFunction(Lambertian(1), options.grid);
   const Image map = ConstantMap(16, 32, 1.0f);
-  double E[3];
-  transport.Render(white, map.rgb.data(), E);
+  double L_o[3];
+  transport.Render(white, map.rgb.data(), L_o);
   // A slit of a thousandth of a radian all around.
-  EXPECT_LT(E[0], 1e-4);
+  EXPECT_LT(L_o[0], 1e-4);
 }
 
 class ShadowedDerivatives : public ::testing::Test {
  protected:
   std::vector<double> Render(const BrdfGrid& grid, const Image& map) const {
-    std::vector<double> E(3 * points_.size());
-    transport_.Render(grid, map.rgb.data(), E.data());
-    return E;
+    std::vector<double> L_o(3 * points_.size());
+    transport_.Render(grid, map.rgb.data(), L_o.data());
+    return L_o;
   }
   std::vector<double> Adjoint() {
     std::vector<double> a(3 * points_.size());
@@ -186,7 +187,7 @@ TEST_F(ShadowedDerivatives, LightGradientMatchesFiniteDifferences) {
   std::vector<float> gradient(size_t{3} * 64 * 128);
   op.ApplyTranspose(adjoint.data(), gradient.data());
   Image map = SmoothMap(64, 128);
-  const std::vector<double> E = Render(glossy_, map);
+  const std::vector<double> L_o = Render(glossy_, map);
   for (const auto& [r, c] : {std::pair{0, 0},
                              {0, 127},
                              {12, 64},
@@ -199,7 +200,7 @@ TEST_F(ShadowedDerivatives, LightGradientMatchesFiniteDifferences) {
       const float before = L;
       L = before + 100.0f;
       const double derivative =
-          (Dot(adjoint, Render(glossy_, map)) - Dot(adjoint, E)) / 100.0;
+          (Dot(adjoint, Render(glossy_, map)) - Dot(adjoint, L_o)) / 100.0;
       L = before;
       double size = 0.0;
       for (const double a : adjoint) size += std::abs(a);
@@ -213,11 +214,11 @@ TEST_F(ShadowedDerivatives, LightGradientMatchesFiniteDifferences) {
 TEST_F(ShadowedDerivatives, OperatorIsTheRenderAndItsTransposeItsAdjoint) {
   const LightOperator op = transport_.ByLight(glossy_);
   const Image map = RandomMap(64, 128, 3);
-  const std::vector<double> E = Render(glossy_, map), adjoint = Adjoint();
-  std::vector<double> applied(E.size());
+  const std::vector<double> L_o = Render(glossy_, map), adjoint = Adjoint();
+  std::vector<double> applied(L_o.size());
   op.Apply(map.rgb.data(), applied.data());
-  for (size_t i = 0; i < E.size(); ++i) {
-    EXPECT_NEAR(E[i], applied[i], kFloatSums * E[i]);
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    EXPECT_NEAR(L_o[i], applied[i], kFloatSums * L_o[i]);
   }
   std::vector<float> gradient(map.rgb.size());
   op.ApplyTranspose(adjoint.data(), gradient.data());
@@ -259,11 +260,11 @@ TEST_F(ShadowedDerivatives, LobesAddUpToTheRender) {
                            glossy_.Channel(2)};
   std::vector<float> lobes(points_.size() * 9);
   transport_.RenderLobes(fields, 3, map.rgb.data(), lobes.data());
-  const std::vector<double> E = Render(glossy_, map);
+  const std::vector<double> L_o = Render(glossy_, map);
   for (size_t i = 0; i < points_.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(E[3 * i + c], lobes[(3 * i + c) * 3 + c],
-                  kFloatSums * E[3 * i + c]);
+      EXPECT_NEAR(L_o[3 * i + c], lobes[(3 * i + c) * 3 + c],
+                  kFloatSums * L_o[3 * i + c]);
     }
   }
 }
@@ -274,14 +275,14 @@ TEST_F(ShadowedDerivatives, LightMatrixIsTheRenderAndItsGradientTheTranspose) {
   std::vector<float> matrix(points_.size() * texels), adjoint(matrix.size());
   small.LightMatrix(glossy_.Channel(1), matrix.data());
   const Image map = RandomMap(12, 24, 6);
-  std::vector<double> E(3 * points_.size());
-  small.Render(glossy_, map.rgb.data(), E.data());
+  std::vector<double> L_o(3 * points_.size());
+  small.Render(glossy_, map.rgb.data(), L_o.data());
   for (size_t i = 0; i < points_.size(); ++i) {
     double sum = 0.0;
     for (size_t t = 0; t < texels; ++t) {
       sum += static_cast<double>(matrix[i * texels + t]) * map.rgb[3 * t + 1];
     }
-    EXPECT_NEAR(E[3 * i + 1], sum, 1e-4 * E[3 * i + 1]);
+    EXPECT_NEAR(L_o[3 * i + 1], sum, 1e-4 * L_o[3 * i + 1]);
   }
   for (float& v : adjoint) v = static_cast<float>(gauss_(rng_));
   std::vector<float> gradient(BrdfGridShape().num_nodes());
@@ -301,18 +302,18 @@ TEST_F(ShadowedDerivatives, SameBitsForAnyNumberOfThreads) {
   const Image map = RandomMap(64, 128, 6);
   const auto compute = [&](int threads) {
     const Transport t(points_, 64, 128, Shadowed(Torus(), points_, threads));
-    std::vector<double> E(3 * points_.size());
-    t.Render(glossy_, map.rgb.data(), E.data());
+    std::vector<double> L_o(3 * points_.size());
+    t.Render(glossy_, map.rgb.data(), L_o.data());
     std::vector<float> light(map.rgb.size()), grid(glossy_.values.size());
-    t.ByLight(glossy_).ApplyTranspose(E.data(), light.data());
-    t.GridGradient(glossy_, map.rgb.data(), E.data(), grid.data());
+    t.ByLight(glossy_).ApplyTranspose(L_o.data(), light.data());
+    t.GridGradient(glossy_, map.rgb.data(), L_o.data(), grid.data());
     ReferenceOptions options;
     options.num_threads = threads;
     options.shadows = std::make_shared<VisibilityGrid>(Torus(), 64);
-    std::vector<double> R(E.size());
+    std::vector<double> R(L_o.size());
     ReferenceRenderer(map, options)
         .Render(points_, Glossy(0.1, 0.5, 3), R.data());
-    return std::make_tuple(E, light, grid, R);
+    return std::make_tuple(L_o, light, grid, R);
   };
   const auto one = compute(1);
   EXPECT_EQ(one, compute(2));
@@ -335,16 +336,16 @@ TEST(ShadowedReference, BatchIsTheSingleRenderer) {
   for (const int far_width : {64, 32}) {
     options.far_width = far_width;
     options.shadows = std::make_shared<VisibilityGrid>(Torus(), 128);
-    std::vector<double> E(2 * 2 * 3 * points.size());
+    std::vector<double> L_o(2 * 2 * 3 * points.size());
     ReferenceBatch(stack, {&maps[0], &maps[1]}, options)
-        .Render(points, E.data());
+        .Render(points, L_o.data());
     size_t next = 0;
     for (const MerlTable& table : tables) {
       for (const Image& map : maps) {
         std::vector<double> single(3 * points.size());
         ReferenceRenderer(map, options).Render(points, table, single.data());
-        const std::vector<double> batch(E.begin() + next,
-                                        E.begin() + next + single.size());
+        const std::vector<double> batch(L_o.begin() + next,
+                                        L_o.begin() + next + single.size());
         next += single.size();
         // Every texel: float sums. Blocks: the two share out light differently.
         EXPECT_LT(MeanLogError(single, batch), far_width == 64 ? 2e-5 : 0.05);

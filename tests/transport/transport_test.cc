@@ -21,9 +21,9 @@ class TransportTest : public ::testing::Test {
   TransportTest() : transport_(points_, 64, 128, {}) {}
 
   std::vector<double> Render(const BrdfGrid& grid, const Image& map) const {
-    std::vector<double> E(3 * points_.size());
-    transport_.Render(grid, map.rgb.data(), E.data());
-    return E;
+    std::vector<double> L_o(3 * points_.size());
+    transport_.Render(grid, map.rgb.data(), L_o.data());
+    return L_o;
   }
 
   const std::vector<ShadingPoint> points_ = SpherePoints(10);
@@ -53,10 +53,10 @@ TEST_F(TransportTest, WhiteFurnaceIsOneAtAllAngles) {
   const BrdfGrid white = BrdfGrid::FromFunction(Lambertian(1), {});
   for (const int height : {8, 32, 64}) {
     const Image map = ConstantMap(height, 2 * height, 1.0f);
-    std::vector<double> E(3 * fan.size());
+    std::vector<double> L_o(3 * fan.size());
     Transport(fan, height, 2 * height, {})
-        .Render(white, map.rgb.data(), E.data());
-    for (const double e : E) EXPECT_NEAR(1.0, e, kFloatSums);
+        .Render(white, map.rgb.data(), L_o.data());
+    for (const double e : L_o) EXPECT_NEAR(1.0, e, kFloatSums);
   }
 }
 
@@ -82,17 +82,17 @@ TEST_F(TransportTest, RenderIsLinearInEachArgument) {
 TEST_F(TransportTest, LightOperatorIsRenderAndItsTransposeIsAdjoint) {
   const LightOperator op = transport_.ByLight(glossy_);
   const Image map = RandomMap(64, 128, 3);
-  const std::vector<double> E = Render(glossy_, map);
-  std::vector<double> applied(E.size());
+  const std::vector<double> L_o = Render(glossy_, map);
+  std::vector<double> applied(L_o.size());
   op.Apply(map.rgb.data(), applied.data());
-  for (size_t i = 0; i < E.size(); ++i) {
-    EXPECT_NEAR(E[i], applied[i], kFloatSums * E[i]);
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    EXPECT_NEAR(L_o[i], applied[i], kFloatSums * L_o[i]);
   }
   // <a, A L> = <A^T a, L> for signed a and L.
   for (int trial = 0; trial < 3; ++trial) {
     Image tangent = map;
     for (float& v : tangent.rgb) v = static_cast<float>(gauss_(rng_));
-    std::vector<double> adjoint(E.size());
+    std::vector<double> adjoint(L_o.size());
     for (double& a : adjoint) a = gauss_(rng_);
     op.Apply(tangent.rgb.data(), applied.data());
     std::vector<float> gradient(map.rgb.size());
@@ -111,15 +111,15 @@ TEST_F(TransportTest, TransposeMatchesFiniteDifferencesPerTexel) {
   std::vector<float> gradient(size_t{3} * 64 * 128);
   op.ApplyTranspose(adjoint.data(), gradient.data());
   Image map(128, 64);
-  std::vector<double> E(adjoint.size());
+  std::vector<double> L_o(adjoint.size());
   // Poles and seam among them.
   for (const auto& [r, c] :
        {std::pair{0, 0}, {0, 127}, {63, 64}, {20, 0}, {40, 77}, {30, 127}}) {
     for (int k = 0; k < 3; ++k) {
       map.At(c, r)[k] = 1.0f;
-      op.Apply(map.rgb.data(), E.data());
+      op.Apply(map.rgb.data(), L_o.data());
       map.At(c, r)[k] = 0.0f;
-      const double derivative = Dot(adjoint, E);  // exact: linear
+      const double derivative = Dot(adjoint, L_o);  // exact: linear
       EXPECT_NEAR(derivative, gradient[3 * (r * 128 + c) + k],
                   kFloatSums * derivative + 1e-12);
     }
@@ -132,14 +132,14 @@ TEST_F(TransportTest, GridGradientIsTheTransposeOfRender) {
   for (double& a : adjoint) a = gauss_(rng_);
   BrdfGrid tangent = glossy_;
   for (float& v : tangent.values) v = static_cast<float>(gauss_(rng_));
-  const std::vector<double> E = Render(tangent, map);
+  const std::vector<double> L_o = Render(tangent, map);
   std::vector<float> gradient(tangent.values.size());
   transport_.GridGradient(glossy_, map.rgb.data(), adjoint.data(),
                           gradient.data());
   const std::vector<double> g(gradient.begin(), gradient.end());
   const std::vector<double> f(tangent.values.begin(), tangent.values.end());
-  EXPECT_NEAR(Dot(adjoint, E), Dot(g, f),
-              1e-6 * (Magnitude(adjoint, E) + Magnitude(g, f)));
+  EXPECT_NEAR(Dot(adjoint, L_o), Dot(g, f),
+              1e-6 * (Magnitude(adjoint, L_o) + Magnitude(g, f)));
 }
 
 TEST_F(TransportTest, LobesAddUpToTheRender) {
@@ -162,7 +162,7 @@ TEST_F(TransportTest, LobesAddUpToTheRender) {
       }
       pointers.push_back(fields[k].data());
     }
-    const std::vector<double> E = Render(sum, map);
+    const std::vector<double> L_o = Render(sum, map);
     std::vector<float> lobes(points_.size() * 3 * num_fields);
     transport_.RenderLobes(pointers.data(), num_fields, map.rgb.data(),
                            lobes.data());
@@ -180,7 +180,7 @@ TEST_F(TransportTest, LobesAddUpToTheRender) {
           total += term;
           size += std::abs(term);
         }
-        ASSERT_NEAR(E[3 * i + c], total, kFloatSums * size);
+        ASSERT_NEAR(L_o[3 * i + c], total, kFloatSums * size);
       }
     }
   }
@@ -189,7 +189,7 @@ TEST_F(TransportTest, LobesAddUpToTheRender) {
 TEST_F(TransportTest, SameBitsForAnyNumberOfThreads) {
   const Image map = RandomMap(64, 128, 6);
   struct Results {
-    std::vector<double> E, applied;
+    std::vector<double> L_o, applied;
     std::vector<float> light, grid, lobes, reflected;
   };
   const auto compute = [&](int threads) {
@@ -197,16 +197,16 @@ TEST_F(TransportTest, SameBitsForAnyNumberOfThreads) {
     options.num_threads = threads;
     const Transport t(points_, 64, 128, options);
     Results r;
-    r.E.resize(3 * points_.size());
-    r.applied = r.E;
+    r.L_o.resize(3 * points_.size());
+    r.applied = r.L_o;
     r.light.resize(map.rgb.size());
     r.grid.resize(glossy_.values.size());
     r.lobes.resize(points_.size() * 6);
-    t.Render(glossy_, map.rgb.data(), r.E.data());
+    t.Render(glossy_, map.rgb.data(), r.L_o.data());
     const LightOperator op = t.ByLight(glossy_);
     op.Apply(map.rgb.data(), r.applied.data());
-    op.ApplyTranspose(r.E.data(), r.light.data());
-    t.GridGradient(glossy_, map.rgb.data(), r.E.data(), r.grid.data());
+    op.ApplyTranspose(r.L_o.data(), r.light.data());
+    t.GridGradient(glossy_, map.rgb.data(), r.L_o.data(), r.grid.data());
     const float* fields[] = {glossy_.Channel(0), glossy_.Channel(1)};
     t.RenderLobes(fields, 2, map.rgb.data(), r.lobes.data());
     r.reflected.resize(r.lobes.size());
@@ -216,7 +216,7 @@ TEST_F(TransportTest, SameBitsForAnyNumberOfThreads) {
   const Results one = compute(1);
   for (const int threads : {2, 5}) {
     const Results many = compute(threads);
-    EXPECT_EQ(one.E, many.E);
+    EXPECT_EQ(one.L_o, many.L_o);
     EXPECT_EQ(one.applied, many.applied);
     EXPECT_EQ(one.light, many.light);
     EXPECT_EQ(one.grid, many.grid);
@@ -239,12 +239,13 @@ TEST_F(TransportTest, QuarterTurnsOfLightAndObjectKeepTheRadiance) {
     p.normal = Eigen::Vector3f(p.normal.z(), p.normal.y(), -p.normal.x());
     p.wo = Eigen::Vector3f(p.wo.z(), p.wo.y(), -p.wo.x());
   }
-  const std::vector<double> E = Render(glossy_, map);
-  std::vector<double> F(E.size());
+  const std::vector<double> L_o = Render(glossy_, map);
+  std::vector<double> F(L_o.size());
   Transport(points, 64, 128, {}).Render(glossy_, turned.rgb.data(), F.data());
   // phi_d and texel positions round differently before they are quantised to
   // 1.5e-5 of a cell; a random map has log-differences of one per texel.
-  for (size_t i = 0; i < E.size(); ++i) EXPECT_NEAR(E[i], F[i], 1e-4 * E[i]);
+  for (size_t i = 0; i < L_o.size(); ++i)
+    EXPECT_NEAR(L_o[i], F[i], 1e-4 * L_o[i]);
 }
 
 TEST_F(TransportTest, AgreesWithTheReferenceFromMatteToMirror) {
@@ -263,14 +264,14 @@ TEST_F(TransportTest, AgreesWithTheReferenceFromMatteToMirror) {
     const Transport transport(points_, height, 2 * height, {});
     const ReferenceRenderer reference(map, {});
     for (const Case& c : cases) {
-      std::vector<double> E(3 * points_.size()), R(E.size());
+      std::vector<double> L_o(3 * points_.size()), R(L_o.size());
       transport.Render(BrdfGrid::FromFunction(c.brdf, {}), map.rgb.data(),
-                       E.data());
+                       L_o.data());
       reference.Render(points_, c.brdf, R.data());
       double sum = 0.0;
-      for (size_t i = 0; i < E.size(); ++i)
-        sum += std::abs(std::log(E[i] / R[i]));
-      EXPECT_LT(sum / static_cast<double>(E.size()), c.tolerance)
+      for (size_t i = 0; i < L_o.size(); ++i)
+        sum += std::abs(std::log(L_o[i] / R[i]));
+      EXPECT_LT(sum / static_cast<double>(L_o.size()), c.tolerance)
           << c.name << " " << height;
     }
   }
@@ -295,15 +296,15 @@ TEST_F(TransportTest, ExtremesStayFinite) {
   }
   for (const Image& map : {sun, Image(64, 32), ConstantMap(32, 64, 1e9f)}) {
     for (const BrdfGrid& grid : {tiny, chrome}) {
-      std::vector<double> E(3 * points.size());
-      transport.Render(grid, map.rgb.data(), E.data());
+      std::vector<double> L_o(3 * points.size());
+      transport.Render(grid, map.rgb.data(), L_o.data());
       std::vector<float> light(map.rgb.size()), g(grid.values.size());
-      std::vector<double> applied(E.size());
+      std::vector<double> applied(L_o.size());
       const LightOperator op = transport.ByLight(grid);
       op.Apply(map.rgb.data(), applied.data());
-      op.ApplyTranspose(E.data(), light.data());
-      transport.GridGradient(grid, map.rgb.data(), E.data(), g.data());
-      for (const double e : E) {
+      op.ApplyTranspose(L_o.data(), light.data());
+      transport.GridGradient(grid, map.rgb.data(), L_o.data(), g.data());
+      for (const double e : L_o) {
         EXPECT_TRUE(std::isfinite(e));
         EXPECT_GE(e, 0.0);
       }
@@ -318,10 +319,11 @@ TEST_F(TransportTest, SmallMapsAndOnePointWork) {
   const std::vector<ShadingPoint> one = {PointAt(0.4, 1.0)};
   for (const auto& [h, w] : {std::pair{1, 2}, {2, 4}, {3, 6}}) {
     const Image map = ConstantMap(h, w, 2.0f);
-    double E[3];
+    double L_o[3];
     Transport(one, h, w, {})
-        .Render(BrdfGrid::FromFunction(Lambertian(0.5), {}), map.rgb.data(), E);
-    EXPECT_NEAR(1.0, E[1], kFloatSums);
+        .Render(BrdfGrid::FromFunction(Lambertian(0.5), {}), map.rgb.data(),
+                L_o);
+    EXPECT_NEAR(1.0, L_o[1], kFloatSums);
   }
 }
 

@@ -24,7 +24,7 @@ constexpr double kFloatSums = 2e-5;
 
 TransportOptions WithBounces(const Scene& scene,
                              const std::vector<ShadingPoint>& points,
-                             int bounces, SurfaceEmitterOptions how = {}) {
+                             int bounces, RadiosityOptions how = {}) {
   TransportOptions options;
   VisibilityOptions rays;
   options.num_threads = rays.num_threads = how.num_threads;
@@ -32,8 +32,8 @@ TransportOptions WithBounces(const Scene& scene,
   options.visibility = visibility;
   if (bounces == 0) return options;
   how.bounces = bounces;
-  options.emitters =
-      std::make_shared<SurfaceEmitters>(scene, points, visibility, how);
+  options.patches =
+      std::make_shared<RadiosityPatches>(scene, points, visibility, how);
   return options;
 }
 
@@ -65,8 +65,8 @@ TEST(Interreflection, MatteBowlIsTheClosedFormAfterEveryBounce) {
     const double share = (1 + std::cos(degrees * kPi / 180)) / 2;
     const Scene scene = Scene::FromMesh(BowlMesh(degrees)).value();
     const std::vector<ShadingPoint> points = BowlPoints(degrees);
-    SurfaceEmitterOptions few;
-    few.max_emitters = 500;
+    RadiosityOptions few;
+    few.max_patches = 500;
     const TransportOptions options = WithBounces(scene, points, 3, few);
     const Transport transport(points, 32, 64, options);
     for (const double albedo : {0.3, 0.9}) {
@@ -76,11 +76,11 @@ TEST(Interreflection, MatteBowlIsTheClosedFormAfterEveryBounce) {
         expected += albedo * (1 - share) * std::pow(albedo * share, b);
         const BrdfGrid matte =
             BrdfGrid::FromFunction(Lambertian(albedo), options.grid);
-        std::vector<double> E(3 * points.size());
-        transport.RenderBounces(matte, map.rgb.data(), b, E.data());
+        std::vector<double> L_o(3 * points.size());
+        transport.RenderBounces(matte, map.rgb.data(), b, L_o.data());
         for (size_t i = 0; i < points.size(); ++i) {
           // Edges of the opening fall between the visibility's directions.
-          EXPECT_NEAR(expected, E[3 * i], 0.015 * expected)
+          EXPECT_NEAR(expected, L_o[3 * i], 0.015 * expected)
               << "opening " << degrees << ", albedo " << albedo << ", bounces "
               << b << ", point " << i;
         }
@@ -98,18 +98,18 @@ TEST(Interreflection, WhiteObjectInConstantLightDisappears) {
   const TransportOptions options = WithBounces(scene, points, 12);
   const Transport transport(points, 32, 64, options);
   const BrdfGrid white = BrdfGrid::FromFunction(Lambertian(1), options.grid);
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   const auto darkest = [&](int bounces) {
-    transport.RenderBounces(white, map.rgb.data(), bounces, E.data());
-    return *std::min_element(E.begin(), E.end());
+    transport.RenderBounces(white, map.rgb.data(), bounces, L_o.data());
+    return *std::min_element(L_o.begin(), L_o.end());
   };
   const double dark = darkest(0), one = darkest(1), all = darkest(12);
   EXPECT_LT(dark, 0.8);
   EXPECT_GT(one, dark);
   EXPECT_GT(all, 0.97);
-  EXPECT_LT(*std::max_element(E.begin(), E.end()), 1.02);
+  EXPECT_LT(*std::max_element(L_o.begin(), L_o.end()), 1.02);
   double mean = 0.0;
-  for (const double e : E) mean += e / static_cast<double>(E.size());
+  for (const double e : L_o) mean += e / static_cast<double>(L_o.size());
   EXPECT_NEAR(1.0, mean, 0.005);
 }
 
@@ -122,8 +122,8 @@ TEST(Interreflection, SlicesOfThePointsHaveTheRadianceOfAll) {
   const TransportOptions options = WithBounces(scene, all, 2);
   const BrdfGrid grid =
       BrdfGrid::FromFunction(Glossy(0.3, 0.5, 12), options.grid);
-  std::vector<double> E(3 * all.size()), slices;
-  Transport(all, 32, 64, options).Render(grid, map.rgb.data(), E.data());
+  std::vector<double> L_o(3 * all.size()), slices;
+  Transport(all, 32, 64, options).Render(grid, map.rgb.data(), L_o.data());
   const auto middle = all.begin() + all.size() / 3;
   for (const auto& [begin, end] :
        {std::pair(all.begin(), middle), std::pair(middle, all.end())}) {
@@ -133,10 +133,10 @@ TEST(Interreflection, SlicesOfThePointsHaveTheRadianceOfAll) {
         .Render(grid, map.rgb.data(), of_some.data());
     slices.insert(slices.end(), of_some.begin(), of_some.end());
   }
-  EXPECT_EQ(E, slices);
+  EXPECT_EQ(L_o, slices);
 }
 
-// Emitters are patches seen from a few sides; brute force knows none. The
+// Patches are patches seen from a few sides; brute force knows none. The
 // sharper the lobe, the more of the bounce that misses.
 TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {
   const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
@@ -153,8 +153,8 @@ TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {
     const TransportOptions options = WithBounces(scene, all, 1);
     const TransportOptions bare = WithBounces(scene, all, 0);
     const BrdfGrid grid = BrdfGrid::FromFunction(c.brdf, options.grid);
-    std::vector<double> E(3 * all.size()), direct(E.size());
-    Transport(all, 32, 64, options).Render(grid, map.rgb.data(), E.data());
+    std::vector<double> L_o(3 * all.size()), direct(L_o.size());
+    Transport(all, 32, 64, options).Render(grid, map.rgb.data(), L_o.data());
     Transport(all, 32, 64, bare).Render(grid, map.rgb.data(), direct.data());
     // From where least of the light of the map is seen to where most is.
     std::vector<size_t> order;
@@ -171,7 +171,7 @@ TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {
       const Eigen::Array3d expected =
           BruteForceShadowed(scene, all[i], c.brdf, map, 1, 24, 48, 2);
       for (int ch = 0; ch < 3; ++ch) {
-        error += std::abs(std::log(E[3 * i + ch] / expected[ch]));
+        error += std::abs(std::log(L_o[3 * i + ch] / expected[ch]));
         without += std::abs(std::log(direct[3 * i + ch] / expected[ch]));
         ++count;
       }
@@ -204,41 +204,41 @@ TEST(Interreflection, RaysOfNarrowLobesAgreeWithBruteForce) {
   const auto render = [&](int lobe_rays, const double* light) {
     ReferenceOptions reference;
     reference.shadows = std::make_shared<VisibilityGrid>(scene, 256);
-    reference.emitters = options.emitters;
+    reference.patches = options.patches;
     reference.lobe_rays = lobe_rays;
-    std::vector<double> E(3 * points.size());
+    std::vector<double> L_o(3 * points.size());
     ReferenceRenderer(map, reference)
-        .Render(points, brdf, E.data(), {light, 1});
-    return E;
+        .Render(points, brdf, L_o.data(), {light, 1});
+    return L_o;
   };
   const std::vector<double> bare = render(0, nullptr),
-                            patches = render(0, emitted.data()),
+                            blurred = render(0, emitted.data()),
                             few = render(4, emitted.data()),
                             many = render(32, emitted.data());
-  double of_bare = 0.0, of_patches = 0.0, of_few = 0.0, of_many = 0.0;
+  double of_bare = 0.0, of_blurred = 0.0, of_few = 0.0, of_many = 0.0;
   for (size_t i = 0; i < points.size(); i += points.size() / 12) {
     const Eigen::Array3d expected =
         BruteForceShadowed(scene, points[i], brdf, map, 1, 36, 72, 4);
     for (int c = 0; c < 3; ++c) {
       const size_t k = 3 * i + c;
       of_bare += std::abs(std::log(bare[k] / expected[c]));
-      of_patches += std::abs(std::log(patches[k] / expected[c]));
+      of_blurred += std::abs(std::log(blurred[k] / expected[c]));
       of_few += std::abs(std::log(few[k] / expected[c]));
       of_many += std::abs(std::log(many[k] / expected[c]));
     }
   }
-  EXPECT_GT(of_patches, 0.05 * of_bare);
-  EXPECT_LT(of_few, 0.5 * of_patches);
-  EXPECT_LT(of_many, 0.1 * of_patches);
+  EXPECT_GT(of_blurred, 0.05 * of_bare);
+  EXPECT_LT(of_few, 0.5 * of_blurred);
+  EXPECT_LT(of_many, 0.1 * of_blurred);
   EXPECT_LT(of_many, 0.01 * of_bare);
 }
 
-TEST(Interreflection, ConvexObjectsHaveNoEmittersAndTheSameBits) {
+TEST(Interreflection, ConvexObjectsHaveNoPatchesAndTheSameBits) {
   const Scene scene = Scene::FromMesh(BallMesh(24, 1.0)).value();
   const std::vector<ShadingPoint> points =
       FindShadingPoints(scene, Camera(), 12, 12, Mask(), 1).value();
   const TransportOptions with = WithBounces(scene, points, 2);
-  EXPECT_EQ(0, with.emitters->count());
+  EXPECT_EQ(0, with.patches->count());
   const Image map = RandomMap(32, 64, 1);
   const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.2, 0.5, 8), with.grid);
   std::vector<double> a(3 * points.size()), b(a.size());
@@ -250,24 +250,24 @@ TEST(Interreflection, ConvexObjectsHaveNoEmittersAndTheSameBits) {
   EXPECT_EQ(a, b);
 }
 
-// Emitters stand for what is seen: next to no light is lost, and their number
+// Patches stand for what is seen: next to no light is lost, and their number
 // is kept.
-TEST(Interreflection, EmittersCoverWhatIsSeenWithinTheirNumber) {
+TEST(Interreflection, PatchesCoverWhatIsSeenWithinTheirNumber) {
   const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
   const std::vector<ShadingPoint> points =
       FindShadingPoints(scene, TorusCamera(), 48, 48, Mask(), 1).value();
   for (const int most : {6000, 200}) {
-    SurfaceEmitterOptions how;
-    how.max_emitters = most;
+    RadiosityOptions how;
+    how.max_patches = most;
     how.max_points = 256;
     how.bounces = 2;
-    const auto emitters = WithBounces(scene, points, 2, how).emitters;
-    EXPECT_GT(emitters->count(), 20);
+    const auto patches = WithBounces(scene, points, 2, how).patches;
+    EXPECT_GT(patches->count(), 20);
     // The second bounce may add to them.
-    EXPECT_LT(emitters->count(), 1.2 * most);
-    EXPECT_GT(emitters->num_cells(), 1000);
-    EXPECT_LT(emitters->num_lost(), 1e-3 * emitters->num_cells());
-    for (const ShadingPoint& p : emitters->points()) {
+    EXPECT_LT(patches->count(), 1.2 * most);
+    EXPECT_GT(patches->num_bins(), 1000);
+    EXPECT_LT(patches->num_lost(), 1e-3 * patches->num_bins());
+    for (const ShadingPoint& p : patches->points()) {
       EXPECT_GE(p.normal.dot(p.wo), 0.9f * kMinViewCosine);
     }
   }
@@ -307,15 +307,15 @@ class BouncedDerivatives : public ::testing::TestWithParam<int> {
         transport_(points_, 32, 64, options_),
         glossy_(BrdfGrid::FromFunction(Glossy(0.5, 0.4, 10), options_.grid)) {}
 
-  static SurfaceEmitterOptions Few() {
-    SurfaceEmitterOptions how;
-    how.max_emitters = 300;
+  static RadiosityOptions Few() {
+    RadiosityOptions how;
+    how.max_patches = 300;
     return how;
   }
   std::vector<double> Render(const BrdfGrid& grid, const Image& map) const {
-    std::vector<double> E(3 * points_.size());
-    transport_.Render(grid, map.rgb.data(), E.data());
-    return E;
+    std::vector<double> L_o(3 * points_.size());
+    transport_.Render(grid, map.rgb.data(), L_o.data());
+    return L_o;
   }
   std::vector<double> Adjoint() {
     std::normal_distribution<double> gauss;
@@ -342,11 +342,11 @@ TEST_P(BouncedDerivatives, LightOperatorIsTheRenderAndItsTransposeItsAdjoint) {
   ASSERT_GT(transport_.bounces(), 0);
   const Image map = RandomMap(32, 64, 2);
   const LightOperator op = transport_.ByLight(glossy_);
-  const std::vector<double> E = Render(glossy_, map), adjoint = Adjoint();
-  std::vector<double> applied(E.size());
+  const std::vector<double> L_o = Render(glossy_, map), adjoint = Adjoint();
+  std::vector<double> applied(L_o.size());
   op.Apply(map.rgb.data(), applied.data());
-  for (size_t i = 0; i < E.size(); ++i) {
-    EXPECT_NEAR(E[i], applied[i], kFloatSums * E[i]);
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    EXPECT_NEAR(L_o[i], applied[i], kFloatSums * L_o[i]);
   }
   std::vector<float> gradient(map.rgb.size());
   op.ApplyTranspose(adjoint.data(), gradient.data());
@@ -421,16 +421,16 @@ TEST_P(BouncedDerivatives, GridGradientMatchesDifferences) {
 TEST_P(BouncedDerivatives, SameBitsForAnyNumberOfThreads) {
   const Image map = RandomMap(32, 64, 6);
   const auto compute = [&](int threads) {
-    SurfaceEmitterOptions how = Few();
+    RadiosityOptions how = Few();
     how.num_threads = threads;
     const Transport t(points_, 32, 64,
                       WithBounces(scene_, points_, GetParam(), how));
-    std::vector<double> E(3 * points_.size());
-    t.Render(glossy_, map.rgb.data(), E.data());
+    std::vector<double> L_o(3 * points_.size());
+    t.Render(glossy_, map.rgb.data(), L_o.data());
     std::vector<float> light(map.rgb.size()), grid(glossy_.values.size());
-    t.ByLight(glossy_).ApplyTranspose(E.data(), light.data());
-    t.GridGradient(glossy_, map.rgb.data(), E.data(), grid.data());
-    return std::make_tuple(E, light, grid);
+    t.ByLight(glossy_).ApplyTranspose(L_o.data(), light.data());
+    t.GridGradient(glossy_, map.rgb.data(), L_o.data(), grid.data());
+    return std::make_tuple(L_o, light, grid);
   };
   const auto one = compute(1);
   EXPECT_EQ(one, compute(2));

@@ -104,12 +104,12 @@ TEST(Visibility, ShadowedTransportOfAPlaneUnderADiscIsTheClosedForm) {
   const BrdfGrid white = BrdfGrid::FromFunction(Lambertian(1), options.grid);
   for (const int height : {16, 32, 64, 128}) {
     const Image map = ConstantMap(height, 2 * height, 1.0f);
-    double E[3];
+    double L_o[3];
     Transport(points, height, 2 * height, options)
-        .Render(white, map.rgb.data(), E);
+        .Render(white, map.rgb.data(), L_o);
     // The edge is concentric with the near rule's rings, which are 4 degrees of
     // light apart there, and each is in the light or not.
-    EXPECT_NEAR(0.8, E[0], 0.008) << height;
+    EXPECT_NEAR(0.8, L_o[0], 0.008) << height;
   }
 }
 

@@ -43,10 +43,10 @@ class Tiers {
     grid_ = BrdfGrid::FromMerl(table_, {});
   }
 
-  void Quadrature(const std::vector<ShadingPoint>& points, double* E) const {
-    preview_->Render(points, table_, E);
+  void Quadrature(const std::vector<ShadingPoint>& points, double* L_o) const {
+    preview_->Render(points, table_, L_o);
   }
-  void ByNormal(const std::vector<ShadingPoint>& points, double* E) const {
+  void ByNormal(const std::vector<ShadingPoint>& points, double* L_o) const {
     ReflectanceMapOptions options;
     options.log_error = kPreviewError;
     RenderByNormal(
@@ -55,21 +55,21 @@ class Tiers {
           Quadrature(some, out);
           return true;
         },
-        options, E)
+        options, L_o)
         .value();
   }
   void Harmonics(int order, const std::vector<ShadingPoint>& points,
-                 double* E) const {
+                 double* L_o) const {
     HarmonicOptions options;
     options.order = order;
     options.view_angles = 24;
     options.num_threads = 1;
     HarmonicTransport(points, map_.height, map_.width, options)
-        .Render(grid_, map_.rgb.data(), E);
+        .Render(grid_, map_.rgb.data(), L_o);
   }
   // The fit, the tables and the points.
   void Gaussians(int spread, const std::vector<ShadingPoint>& points,
-                 double* E) const {
+                 double* L_o) const {
     GaussianFitOptions fit;
     fit.spread = spread;
     GaussianOptions options;
@@ -80,7 +80,7 @@ class Tiers {
         [this](double theta_h, double theta_d, double phi_d) {
           return InterpolateMerl(table_, theta_h, theta_d, phi_d);
         });
-    transport.Render(points, tables, light.Fit(map_.rgb.data()), E);
+    transport.Render(points, tables, light.Fit(map_.rgb.data()), L_o);
   }
 
  private:
@@ -102,38 +102,38 @@ void StudyImage(const std::string& name,
     double seconds = 1e300;
   };
   const Tiers tiers(light, look);
-  std::vector<Way> ways = {{"quadrature", [&](const auto& some, double* E) {
-                              tiers.Quadrature(some, E);
+  std::vector<Way> ways = {{"quadrature", [&](const auto& some, double* L_o) {
+                              tiers.Quadrature(some, L_o);
                             }}};
   if (!perspective) {
-    ways.push_back({"by_normal", [&](const auto& some, double* E) {
-                      tiers.ByNormal(some, E);
+    ways.push_back({"by_normal", [&](const auto& some, double* L_o) {
+                      tiers.ByNormal(some, L_o);
                     }});
   }
   for (const int order : kOrders) {
     ways.push_back({"order_" + std::to_string(order),
-                    [&tiers, order](const auto& some, double* E) {
-                      tiers.Harmonics(order, some, E);
+                    [&tiers, order](const auto& some, double* L_o) {
+                      tiers.Harmonics(order, some, L_o);
                     }});
   }
   for (const int spread : kSpreads) {
     ways.push_back({"gaussians_" + std::to_string(spread),
-                    [&tiers, spread](const auto& some, double* E) {
-                      tiers.Gaussians(spread, some, E);
+                    [&tiers, spread](const auto& some, double* L_o) {
+                      tiers.Gaussians(spread, some, L_o);
                     }});
   }
 
   const std::vector<ShadingPoint> few = SpreadPoints(points, kFew);
   std::vector<double> truth(3 * few.size()), at_few(truth.size());
   ReferenceRenderer(light.map, {}).Render(few, look.table, truth.data());
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   // In turn. The quadrature takes every point alike.
   const std::vector<ShadingPoint> timed = SpreadPoints(points, kTimed);
   for (int round = 0; round < kRounds; ++round) {
     for (Way& way : ways) {
       const bool all = way.name != "quadrature";
       const double seconds =
-          Seconds([&] { way.render(all ? points : timed, E.data()); });
+          Seconds([&] { way.render(all ? points : timed, L_o.data()); });
       way.seconds = std::min(
           way.seconds, all ? seconds
                            : seconds * static_cast<double>(points.size()) /
@@ -144,8 +144,8 @@ void StudyImage(const std::string& name,
   for (const Way& way : ways) {
     if (way.name == "by_normal") {
       // Few points are not interpolated.
-      way.render(points, E.data());
-      std::vector<double> whole(E);
+      way.render(points, L_o.data());
+      std::vector<double> whole(L_o);
       const std::vector<ShadingPoint> spread = SpreadPoints(points, kFew);
       for (size_t k = 0, i = 0; k < spread.size(); ++k) {
         while (points[i].index != spread[k].index) ++i;

@@ -39,7 +39,7 @@ void HarmonicStudy(const std::string&) {
     const ReferenceRenderer renderer(light.map, {});
     for (const Look& look : MatteToMirror()) {
       const BrdfGrid grid = BrdfGrid::FromMerl(look.table, {});
-      std::vector<double> truth(3 * few.size()), E(truth.size());
+      std::vector<double> truth(3 * few.size()), L_o(truth.size());
       renderer.Render(few, look.table, truth.data());
       HarmonicOptions options;
       options.order = kProbeOrder;
@@ -50,9 +50,9 @@ void HarmonicStudy(const std::string&) {
       for (const int order : {2, 3, 4, 6, 8, 12, 16}) {
         options.order = order;
         HarmonicTransport(few, height, width, options)
-            .Render(grid, light.map.rgb.data(), E.data());
+            .Render(grid, light.map.rgb.data(), L_o.data());
         const std::string at = "_order_" + std::to_string(order);
-        Row("harmonics", name, "log_error" + at, LogError(E, truth));
+        Row("harmonics", name, "log_error" + at, LogError(L_o, truth));
         Row("harmonics", name, "predicted" + at, predicted[order]);
       }
     }
@@ -66,7 +66,7 @@ void HarmonicStudy(const std::string&) {
   TransportOptions direct_options;
   direct_options.num_threads = 1;
   const Transport direct(points, 128, 256, direct_options);
-  std::vector<double> E(3 * points.size());
+  std::vector<double> L_o(3 * points.size());
   std::vector<float> by_grid(grid.values.size()), by_map(light.map.rgb.size());
   for (const int order : {2, 4, 8}) {
     HarmonicOptions options;
@@ -78,10 +78,10 @@ void HarmonicStudy(const std::string&) {
       seconds[k] = std::min(seconds[k], Seconds(call));
     };
     for (int round = 0; round < 3; ++round) {
-      least(0, [&] { direct.Render(grid, map, E.data()); });
-      least(1, [&] { harmonic.Render(grid, map, E.data()); });
-      least(2, [&] { harmonic.GridGradient(map, E.data(), by_grid.data()); });
-      least(3, [&] { harmonic.MapGradient(grid, E.data(), by_map.data()); });
+      least(0, [&] { direct.Render(grid, map, L_o.data()); });
+      least(1, [&] { harmonic.Render(grid, map, L_o.data()); });
+      least(2, [&] { harmonic.GridGradient(map, L_o.data(), by_grid.data()); });
+      least(3, [&] { harmonic.MapGradient(grid, L_o.data(), by_map.data()); });
     }
     const std::string name = "sphere 128 order " + std::to_string(order);
     Row("harmonics", name, "transport_render_ms", 1e3 * seconds[0]);

@@ -22,7 +22,7 @@ void Compare(const std::string& name, const std::vector<ShadingPoint>& points,
              const ReferenceRenderer& renderer, const MerlTable& table) {
   const size_t all = (points.size() + kStep - 1) / kStep;
   const size_t some = std::min(all, kSteps);
-  std::vector<double> truth, guess, E(3 * points.size());
+  std::vector<double> truth, guess, L_o(3 * points.size());
   double direct = 0.0, by_normal = 0.0;
   size_t timed = 0;
   std::vector<size_t> where;
@@ -48,12 +48,12 @@ void Compare(const std::string& name, const std::vector<ShadingPoint>& points,
                    renderer.Render(p, table, out);
                    return true;
                  },
-                 {}, E.data())
+                 {}, L_o.data())
                  .value();
   });
   render_steps(some / 2, some);
   for (const size_t i : where) {
-    for (int c = 0; c < 3; ++c) guess.push_back(E[3 * i + c]);
+    for (int c = 0; c < 3; ++c) guess.push_back(L_o[3 * i + c]);
   }
   direct *= static_cast<double>(points.size()) / static_cast<double>(timed);
   Row("maps", name, "points", static_cast<double>(points.size()));

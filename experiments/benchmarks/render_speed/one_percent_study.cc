@@ -38,11 +38,11 @@ void StudyShape(const std::string& meshes, const std::string& shape) {
     };
   };
 
-  const auto facing = [&points](const std::vector<double>& E) {
+  const auto facing = [&points](const std::vector<double>& L_o) {
     std::vector<double> out;
     for (size_t i = 0; i < points.size(); ++i) {
       if (points[i].normal.dot(points[i].wo) < kCosine70) continue;
-      out.insert(out.end(), &E[3 * i], &E[3 * i] + 3);
+      out.insert(out.end(), &L_o[3 * i], &L_o[3 * i] + 3);
     }
     return out;
   };
@@ -108,15 +108,15 @@ void StudyShape(const std::string& meshes, const std::string& shape) {
             transport = std::make_unique<Transport>(
                 points, lights[0].map.height, lights[0].map.width, options);
           });
-      std::vector<double> E(3 * points.size());
+      std::vector<double> L_o(3 * points.size());
       for (size_t k = 0; k < truth.size(); ++k) {
         const double render =
             scale * Seconds([&] {
               transport->Render(grids[k % looks.size()],
                                 lights[k / looks.size()].map.rgb.data(),
-                                E.data());
+                                L_o.data());
             });
-        const double error = LogError(E, truth[k]);
+        const double error = LogError(L_o, truth[k]);
         const double seconds = ray_seconds + build + render;
         // The fastest that is good enough; else the best.
         Best& b = best[k];

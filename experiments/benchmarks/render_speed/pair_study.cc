@@ -58,7 +58,7 @@ void PairStudy(const std::string& meshes) {
   const LightOperator by_light = transport.ByLight(grid);
   const ReflectanceOperator by_reflectance =
       transport.ByReflectance(map.rgb.data());
-  std::vector<double> E(3 * points.size()), adjoint(E.size(), 1.0);
+  std::vector<double> L_o(3 * points.size()), adjoint(L_o.size(), 1.0);
   std::vector<float> lobes(2 * 3 * points.size()), by_grid(grid.values.size()),
       by_map(map.rgb.size()), stream(32 << 20);
   const float* const fields[] = {grid.Channel(0), grid.Channel(1)};
@@ -68,13 +68,13 @@ void PairStudy(const std::string& meshes) {
         streamed = static_cast<double>(Stream(stream.data(), stream.size()));
       },
       [&] { const Transport t(points, map.height, map.width, options); },
-      [&] { transport.Render(grid, map.rgb.data(), E.data()); },
+      [&] { transport.Render(grid, map.rgb.data(), L_o.data()); },
       [&] { transport.RenderLobes(fields, 2, map.rgb.data(), lobes.data()); },
       [&] {
         transport.GridGradient(grid, map.rgb.data(), adjoint.data(),
                                by_grid.data());
       },
-      [&] { by_light.Apply(map.rgb.data(), E.data()); },
+      [&] { by_light.Apply(map.rgb.data(), L_o.data()); },
       [&] { by_light.ApplyTranspose(adjoint.data(), by_map.data()); },
       [&] { by_reflectance.Apply(fields, 2, lobes.data()); },
   });

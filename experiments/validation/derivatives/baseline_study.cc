@@ -259,10 +259,10 @@ void StudyCookTorranceCost(ErrorTable* table) {
         }
         const Real diffuse = std::exp(Real(p[c])) * matte;
         const Real colour = std::exp(Real(p[3 + c]));
-        const Real E = diffuse + colour * sums[0] + Real(observed.floor);
-        const Real d = std::log(E) - Real(observed.values[3 * i + c]);
+        const Real L_o = diffuse + colour * sums[0] + Real(observed.floor);
+        const Real d = std::log(L_o) - Real(observed.values[3 * i + c]);
         const Real s = Real(0.02), root = std::sqrt(d * d + s * s);
-        const Real slope = std::sqrt((root + s) / 2) / root / E;
+        const Real slope = std::sqrt((root + s) / 2) / root / L_o;
         std::vector<Real> row(kCookTorranceParameters, 0);
         row[c] = slope * diffuse;
         row[3 + c] = slope * colour * sums[0];

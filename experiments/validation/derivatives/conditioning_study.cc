@@ -53,14 +53,14 @@ void StudyMarginalHessian(const NeuralBrdfModel& model,
                           const std::vector<double>& radiance,
                           const Eigen::VectorXd& x, ConditioningRow* row) {
   MarginalResolution resolution;
-  resolution.cells = {8, 4, 0.2};
+  resolution.bins = {8, 4, 0.2};
   resolution.map_width = 16;
   resolution.map_height = 8;
   const MarginalReflectance reflectance(
       FlowLobes::Factory(model, prior.num_lobes(), 1), points, radiance,
       LightProcess(), resolution, 0);
   const Eigen::VectorXd noise =
-      Eigen::VectorXd::Constant(3 * reflectance.cells().num_cells(), 0.0025);
+      Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.0025);
   LightMode mode;
   reflectance.Evaluate(x.data(), noise, {}, 1e-9, &mode, nullptr);
   const MarginalObjective whitened(&reflectance, &prior, noise, &mode,
@@ -126,13 +126,13 @@ std::vector<ConditioningRow> StudyConditioning(const NeuralBrdfModel& model,
                  {"2 that coincide", &two, same}};
     for (const auto& c : cases) {
       const FlowLobes lobes(model, c.prior->num_lobes(), options.grid, 0);
-      std::vector<double> E;
-      CHECK(RenderLobeModel(transport, lobes, c.x.data(), map.rgb.data(), &E,
+      std::vector<double> L_o;
+      CHECK(RenderLobeModel(transport, lobes, c.x.data(), map.rgb.data(), &L_o,
                             nullptr));
-      const Observations observed = MakeObservations(E);
+      const Observations observed = MakeObservations(L_o);
       RobustLogLikelihood likelihood;
       double mean = 0.0;
-      for (const double e : E) mean += e / static_cast<double>(E.size());
+      for (const double e : L_o) mean += e / static_cast<double>(L_o.size());
       likelihood.epsilon = 1e-5 * mean;
       const LobeRadianceCost cost(&transport, &lobes, map.rgb, &observed,
                                   likelihood);
@@ -146,7 +146,7 @@ std::vector<ConditioningRow> StudyConditioning(const NeuralBrdfModel& model,
       row.marginal = row.smallest_ratio = row.median_ratio = row.largest_ratio =
           std::numeric_limits<double>::quiet_NaN();
       if (marginal) {
-        StudyMarginalHessian(model, *c.prior, points, E, c.x, &row);
+        StudyMarginalHessian(model, *c.prior, points, L_o, c.x, &row);
       }
       rows.push_back(row);
     }

@@ -21,21 +21,21 @@ namespace ibrdf {
 namespace derivatives {
 namespace {
 
-// One value of E beside one of I, with the slope of the cost, of the residual
+// One value of L_o beside one of I, with the slope of the cost, of the residual
 // and the weight of the reweighted squares.
-void AddLikelihood(const std::string& kind, double E, double observed,
+void AddLikelihood(const std::string& kind, double L_o, double observed,
                    const RobustLogLikelihood& l, ErrorTable* table) {
   const Observations o = MakeObservations({observed, observed, observed});
   LikelihoodDerivatives d;
-  EvaluateLikelihood({E, E, E}, o, l, &d);
-  const Real e = E + Real(l.epsilon), delta = l.delta, b = l.scale;
+  EvaluateLikelihood({L_o, L_o, L_o}, o, l, &d);
+  const Real e = L_o + Real(l.epsilon), delta = l.delta, b = l.scale;
   const Real t = (std::log(e) - std::log(observed + Real(l.epsilon))) / b;
   const Real root = std::sqrt(t * t + delta * delta);
   const std::string where =
-      "E, I, epsilon, b " + Coordinates({E, observed, l.epsilon, l.scale});
+      "E, I, epsilon, b " + Coordinates({L_o, observed, l.epsilon, l.scale});
   const std::string name = "likelihood: ";
   table->Add(name + "residual by radiance", kind, where, {d.d_residual[0]},
-             {ResidualSlope(E, observed, l)});
+             {ResidualSlope(L_o, observed, l)});
   table->Add(name + "cost by radiance", kind, where,
              {d.residual[0] * d.d_residual[0]}, {t / root / (b * e)});
   table->Add(name + "weight", kind, where, {d.weight[0]},

@@ -54,8 +54,8 @@ class JointStudy {
            const JointState& state, float bright = 0.0f) {
     const Exact exact = Reference(state);
     std::vector<double> image;
-    for (size_t i = 0; i < exact.E.size(); ++i) {
-      image.push_back(static_cast<double>(exact.E[i]) *
+    for (size_t i = 0; i < exact.L_o.size(); ++i) {
+      image.push_back(static_cast<double>(exact.L_o[i]) *
                       std::exp(0.3 * std::sin(5.0 * static_cast<double>(i))));
     }
     if (bright > 0.0f) image[4] = bright;
@@ -88,7 +88,7 @@ class JointStudy {
 
  private:
   struct Exact {
-    std::vector<Real> E, dE, map;
+    std::vector<Real> L_o, dL_o, map;
     std::vector<char> moves;  // whether a texel's log radiance is unclamped
     std::vector<std::vector<Real>> brdf;
     UnetReferencePass<Real> pass;
@@ -114,8 +114,8 @@ class JointStudy {
         ReferenceFields(model_, 2, lobes_.grid_shape(), state.lobes);
     const LobeRadiance radiance =
         scene_.Radiance(fields, lobes_.code_size(), state.lobes, exact.map);
-    exact.E = radiance.E;
-    exact.dE = radiance.dE;
+    exact.L_o = radiance.L_o;
+    exact.dL_o = radiance.dL_o;
     exact.brdf = scene_.Brdf(fields, lobes_.code_size(), state.lobes);
     return exact;
   }
@@ -125,12 +125,12 @@ class JointStudy {
     const RobustLogLikelihood& l = terms_.likelihood;
     const size_t nl = state.lobes.size(), texels = exact.map.size() / 3;
     std::vector<Real> gradient(nl, 0), by_map(exact.map.size(), 0);
-    for (size_t i = 0; i < exact.E.size(); ++i) {
+    for (size_t i = 0; i < exact.L_o.size(); ++i) {
       if (!observed.valid[i / 3]) continue;
-      const Real adjoint = Residual(exact.E[i], observed.radiance[i], l) *
-                           ResidualSlope(exact.E[i], observed.radiance[i], l);
+      const Real adjoint = Residual(exact.L_o[i], observed.radiance[i], l) *
+                           ResidualSlope(exact.L_o[i], observed.radiance[i], l);
       for (size_t p = 0; p < nl; ++p) {
-        gradient[p] += adjoint * exact.dE[i * nl + p];
+        gradient[p] += adjoint * exact.dL_o[i * nl + p];
       }
       const std::vector<Real> row =
           scene_.reference().MapRow(static_cast<int>(i / 3), exact.brdf[i % 3]);
@@ -186,20 +186,20 @@ class JointStudy {
     }
     const std::vector<Real> d_log =
         reference_.Jvp(exact.weights, tangent, exact.pass);
-    std::vector<Real> dE(exact.E.size(), 0);
-    for (size_t i = 0; i < dE.size(); ++i) {
+    std::vector<Real> dL_o(exact.L_o.size(), 0);
+    for (size_t i = 0; i < dL_o.size(); ++i) {
       const size_t c = i % 3;
-      for (size_t p = 0; p < nl; ++p) dE[i] += exact.dE[i * nl + p] * v[p];
+      for (size_t p = 0; p < nl; ++p) dL_o[i] += exact.dL_o[i * nl + p] * v[p];
       const std::vector<Real> row =
           scene_.reference().MapRow(static_cast<int>(i / 3), exact.brdf[c]);
       for (size_t t = 0; t < texels; ++t) {
         const size_t at = 3 * t + c;
         if (exact.moves[at]) {
-          dE[i] += row[t] * exact.map[at] * d_log[c * texels + t];
+          dL_o[i] += row[t] * exact.map[at] * d_log[c * texels + t];
         }
       }
     }
-    return dE;
+    return dL_o;
   }
 
   std::string name_;

@@ -115,13 +115,13 @@ class LobeStudy {
     const std::vector<Real> light(map.begin(), map.end());
     const LobeRadiance exact =
         scene_.Radiance(fields, lobes_.code_size(), p, light);
-    std::vector<double> E, dE;
+    std::vector<double> L_o, dL_o;
     const bool finite = RenderLobeModel(scene_.transport(), lobes_, p.data(),
-                                        map.data(), &E, &dE);
-    std::vector<double> bright(E.size());
-    for (size_t i = 0; i < E.size(); ++i) {
+                                        map.data(), &L_o, &dL_o);
+    std::vector<double> bright(L_o.size());
+    for (size_t i = 0; i < L_o.size(); ++i) {
       // An observation at a random factor, the same for all kinds.
-      bright[i] = static_cast<double>(exact.E[i]) *
+      bright[i] = static_cast<double>(exact.L_o[i]) *
                   std::exp(std::cos(7.0 * static_cast<double>(i)));
     }
     const Observations observed = MakeObservations(bright);
@@ -129,24 +129,24 @@ class LobeStudy {
     likelihood.epsilon = 1e-3 * bright[0];
     const LobeRadianceCost cost(&scene_.transport(), &lobes_, map, &observed,
                                 likelihood);
-    std::vector<double> residuals(E.size()), jacobian(dE.size());
+    std::vector<double> residuals(L_o.size()), jacobian(dL_o.size());
     const double* block[] = {p.data()};
     double* jacobians[] = {jacobian.data()};
     const bool ok = cost.Evaluate(block, residuals.data(), jacobians);
     const size_t columns = p.size();
-    for (size_t i = 0; i < E.size(); ++i) {
+    for (size_t i = 0; i < L_o.size(); ++i) {
       const auto at = static_cast<std::ptrdiff_t>(i * columns);
       const auto size = static_cast<std::ptrdiff_t>(columns);
-      std::vector<Real> right(exact.dE.begin() + at,
-                              exact.dE.begin() + at + size);
+      std::vector<Real> right(exact.dL_o.begin() + at,
+                              exact.dL_o.begin() + at + size);
       const double nan = std::nan("");
       std::vector<double> found(columns, nan);
-      if (finite) std::copy_n(dE.begin() + at, columns, found.begin());
+      if (finite) std::copy_n(dL_o.begin() + at, columns, found.begin());
       table_->Add(name_ + ": radiance by lobes", kind,
                   where + ", value " + std::to_string(i), found, right);
       if (!observed.valid[i / 3]) continue;
       const Real slope =
-          ResidualSlope(exact.E[i], observed.radiance[i], likelihood);
+          ResidualSlope(exact.L_o[i], observed.radiance[i], likelihood);
       for (Real& v : right) v *= slope;
       std::fill(found.begin(), found.end(), nan);
       if (ok) std::copy_n(jacobian.begin() + at, columns, found.begin());

@@ -1,5 +1,5 @@
-// The posterior with the light integrated out, by lobes and scales of the
-// light.
+// The posterior with the light integrated out, by lobes and hyperparameters of
+// the light.
 #include <glog/logging.h>
 
 #include <Eigen/Dense>
@@ -45,15 +45,17 @@ class ExactMarginal {
         mode_(start.l.cast<Real>()) {}
 
   // Newton's method from the last mode.
-  Real Cost(const Matrices& T, const LightScales& scales) {
+  Real Cost(const Matrices& T, const LightHyperparameters& hyperparameters) {
     const Matrix correlation =
-        LightCorrelation(height_, width_, process_, scales).cast<Real>();
+        LightCorrelation(height_, width_, process_, hyperparameters)
+            .cast<Real>();
     const Eigen::Index t = correlation.rows(), n = 3 * t, P = T[0].rows();
     Matrix K(n, n);
     for (int c = 0; c < 3; ++c) {
       for (int d = 0; d < 3; ++d) {
         K.block(c * t, d * t, t, t) =
-            (std::exp(Real(scales.log_amplitude)) * local_(c, d) * correlation)
+            (std::exp(Real(hyperparameters.log_amplitude)) * local_(c, d) *
+             correlation)
                 .array() +
             flat_(c, d);
       }
@@ -67,10 +69,10 @@ class ExactMarginal {
       J.setZero();
       for (int c = 0; c < 3; ++c) {
         const Vector L = (at.segment(c * t, t).array() + level_).exp();
-        const Vector E = T[c] * L;
+        const Vector L_o = T[c] * L;
         J.block(c * P, c * t, P, t) =
-            E.cwiseInverse().asDiagonal() * T[c] * L.asDiagonal();
-        r.segment(c * P, P) = y_.segment(c * P, P) - Vector(E.array().log());
+            L_o.cwiseInverse().asDiagonal() * T[c] * L.asDiagonal();
+        r.segment(c * P, P) = y_.segment(c * P, P) - Vector(L_o.array().log());
       }
       return Real((r.cwiseAbs2().dot(weight) + at.dot(precision.solve(at))) /
                   2);
@@ -125,7 +127,7 @@ class MarginalStudy {
         prior_(JointMaterialPrior(model, 2, 0.5)),
         points_(testing::SpherePoints(10)),
         table_(table) {
-    resolution_.cells = {5, 2, 0.2};
+    resolution_.bins = {5, 2, 0.2};
     resolution_.map_width = 8;
     resolution_.map_height = 4;
     resolution_.grid = {12, 8, 6};
@@ -136,7 +138,7 @@ class MarginalStudy {
   // An image of other lobes than those at which derivatives are taken.
   void Add(const std::string& kind, const std::string& where,
            const std::vector<double>& truth, const std::vector<double>& at,
-           const LightScales& scales) {
+           const LightHyperparameters& hyperparameters) {
     TransportOptions options;
     options.grid = resolution_.grid;
     const Transport transport(points_, 8, 16, options);
@@ -147,25 +149,26 @@ class MarginalStudy {
     const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
                                           points_, radiance, LightProcess(),
                                           resolution_, 0);
-    const Eigen::Index cells = reflectance.cells().num_cells();
+    const Eigen::Index cells = reflectance.bins().num_bins();
     const Eigen::VectorXd noise = Eigen::VectorXd::Constant(3 * cells, 0.0025);
 
     LightMode mode;
     std::vector<double> by_lobes;
-    const MarginalValue value =
-        reflectance.Evaluate(at.data(), noise, scales, 1e-12, &mode, &by_lobes);
+    const MarginalValue value = reflectance.Evaluate(
+        at.data(), noise, hyperparameters, 1e-12, &mode, &by_lobes);
     CHECK(value.ok) << kind;
-    const std::vector<Real> exact = Exact(reflectance, at, noise, scales, mode);
+    const std::vector<Real> exact =
+        Exact(reflectance, at, noise, hyperparameters, mode);
     table_->Add(name_ + ": likelihood by lobes", kind, where, by_lobes, exact);
 
     // The whole objective, whose mode is found to kModeTolerance only.
     LightMode start;
     start.level = mode.level;
-    start.l = start.dual = Eigen::VectorXd::Zero(mode.l.size());
+    start.l = start.representers = Eigen::VectorXd::Zero(mode.l.size());
     const MarginalObjective objective(&reflectance, &prior_, noise, &start);
     const Eigen::Map<const Eigen::VectorXd> p(
         at.data(), static_cast<Eigen::Index>(at.size()));
-    const std::vector<double> y = objective.Whitened(p, scales);
+    const std::vector<double> y = objective.Whitened(p, hyperparameters);
     std::vector<double> gradient(y.size());
     double cost = 0.0;
     CHECK(objective.Evaluate(y.data(), &cost, gradient.data())) << kind;
@@ -180,21 +183,21 @@ class MarginalStudy {
     const Vector inner = factor.transpose() * (outer + wall.cast<Real>());
     std::vector<Real> right;
     for (Eigen::Index i = 0; i < n; ++i) right.push_back(y[i] + inner[i]);
-    const auto stds = LightScales::Stds();
-    for (int k = 0; k < LightScales::kCount; ++k) {
+    const auto stds = LightHyperparameters::Stds();
+    for (int k = 0; k < LightHyperparameters::kCount; ++k) {
       right.push_back(y[n + k] + stds[k] * exact[n + k]);
     }
     table_->Add(name_ + ": objective, whitened", kind, where, gradient, right);
   }
 
  private:
-  // [lobe parameters, scales].
+  // [lobe parameters, hyperparameters].
   std::vector<Real> Exact(const MarginalReflectance& reflectance,
                           const std::vector<double>& at,
                           const Eigen::VectorXd& noise,
-                          const LightScales& scales,
+                          const LightHyperparameters& hyperparameters,
                           const LightMode& mode) const {
-    const ImageCells& cells = reflectance.cells();
+    const NormalBins& cells = reflectance.bins();
     TransportOptions options;
     options.grid = resolution_.grid;
     options.quadrature = resolution_.quadrature;
@@ -209,8 +212,8 @@ class MarginalStudy {
     for (size_t f = 0; f < shape.size(); ++f) {
       const std::vector<Real> field(fields.begin() + f * nodes,
                                     fields.begin() + (f + 1) * nodes);
-      shape[f].setZero(cells.num_cells(), transport.num_texels());
-      for (int i = 0; i < cells.num_cells(); ++i) {
+      shape[f].setZero(cells.num_bins(), transport.num_texels());
+      for (int i = 0; i < cells.num_bins(); ++i) {
         const int count = cells.first[i + 1] - cells.first[i];
         for (int k = cells.first[i]; k < cells.first[i + 1]; ++k) {
           const std::vector<Real> row = transport.MapRow(k, field);
@@ -223,7 +226,7 @@ class MarginalStudy {
     const auto colour = [&](int k, int c) {
       return ReferenceColour(at[k * lobe_size + codes + c], c);
     };
-    const int P = cells.num_cells();
+    const int P = cells.num_bins();
     Matrices T;
     for (int c = 0; c < 3; ++c) {
       T[c].setZero(P, transport.num_texels());
@@ -235,7 +238,7 @@ class MarginalStudy {
     for (int i = 0; i < 3 * P; ++i) y[i] = cells.log_radiance[i];
     ExactMarginal marginal(y, LightProcess(), resolution_.map_height,
                            resolution_.map_width, noise, mode);
-    marginal.Cost(T, scales);
+    marginal.Cost(T, hyperparameters);
     // Central differences: truncation of some 1e-10.
     const auto differentiate = [](const auto& cost) {
       constexpr Real kStep = 1e-5L;
@@ -254,12 +257,12 @@ class MarginalStudy {
             moved[c] += h * colour(k, c) * shape[k * (1 + codes)];
           }
         }
-        return marginal.Cost(moved, scales);
+        return marginal.Cost(moved, hyperparameters);
       }));
     }
-    for (int k = 0; k < LightScales::kCount; ++k) {
+    for (int k = 0; k < LightHyperparameters::kCount; ++k) {
       out.push_back(differentiate([&](Real h) {
-        LightScales moved = scales;
+        LightHyperparameters moved = hyperparameters;
         (k == 0 ? moved.log_amplitude : moved.log_roughness[k - 1]) +=
             static_cast<double>(h);
         return marginal.Cost(T, moved);
@@ -300,11 +303,11 @@ void AddStates(const std::string& name, const NeuralBrdfModel& model, int count,
   for (int c = 0; c < 3; ++c) p[2 * lobe_size - 3 + c] = 41.0;
   study.Add("a log colour of 41", "", truth, p, {});
   for (int i = 0; i < count; ++i) {
-    LightScales scales;
-    scales.log_amplitude = 0.3 * normal(*rng);
-    for (double& s : scales.log_roughness) s = 0.6 * normal(*rng);
+    LightHyperparameters hyperparameters;
+    hyperparameters.log_amplitude = 0.3 * normal(*rng);
+    for (double& s : hyperparameters.log_roughness) s = 0.6 * normal(*rng);
     study.Add("random", "state " + std::to_string(i), lobes(0.1), lobes(0.1),
-              scales);
+              hyperparameters);
   }
   if (count == 0) return;
   study.Add("at the truth", "", truth, truth, {});

@@ -12,7 +12,7 @@ namespace ibrdf {
 namespace derivatives {
 
 // The samples, taps and view angles of HarmonicTransport, as they are part of
-// what E is; harmonics by the standard library's Legendre functions, their
+// what L_o is; harmonics by the standard library's Legendre functions, their
 // integrals by Gauss-Legendre, and those of the map in every point's own frame,
 // without rotations of coefficients. Shapes as in harmonic_transport.h.
 class ReferenceHarmonics {
@@ -20,10 +20,10 @@ class ReferenceHarmonics {
   ReferenceHarmonics(const std::vector<ShadingPoint>& points, int map_height,
                      int map_width, const HarmonicOptions& options);
 
-  // row [texels] of a point for a scalar field [nodes]: its E is
+  // row [texels] of a point for a scalar field [nodes]: its L_o is
   // sum_t row_t L_t.
   std::vector<Real> MapRow(int point, const std::vector<Real>& field) const;
-  // row [nodes] of a point for one channel of a map [texels]: its E is
+  // row [nodes] of a point for one channel of a map [texels]: its L_o is
   // sum_n row_n f_n.
   std::vector<Real> GridRow(int point, const std::vector<Real>& map) const;
 

@@ -30,8 +30,8 @@ LobeRadiance ReferenceScene::Radiance(const std::vector<Real>& fields,
   const size_t nodes = reference_.num_nodes(), columns = parameters.size();
   const size_t lobe_size = code_size + 3;
   LobeRadiance out;
-  out.E.assign(3 * points_.size(), 0);
-  out.dE.assign(out.E.size() * columns, 0);
+  out.L_o.assign(3 * points_.size(), 0);
+  out.dL_o.assign(out.L_o.size() * columns, 0);
   for (size_t i = 0; i < points_.size(); ++i) {
     const std::vector<Real> gathered =
         reference_.Gather(static_cast<int>(i), light);
@@ -39,7 +39,7 @@ LobeRadiance ReferenceScene::Radiance(const std::vector<Real>& fields,
       const double* lobe = &parameters[k * lobe_size];
       for (int c = 0; c < 3; ++c) {
         const Real colour = ReferenceColour(lobe[code_size + c], c);
-        Real* d = &out.dE[(3 * i + c) * columns + k * lobe_size];
+        Real* d = &out.dL_o[(3 * i + c) * columns + k * lobe_size];
         for (int f = 0; f <= code_size; ++f) {
           const Real* field = &fields[(k * (1 + code_size) + f) * nodes];
           Real sum = 0;
@@ -47,7 +47,7 @@ LobeRadiance ReferenceScene::Radiance(const std::vector<Real>& fields,
             sum += field[n] * gathered[3 * n + c];
           }
           if (f == 0) {
-            out.E[3 * i + c] += colour * sum;
+            out.L_o[3 * i + c] += colour * sum;
             // Constant beyond the clamp.
             const bool moves = lobe[code_size + c] < LobeModel::kMaxLogColour;
             d[code_size + c] = moves ? colour * sum : 0;
@@ -77,24 +77,24 @@ std::vector<std::vector<Real>> ReferenceScene::Brdf(
   return brdf;
 }
 
-Real Residual(Real E, Real observed, const RobustLogLikelihood& likelihood) {
+Real Residual(Real L_o, Real observed, const RobustLogLikelihood& likelihood) {
   const Real epsilon = likelihood.epsilon, delta = likelihood.delta;
-  const Real t =
-      (std::log(E + epsilon) - std::log(observed + epsilon)) / likelihood.scale;
+  const Real t = (std::log(L_o + epsilon) - std::log(observed + epsilon)) /
+                 likelihood.scale;
   const Real root = std::sqrt(t * t + delta * delta);
   return t * std::sqrt(2 / (root + delta));
 }
 
-Real ResidualSlope(Real E, Real observed,
+Real ResidualSlope(Real L_o, Real observed,
                    const RobustLogLikelihood& likelihood) {
   const Real epsilon = likelihood.epsilon, delta = likelihood.delta;
-  const Real t =
-      (std::log(E + epsilon) - std::log(observed + epsilon)) / likelihood.scale;
+  const Real t = (std::log(L_o + epsilon) - std::log(observed + epsilon)) /
+                 likelihood.scale;
   const Real root = std::sqrt(t * t + delta * delta);
   // d/dt of sign(t) sqrt(2 (root - delta)) = |t| / root / sqrt(2 (root -
   // delta)) with root - delta = t^2 / (root + delta).
   const Real dr_dt = std::sqrt((root + delta) / 2) / root;
-  return dr_dt / (likelihood.scale * (E + epsilon));
+  return dr_dt / (likelihood.scale * (L_o + epsilon));
 }
 
 }  // namespace derivatives

@@ -11,8 +11,8 @@ namespace ibrdf {
 namespace derivatives {
 
 struct LobeRadiance {
-  std::vector<Real> E;   // [points * 3]
-  std::vector<Real> dE;  // [points * 3][lobe parameters]
+  std::vector<Real> L_o;   // [points * 3]
+  std::vector<Real> dL_o;  // [points * 3][lobe parameters]
 };
 
 // Grid 12x8x6 and a coarse quadrature.
@@ -48,9 +48,9 @@ class ReferenceScene {
   const ReferenceTransport reference_;
 };
 
-// Residual and its derivative by E (see RobustLogLikelihood).
-Real Residual(Real E, Real observed, const RobustLogLikelihood& likelihood);
-Real ResidualSlope(Real E, Real observed,
+// Residual and its derivative by L_o (see RobustLogLikelihood).
+Real Residual(Real L_o, Real observed, const RobustLogLikelihood& likelihood);
+Real ResidualSlope(Real L_o, Real observed,
                    const RobustLogLikelihood& likelihood);
 
 }  // namespace derivatives

@@ -23,20 +23,20 @@ ReferenceTransport::ReferenceTransport(const std::vector<ShadingPoint>& points,
                                        const TransportOptions& options)
     : ReferenceTransport(points, false, map_height, map_width, options) {}
 
-ReferenceTransport ReferenceTransport::OfEmitters(
+ReferenceTransport ReferenceTransport::OfPatches(
     int map_height, int map_width, const TransportOptions& options) {
   TransportOptions own = options;
-  own.visibility = options.emitters->visibility();
-  return {options.emitters->points(), true, map_height, map_width, own};
+  own.visibility = options.patches->visibility();
+  return {options.patches->points(), true, map_height, map_width, own};
 }
 
 ReferenceTransport::ReferenceTransport(const std::vector<ShadingPoint>& points,
-                                       bool of_emitters, int map_height,
+                                       bool of_patches, int map_height,
                                        int map_width,
                                        const TransportOptions& options)
     : num_texels_(static_cast<size_t>(map_height) * map_width),
       num_sources_(num_texels_ +
-                   (options.emitters ? options.emitters->count() : 0)),
+                   (options.patches ? options.patches->count() : 0)),
       num_nodes_(options.grid.num_nodes()) {
   const int block =
       FarBlockSize(map_height, map_width, options.quadrature.far_width);
@@ -66,12 +66,12 @@ ReferenceTransport::ReferenceTransport(const std::vector<ShadingPoint>& points,
     pairs_.push_back(*pair);
   };
   const Visibility* const visibility = options.visibility.get();
-  const SurfaceEmitters* const emitters = options.emitters.get();
+  const RadiosityPatches* const patches = options.patches.get();
   const std::vector<FarCell> cells = MapCells(map_height, map_width, block);
-  std::vector<EmitterShare> shares;
-  const auto add_emitter = [&](const auto& sample, int emitter, Real weight) {
+  std::vector<PatchShare> shares;
+  const auto add_patch = [&](const auto& sample, int patch, Real weight) {
     Pair pair = begin_pair(sample, weight);
-    sources_.push_back({static_cast<uint32_t>(num_texels_ + emitter), 1});
+    sources_.push_back({static_cast<uint32_t>(num_texels_ + patch), 1});
     end_pair(&pair);
   };
   PointSamples samples;
@@ -79,10 +79,10 @@ ReferenceTransport::ReferenceTransport(const std::vector<ShadingPoint>& points,
     const Eigen::Vector3d n = point.normal.cast<double>().normalized();
     const uint64_t* const hidden =
         visibility != nullptr ? visibility->Hidden(point) : nullptr;
-    SeenEmitters seen;
-    if (hidden != nullptr && emitters != nullptr) {
-      seen = of_emitters ? emitters->SeenFromEmitter(point)
-                         : emitters->SeenFrom(point);
+    SeenPatches seen;
+    if (hidden != nullptr && patches != nullptr) {
+      seen =
+          of_patches ? patches->SeenFromPatch(point) : patches->SeenFrom(point);
     }
     quadrature.Sample(n, point.wo.cast<double>().normalized(), &samples);
     for (const FarSample& s : samples.far) {
@@ -95,10 +95,10 @@ ReferenceTransport::ReferenceTransport(const std::vector<ShadingPoint>& points,
             grid->RangeOf(row, column, map_height / block, columns);
         share = grid->VisibleShare(hidden, n, range);
         if (share < 1.0 && !seen.empty()) {
-          emitters->SharesIn(*grid, hidden, n, range, seen, &shares);
-          for (const EmitterShare& e : shares) {
-            add_emitter(s, e.emitter,
-                        Real(s.weight) * cells[s.cell].solid_angle * e.share);
+          patches->SharesIn(*grid, hidden, n, range, seen, &shares);
+          for (const PatchShare& e : shares) {
+            add_patch(s, e.patch,
+                      Real(s.weight) * cells[s.cell].solid_angle * e.share);
           }
         }
         if (share <= 0.0) continue;
@@ -121,9 +121,9 @@ ReferenceTransport::ReferenceTransport(const std::vector<ShadingPoint>& points,
       Real weight = s.weight;
       if (hidden != nullptr) {
         const double visible = visibility->grid().VisibleAlong(hidden, n, s.wi);
-        const int emitter =
-            visible < 1.0 && !seen.empty() ? emitters->Along(seen, s.wi) : -1;
-        if (emitter >= 0) add_emitter(s, emitter, weight * (1 - Real(visible)));
+        const int patch =
+            visible < 1.0 && !seen.empty() ? patches->Along(seen, s.wi) : -1;
+        if (patch >= 0) add_patch(s, patch, weight * (1 - Real(visible)));
         weight *= visible;
         if (weight <= 0) continue;
       }
@@ -188,17 +188,16 @@ std::vector<Real> ReferenceTransport::MapRow(
 ReferenceBounces::ReferenceBounces(const std::vector<ShadingPoint>& points,
                                    int map_height, int map_width,
                                    const TransportOptions& options)
-    : bounces_(options.emitters->bounces()),
+    : bounces_(options.patches->bounces()),
       points_(points, map_height, map_width, options),
-      emitters_(
-          ReferenceTransport::OfEmitters(map_height, map_width, options)) {}
+      patches_(ReferenceTransport::OfPatches(map_height, map_width, options)) {}
 
 ReferenceBounces::Rows ReferenceBounces::Derivatives(
     int point, int c, const std::vector<Real>& map,
     const std::vector<Real>& field) const {
   const size_t texels = points_.num_texels(), nodes = field.size();
-  const int count = emitters_.num_points();
-  // Sources of every bounce, the emitters dark before the first; only channel
+  const int count = patches_.num_points();
+  // Sources of every bounce, the patches dark before the first; only channel
   // c is kept.
   std::vector<Real> dark(3 * points_.num_sources(), 0);
   std::copy(map.begin(), map.end(), dark.begin());
@@ -206,10 +205,10 @@ ReferenceBounces::Rows ReferenceBounces::Derivatives(
   for (int b = 0; b < bounces_; ++b) {
     std::vector<Real> next = dark;
     for (int j = 0; j < count; ++j) {
-      const std::vector<Real> light = emitters_.Gather(j, sources.back());
-      Real E = 0;
-      for (size_t n = 0; n < nodes; ++n) E += field[n] * light[3 * n + c];
-      next[3 * (texels + j) + c] = E;
+      const std::vector<Real> light = patches_.Gather(j, sources.back());
+      Real L_o = 0;
+      for (size_t n = 0; n < nodes; ++n) L_o += field[n] * light[3 * n + c];
+      next[3 * (texels + j) + c] = L_o;
     }
     sources.push_back(next);
   }
@@ -229,8 +228,8 @@ ReferenceBounces::Rows ReferenceBounces::Derivatives(
     for (int j = 0; j < count; ++j) {
       const Real a = by_source[texels + j];
       if (a == 0) continue;
-      add(emitters_.Gather(j, sources[b - 1]), a);
-      const std::vector<Real> row = emitters_.MapRow(j, field);
+      add(patches_.Gather(j, sources[b - 1]), a);
+      const std::vector<Real> row = patches_.MapRow(j, field);
       for (size_t t = 0; t < row.size(); ++t) before[t] += a * row[t];
     }
     by_source = std::move(before);

@@ -9,17 +9,17 @@
 namespace ibrdf {
 namespace derivatives {
 
-// The same samples, taps, shadows and emitters as Transport, fractions rounded
-// to the same 1/65535, as they are part of what E is; weights, light, BRDF and
-// sums in long double. Shapes as in transport.h. Sources of light are the map's
-// texels and, behind them, the emitters.
+// The same samples, taps, shadows and patches as Transport, fractions rounded
+// to the same 1/65535, as they are part of what L_o is; weights, light, BRDF
+// and sums in long double. Shapes as in transport.h. Sources of light are the
+// map's texels and, behind them, the patches.
 class ReferenceTransport {
  public:
   ReferenceTransport(const std::vector<ShadingPoint>& points, int map_height,
                      int map_width, const TransportOptions& options);
-  // Of the emitters of `options`.
-  static ReferenceTransport OfEmitters(int map_height, int map_width,
-                                       const TransportOptions& options);
+  // Of the patches of `options`.
+  static ReferenceTransport OfPatches(int map_height, int map_width,
+                                      const TransportOptions& options);
 
   int num_points() const { return static_cast<int>(pair_end_.size()); }
   size_t num_texels() const { return num_texels_; }
@@ -27,18 +27,18 @@ class ReferenceTransport {
   size_t num_nodes() const { return num_nodes_; }
 
   // light [nodes][3] that a point gathers at each node from sources
-  // [sources][3]: its E is sum_n f_c(n) light_nc.
+  // [sources][3]: its L_o is sum_n f_c(n) light_nc.
   std::vector<Real> Gather(int point, const std::vector<Real>& sources) const;
-  // row [sources] of a point for a scalar field [nodes]: its E is
+  // row [sources] of a point for a scalar field [nodes]: its L_o is
   // sum_t row_t L_t.
   std::vector<Real> MapRow(int point, const std::vector<Real>& field) const;
 
  private:
-  ReferenceTransport(const std::vector<ShadingPoint>& points, bool of_emitters,
+  ReferenceTransport(const std::vector<ShadingPoint>& points, bool of_patches,
                      int map_height, int map_width,
                      const TransportOptions& options);
   struct Source {
-    uint32_t texel;  // or texels + emitter
+    uint32_t texel;  // or texels + patch
     Real weight;
   };
   struct Pair {
@@ -64,14 +64,14 @@ class ReferenceBounces {
     std::vector<Real> by_map;   // [texels]
     std::vector<Real> by_grid;  // [nodes]
   };
-  // dE of a point in channel c, for map [texels][3] and field [nodes], which is
-  // the BRDF's channel c.
+  // dL_o of a point in channel c, for map [texels][3] and field [nodes], which
+  // is the BRDF's channel c.
   Rows Derivatives(int point, int c, const std::vector<Real>& map,
                    const std::vector<Real>& field) const;
 
  private:
   int bounces_;
-  ReferenceTransport points_, emitters_;
+  ReferenceTransport points_, patches_;
 };
 
 }  // namespace derivatives

@@ -1,4 +1,4 @@
-// Radiance by BRDF and by light: E is linear in both, so that derivatives are
+// Radiance by BRDF and by light: L_o is linear in both, so that derivatives are
 // entries of two matrices.
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 using testing::PointAt;
 using testing::SmoothMap;
 
-// A point's reference takes all emitters'.
+// A point's reference takes all patches'.
 constexpr size_t kBouncePoints = 6;
 
 BrdfGridShape SmallGrid() { return {12, 8, 6}; }
@@ -132,8 +132,8 @@ void AddScene(const std::string& kind, const std::vector<ShadingPoint>& points,
   }
 }
 
-// E is linear in the light and a polynomial in the BRDF. At a few of the points
-// that see emitters.
+// L_o is linear in the light and a polynomial in the BRDF. At a few of the
+// points that see patches.
 void AddBounces(const std::string& kind,
                 const std::vector<ShadingPoint>& points, const Image& map,
                 const BrdfGrid& grid, const TransportOptions& options,
@@ -145,7 +145,7 @@ void AddBounces(const std::string& kind,
   const size_t nodes = grid.shape.num_nodes(), texels = map.num_pixels();
   std::vector<size_t> seeing;
   for (size_t i = 0; i < points.size(); ++i) {
-    if (!options.emitters->SeenFrom(points[i]).empty()) seeing.push_back(i);
+    if (!options.patches->SeenFrom(points[i]).empty()) seeing.push_back(i);
   }
   const size_t few = std::min(seeing.size(), kBouncePoints);
   for (size_t k = 0; k < few; ++k) {
@@ -177,16 +177,16 @@ void AddAdjoints(const std::string& kind,
   const LightOperator light = transport.ByLight(grid);
   std::normal_distribution<double> normal;
   for (int trial = 0; trial < 10; ++trial) {
-    std::vector<double> a(3 * points.size()), E(a.size());
+    std::vector<double> a(3 * points.size()), L_o(a.size());
     for (double& v : a) v = normal(*rng);
     std::vector<float> tangent(map.rgb.size()), by_map(tangent.size());
     for (float& v : tangent) v = static_cast<float>(normal(*rng));
-    light.Apply(tangent.data(), E.data());
+    light.Apply(tangent.data(), L_o.data());
     light.ApplyTranspose(a.data(), by_map.data());
     Real left = 0, right = 0, size = 0;
     for (size_t i = 0; i < a.size(); ++i) {
-      left += Real(a[i]) * E[i];
-      size += std::abs(Real(a[i]) * E[i]);
+      left += Real(a[i]) * L_o[i];
+      size += std::abs(Real(a[i]) * L_o[i]);
     }
     for (size_t t = 0; t < tangent.size(); ++t) {
       right += Real(by_map[t]) * tangent[t];
@@ -194,13 +194,13 @@ void AddAdjoints(const std::string& kind,
     table->Add("transport: adjoint identity by map", kind,
                "trial " + std::to_string(trial),
                {static_cast<double>(1 + (left - right) / size)}, {1});
-    transport.Render(grid, map.rgb.data(), E.data());
+    transport.Render(grid, map.rgb.data(), L_o.data());
     std::vector<float> by_grid(grid.values.size());
     transport.GridGradient(grid, map.rgb.data(), a.data(), by_grid.data());
     left = right = size = 0;
     for (size_t i = 0; i < a.size(); ++i) {
-      left += Real(a[i]) * E[i];
-      size += std::abs(Real(a[i]) * E[i]);
+      left += Real(a[i]) * L_o[i];
+      size += std::abs(Real(a[i]) * L_o[i]);
     }
     for (size_t n = 0; n < by_grid.size(); ++n) {
       right += Real(by_grid[n]) * grid.values[n];
@@ -229,15 +229,15 @@ void StudyTransport(const StudyOptions& options, ErrorTable* table) {
       BrdfGrid::FromFunction(testing::Glossy(0.05, 0.6, 3), SmallGrid());
   Image sun = SmoothMap(32, 64);
   std::fill_n(sun.At(40, 9), 3, 1e6f);
-  Image lamp = testing::ConstantMap(32, 64, 0.0f);
-  std::fill_n(lamp.At(40, 9), 3, 1e6f);
+  Image directional_light = testing::ConstantMap(32, 64, 0.0f);
+  std::fill_n(directional_light.At(40, 9), 3, 1e6f);
 
   AddScene("sphere", sphere, SmoothMap(32, 64), matte, plain, table);
   AddScene("signed BRDF", sphere, SmoothMap(8, 16), RandomGrid(&rng), plain,
            table);
   AddScene("map in blocks", sphere, SmoothMap(64, 128), glossy, plain, table);
   AddScene("sun of one texel", sphere, sun, glossy, plain, table);
-  AddScene("sun alone", sphere, lamp, glossy, plain, table);
+  AddScene("sun alone", sphere, directional_light, glossy, plain, table);
   AddScene("grazing", grazing, SmoothMap(32, 64), glossy, plain, table);
 
   const Scene torus = Scene::FromMesh(testing::TorusMesh(32, 16)).value();
@@ -252,11 +252,11 @@ void StudyTransport(const StudyOptions& options, ErrorTable* table) {
            shadowed, table);
 
   for (const int bounces : {1, 3}) {
-    SurfaceEmitterOptions how;
+    RadiosityOptions how;
     how.bounces = bounces;
-    how.max_emitters = 200;
+    how.max_patches = 200;
     TransportOptions lit = shadowed;
-    lit.emitters = std::make_shared<SurfaceEmitters>(torus, points,
+    lit.patches = std::make_shared<RadiosityPatches>(torus, points,
                                                      shadowed.visibility, how);
     const std::string name =
         std::to_string(bounces) + (bounces == 1 ? " bounce" : " bounces");

@@ -36,10 +36,10 @@ double Misfit(const SphereScene& scene, const LobeModel& lobes,
               const std::vector<double>& parameters, const Image& map,
               const Observations& observed,
               const RobustLogLikelihood& likelihood) {
-  std::vector<double> E;
-  RenderLobeModel(scene.transport, lobes, parameters.data(), map.rgb.data(), &E,
-                  nullptr);
-  return EvaluateLikelihood(E, observed, likelihood, nullptr).misfit;
+  std::vector<double> L_o;
+  RenderLobeModel(scene.transport, lobes, parameters.data(), map.rgb.data(),
+                  &L_o, nullptr);
+  return EvaluateLikelihood(L_o, observed, likelihood, nullptr).misfit;
 }
 
 const float* GreenCode(const NeuralBrdfModel& model, int material) {
@@ -61,9 +61,9 @@ class NaiveImage {
     }
   }
 
-  // E [points * 3], dE [points * 3, parameters].
-  void Evaluate(const Lobe& lobe, Eigen::VectorXf* E,
-                Eigen::MatrixXf* dE) const {
+  // L_o [points * 3], dL_o [points * 3, parameters].
+  void Evaluate(const Lobe& lobe, Eigen::VectorXf* L_o,
+                Eigen::MatrixXf* dL_o) const {
     const int nodes = grid_.num_nodes(), columns = grid_.d * grid_.p;
     std::vector<CodeJet> code(kCodeSize), field(nodes);
     for (int k = 0; k < kCodeSize; ++k) code[k] = CodeJet(lobe[k], k);
@@ -78,19 +78,19 @@ class NaiveImage {
                               field[i * columns + c] = pow(q, exponent_);
                             });
     }
-    E->resize(static_cast<Eigen::Index>(3 * light_.size()));
-    dE->resize(E->size(), kCodeSize + 3);
-    dE->setZero();
-    for (Eigen::Index row = 0; row < E->size(); ++row) {
+    L_o->resize(static_cast<Eigen::Index>(3 * light_.size()));
+    dL_o->resize(L_o->size(), kCodeSize + 3);
+    dL_o->setZero();
+    for (Eigen::Index row = 0; row < L_o->size(); ++row) {
       const std::vector<float>& light = light_[row / 3];
       const int c = static_cast<int>(row % 3);
       CodeJet sum(0.0f);
       for (int n = 0; n < nodes; ++n) sum += field[n] * light[3 * n + c];
       const float colour =
           std::exp(lobe[kCodeSize + c]) * static_cast<float>(kMerlScale[c]);
-      (*E)[row] = colour * sum.a;
-      dE->row(row).head<kCodeSize>() = colour * sum.v.transpose();
-      (*dE)(row, kCodeSize + c) = colour * sum.a;
+      (*L_o)[row] = colour * sum.a;
+      dL_o->row(row).head<kCodeSize>() = colour * sum.v.transpose();
+      (*dL_o)(row, kCodeSize + c) = colour * sum.a;
     }
   }
 
@@ -186,7 +186,7 @@ std::vector<Real> PreciseRadiance(const SphereScene& scene,
                                   const std::vector<double>& lobe,
                                   const Image& map) {
   const std::vector<Real> light(map.rgb.begin(), map.rgb.end());
-  std::vector<Real> E;
+  std::vector<Real> L_o;
   for (size_t i = 0; i < scene.points.size(); ++i) {
     const std::vector<Real> gathered = scene.precise.Gather(i, light);
     for (int c = 0; c < 3; ++c) {
@@ -194,10 +194,10 @@ std::vector<Real> PreciseRadiance(const SphereScene& scene,
       for (size_t n = 0; n < field.size(); ++n) {
         sum += field[n] * gathered[3 * n + c];
       }
-      E.push_back(PlainColour<Real>(lobe, c) * sum);
+      L_o.push_back(PlainColour<Real>(lobe, c) * sum);
     }
   }
-  return E;
+  return L_o;
 }
 
 std::vector<double> FitLibrary(const NeuralBrdfModel& model,
@@ -251,10 +251,10 @@ std::vector<double> FitNaive(const NeuralBrdfModel& model,
   }
   const auto evaluate = [&](const Lobe& lobe, Eigen::VectorXf* r,
                             Eigen::MatrixXf* J) {
-    Eigen::VectorXf E;
-    naive.Evaluate(lobe, &E, J);
-    *r = use.cwiseProduct((E.array().log() - log_observed.array()).matrix());
-    *J = (use.array() / E.array()).matrix().asDiagonal() * *J;
+    Eigen::VectorXf L_o;
+    naive.Evaluate(lobe, &L_o, J);
+    *r = use.cwiseProduct((L_o.array().log() - log_observed.array()).matrix());
+    *J = (use.array() / L_o.array()).matrix().asDiagonal() * *J;
     return r->squaredNorm();
   };
   const std::vector<double> start = StartLobe(model);

@@ -68,7 +68,7 @@ std::vector<double> FitLibrary(const NeuralBrdfModel& model,
                                const SphereScene& scene, const Image& image,
                                const Image& map, const LobePrior& prior);
 
-// Levenberg and Marquardt on log E - log I. `leave_out`: pixels of which a
+// Levenberg and Marquardt on log L_o - log I. `leave_out`: pixels of which a
 // value is <= 0. Not a number where the cost of the start is not.
 std::vector<double> FitNaive(const NeuralBrdfModel& model,
                              const SphereScene& scene, const Image& image,

@@ -23,7 +23,7 @@ class FitStudy {
  public:
   explicit FitStudy(const NeuralBrdfModel& model)
       : model_(model), scene_(kImageSize), truth_(TrueLobe(model)) {
-    // A lamp in a room.
+    // A directional light in a room.
     map_ =
         testing::RandomMap(SphereScene::kMapHeight, SphereScene::kMapWidth, 3);
     for (int y = 3; y < 6; ++y) {
@@ -32,8 +32,8 @@ class FitStudy {
       }
     }
     const auto field = PreciseField(model, scene_.options.grid, truth_);
-    for (const Real E : PreciseRadiance(scene_, field, truth_, map_)) {
-      radiance_.push_back(static_cast<double>(E));
+    for (const Real L_o : PreciseRadiance(scene_, field, truth_, map_)) {
+      radiance_.push_back(static_cast<double>(L_o));
       mean_ += radiance_.back();
     }
     mean_ /= static_cast<double>(radiance_.size());

@@ -34,11 +34,11 @@ Image SunnyMap(double R, double unit) {
   return map;
 }
 
-// Radiance E, the gradient of the likelihood by log L [texels * 3] and the
+// Radiance L_o, the gradient of the likelihood by log L [texels * 3] and the
 // product of its Gauss-Newton matrix with a direction.
 template <typename T>
 struct Likelihood {
-  std::vector<T> E, gradient, product;
+  std::vector<T> L_o, gradient, product;
 };
 
 // By plain loops; `epsilon` as RobustLogLikelihood's.
@@ -60,23 +60,23 @@ Likelihood<typename Scene::T> PlainLikelihood(
     const std::vector<T> row = scene.MapRow(i, field);
     for (int c = 0; c < 3; ++c) {
       const T colour = PlainColour<T>(lobe, c);
-      T E = 0, dE = 0;
+      T L_o = 0, dL_o = 0;
       for (size_t t = 0; t < texels; ++t) {
         const T share = colour * row[t] * L[3 * t + c];
-        E += share;
-        dE += share * static_cast<T>(direction[3 * t + c]);
+        L_o += share;
+        dL_o += share * static_cast<T>(direction[3 * t + c]);
       }
-      out.E.push_back(E);
+      out.L_o.push_back(L_o);
       const T I = static_cast<T>(observed[3 * i + c]);
-      const T d = (std::log(E + eps) - std::log(I + eps)) / b;
+      const T d = (std::log(L_o + eps) - std::log(I + eps)) / b;
       const T root = std::sqrt(d * d + delta * delta);
-      const T slope = d / root / (b * (E + eps));
-      // rho'(t) / t (dt/dE)^2.
-      const T weight = 1 / (b * b * (E + eps) * (E + eps)) / root;
+      const T slope = d / root / (b * (L_o + eps));
+      // rho'(t) / t (dt/dL_o)^2.
+      const T weight = 1 / (b * b * (L_o + eps) * (L_o + eps)) / root;
       for (size_t t = 0; t < texels; ++t) {
         const T by_log = colour * row[t] * L[3 * t + c];
         out.gradient[3 * t + c] += slope * by_log;
-        out.product[3 * t + c] += by_log * weight * dE;
+        out.product[3 * t + c] += by_log * weight * dL_o;
       }
     }
   }
@@ -112,15 +112,15 @@ Likelihood<double> LibraryLikelihood(const Problem& p, const Image& map,
   *epsilon = likelihood.epsilon * exposure;
   const FlowLobes lobes(p.model, 1, p.scene.options.grid, 1);
   Likelihood<double> out;
-  RenderLobeModel(p.scene.transport, lobes, p.lobe.data(), L.data(), &out.E,
+  RenderLobeModel(p.scene.transport, lobes, p.lobe.data(), L.data(), &out.L_o,
                   nullptr);
   LikelihoodDerivatives d;
-  EvaluateLikelihood(out.E, MakeObservations(radiance), likelihood, &d);
+  EvaluateLikelihood(out.L_o, MakeObservations(radiance), likelihood, &d);
   std::vector<float> fields;
   lobes.Tabulate(p.lobe.data(), false, &fields);
   const LightOperator light =
       p.scene.transport.ByLight(lobes.Combine(p.lobe.data(), fields, 1));
-  std::vector<double> adjoint(out.E.size()), tangent(out.E.size());
+  std::vector<double> adjoint(out.L_o.size()), tangent(out.L_o.size());
   std::vector<float> moved = L, back(L.size());
   for (size_t i = 0; i < adjoint.size(); ++i) {
     adjoint[i] = d.residual[i] * d.d_residual[i];
@@ -136,7 +136,7 @@ Likelihood<double> LibraryLikelihood(const Problem& p, const Image& map,
   for (size_t t = 0; t < L.size(); ++t) {
     out.product.push_back(static_cast<double>(back[t]) * L[t]);
   }
-  for (double& E : out.E) E *= exposure;
+  for (double& L_o : out.L_o) L_o *= exposure;
   return out;
 }
 
@@ -165,8 +165,8 @@ void AddErrors(const std::string& sweep, double x,
                const Likelihood<Real>& reference, bool product,
                SweepTable* table) {
   std::vector<double> errors;
-  for (size_t i = 0; i < values.E.size(); ++i) {
-    errors.push_back(RelativeError(values.E[i], reference.E[i]));
+  for (size_t i = 0; i < values.L_o.size(); ++i) {
+    errors.push_back(RelativeError(values.L_o[i], reference.L_o[i]));
   }
   table->Add(sweep, x, "radiance", implementation, errors);
   table->Add(sweep, x, "gradient by log map", implementation,
@@ -196,8 +196,8 @@ void AddCase(const std::string& sweep, double x, const Image& map,
   std::mt19937 rng(7);
   std::normal_distribution<double> normal;
   std::vector<double> observed;
-  for (const Real E : PreciseRadiance(p.scene, p.field, p.lobe, map)) {
-    observed.push_back(static_cast<double>(E) * std::exp(0.02 * normal(rng)));
+  for (const Real L_o : PreciseRadiance(p.scene, p.field, p.lobe, map)) {
+    observed.push_back(static_cast<double>(L_o) * std::exp(0.02 * normal(rng)));
   }
   const Image image = p.scene.ImageOf(observed);
   observed = p.scene.RadianceOf(image);
@@ -229,8 +229,8 @@ void SweepRange(const NeuralBrdfModel& model, const SweepOptions&,
     AddCase("range", R, map, p, false, table);
     // Without noise: what is left is arithmetic.
     std::vector<double> exact;
-    for (const Real E : PreciseRadiance(scene, p.field, p.lobe, map)) {
-      exact.push_back(static_cast<double>(E));
+    for (const Real L_o : PreciseRadiance(scene, p.field, p.lobe, map)) {
+      exact.push_back(static_cast<double>(L_o));
     }
     const Image image = scene.ImageOf(exact);
     const auto error = [&](const std::vector<double>& lobe) {

@@ -108,7 +108,7 @@ float NaiveRadiance(const ShadingPoint& point, const Image& map, float m) {
   const Eigen::Vector3f n = point.normal.normalized();
   const Eigen::Vector3f t = n.unitOrthogonal(), b = n.cross(t);
   const Eigen::Vector3f wo(point.wo.dot(t), point.wo.dot(b), point.wo.dot(n));
-  float E = 0.0f;
+  float L_o = 0.0f;
   for (int y = 0; y < map.height; ++y) {
     const auto area =
         static_cast<float>(TexelSolidAngle(y, map.height, map.width));
@@ -117,11 +117,11 @@ float NaiveRadiance(const ShadingPoint& point, const Image& map, float m) {
           MapDirection(y + 0.5, x + 0.5, map.height, map.width).cast<float>();
       const Eigen::Vector3f wi(d.dot(t), d.dot(b), d.dot(n));
       if (wi.z() <= 0.0f) continue;
-      E += NaiveCookTorrance(wi, wo, m, static_cast<float>(kF0)) *
-           map.At(x, y)[0] * wi.z() * area;
+      L_o += NaiveCookTorrance(wi, wo, m, static_cast<float>(kF0)) *
+             map.At(x, y)[0] * wi.z() * area;
     }
   }
-  return E;
+  return L_o;
 }
 
 }  // namespace
@@ -138,11 +138,11 @@ void SweepRoughness(const SweepOptions& options, SweepTable* table) {
     AddValues(roughness, options.seed, table);
     const BrdfGrid grid = BrdfGrid::FromFunction(Mirror(roughness).Function(),
                                                  TransportOptions().grid);
-    std::vector<double> E(3 * points.size()), ours, naive;
-    transport.Render(grid, map.rgb.data(), E.data());
+    std::vector<double> L_o(3 * points.size()), ours, naive;
+    transport.Render(grid, map.rgb.data(), L_o.data());
     for (size_t i = 0; i < points.size(); ++i) {
       const Real reference = PreciseRadiance(points[i], map, roughness);
-      ours.push_back(RelativeError(E[3 * i], reference));
+      ours.push_back(RelativeError(L_o[3 * i], reference));
       naive.push_back(RelativeError(
           NaiveRadiance(points[i], map, static_cast<float>(roughness)),
           reference));

@@ -262,7 +262,7 @@ void GaussianTransport::ForRays(const Frame& frame, const Use& use) const {
 void GaussianTransport::Render(const std::vector<ShadingPoint>& points,
                                const Tables& tables,
                                const GaussianColours& amplitudes,
-                               double* E) const {
+                               double* L_o) const {
   CHECK_EQ(amplitudes.rows(), num_lobes());
   CHECK_EQ(tables.levels.size(), levels_.size());
   using Vector4 = Eigen::Array4f;
@@ -299,7 +299,7 @@ void GaussianTransport::Render(const std::vector<ShadingPoint>& points,
         sum += weight * tables.brdf(theta_h, theta_d, phi_d) *
                amplitudes.row(lobe).transpose().array();
       });
-      for (int c = 0; c < 3; ++c) E[3 * i + c] = sum[c];
+      for (int c = 0; c < 3; ++c) L_o[3 * i + c] = sum[c];
     }
   });
 }

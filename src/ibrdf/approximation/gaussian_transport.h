@@ -1,16 +1,16 @@
 // Radiance of unshadowed points under spherical Gaussians, as Wang et al. 2009
 // render dynamic materials: enough where the reflectance is not mirror-like.
 //
-// E_ic = sum_k a_kc T_c(theta_i, mu_k in the frame of point i; lambda_k), where
-// T is f_r cos(theta) blurred by a Gaussian of sharpness lambda. T of broad
-// Gaussians is tabulated for some view angles and axes by the quadrature of
-// Transport and interpolated between them; sharp ones are integrated by
-// directions of their own at every point. So E is linear in the BRDF and linear
-// in the amplitudes, and constant light on a Lambertian surface is exact. Where
-// Wang et al. fit Gaussians to the BRDF, which is not linear, this one does
-// not.
+// L_o_ic = sum_k a_kc T_c(theta_i, mu_k in the frame of point i; lambda_k),
+// where T is f_r cos(theta) blurred by a Gaussian of sharpness lambda. T of
+// broad Gaussians is tabulated for some view angles and axes by the quadrature
+// of Transport and interpolated between them; sharp ones are integrated by
+// directions of their own at every point. So L_o is linear in the BRDF and
+// linear in the amplitudes, and constant light on a Lambertian surface is
+// exact. Where Wang et al. fit Gaussians to the BRDF, which is not linear, this
+// one does not.
 //
-// Shapes: amplitudes [lobes, 3]; E [points, 3]; BRDF grid [3, nodes].
+// Shapes: amplitudes [lobes, 3]; L_o [points, 3]; BRDF grid [3, nodes].
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -62,13 +62,13 @@ class GaussianTransport {
 
   // Radiance, negative where amplitudes are.
   void Render(const std::vector<ShadingPoint>& points, const Tables& tables,
-              const GaussianColours& amplitudes, double* E) const;
-  // gradient [3, nodes] of sum adjoint.E in the grid.
+              const GaussianColours& amplitudes, double* L_o) const;
+  // gradient [3, nodes] of sum adjoint.L_o in the grid.
   void GridGradient(const std::vector<ShadingPoint>& points,
                     const GaussianColours& amplitudes, const double* adjoint,
                     float* gradient) const;
-  // Gradient [lobes, 3] of sum adjoint.E in the amplitudes; GaussianLight takes
-  // it to the map.
+  // Gradient [lobes, 3] of sum adjoint.L_o in the amplitudes; GaussianLight
+  // takes it to the map.
   GaussianColours AmplitudeGradient(const std::vector<ShadingPoint>& points,
                                     const Tables& tables,
                                     const double* adjoint) const;

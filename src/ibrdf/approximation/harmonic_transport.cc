@@ -144,12 +144,12 @@ void HarmonicTransport::ForLight(const float* map, const Use& use) const {
 }
 
 void HarmonicTransport::Render(const BrdfGrid& grid, const float* map,
-                               double* E) const {
+                               double* L_o) const {
   const std::vector<HarmonicColours> slices = Slices(grid);
   ForLight(map, [&](int64_t, int64_t i, const HarmonicColours& light) {
     const Eigen::RowVector3d radiance =
         SliceAt(slices, points_[i]).cwiseProduct(light).colwise().sum();
-    for (int c = 0; c < 3; ++c) E[3 * i + c] = radiance[c];
+    for (int c = 0; c < 3; ++c) L_o[3 * i + c] = radiance[c];
   });
 }
 
@@ -229,10 +229,10 @@ void HarmonicTransport::MapGradient(const BrdfGrid& grid, const double* adjoint,
 std::vector<double> HarmonicTransport::PredictLogErrors(
     const BrdfGrid& grid, const float* map) const {
   const int order = options_.order;
-  std::vector<double> E(3 * points_.size()), errors(order + 1, 0.0);
-  Render(grid, map, E.data());
+  std::vector<double> L_o(3 * points_.size()), errors(order + 1, 0.0);
+  Render(grid, map, L_o.data());
   double mean = 0.0;
-  for (const double e : E) mean += e / static_cast<double>(E.size());
+  for (const double e : L_o) mean += e / static_cast<double>(L_o.size());
   if (!(mean > 0.0)) return errors;
   const std::vector<HarmonicColours> slices = Slices(grid);
   const HarmonicColours light = map_.Project(map);
@@ -241,11 +241,11 @@ std::vector<double> HarmonicTransport::PredictLogErrors(
     for (int c = 0; c < 3; ++c) {
       // Of a normal distribution: mean magnitude over standard deviation.
       const double scale =
-          std::sqrt(2.0 / kPi) / std::max(E[3 * i + c], kDarkest * mean);
+          std::sqrt(2.0 / kPi) / std::max(L_o[3 * i + c], kDarkest * mean);
       double variance = 0.0;
       for (int l = order; l >= 0; --l) {
         errors[l] += std::log1p(scale * std::sqrt(variance)) /
-                     static_cast<double>(E.size());
+                     static_cast<double>(L_o.size());
         variance += S.col(c).segment(l * l, 2 * l + 1).squaredNorm() *
                     light.col(c).segment(l * l, 2 * l + 1).squaredNorm() /
                     (2 * l + 1);

@@ -1,15 +1,15 @@
 // Radiance of unshadowed points in spherical harmonics: enough where the
 // reflectance is matte or the light soft (Ramamoorthi and Hanrahan 2001, 2002).
 //
-// E_ic = sum_lm S_clm(theta_i) L_clm(i): the coefficients of the map in a frame
-// of the point, about its view direction, times those of f_r cos(theta) seen
-// from angle theta to the normal, up to l = order. S is worked out for some
-// angles by the quadrature of Transport and interpolated between them, so that
-// E is linear in the BRDF grid and linear in the map, and constant light on a
-// Lambertian surface is exact.
+// L_o_ic = sum_lm S_clm(theta_i) L_clm(i): the coefficients of the map in a
+// frame of the point, about its view direction, times those of f_r cos(theta)
+// seen from angle theta to the normal, up to l = order. S is worked out for
+// some angles by the quadrature of Transport and interpolated between them, so
+// that L_o is linear in the BRDF grid and linear in the map, and constant light
+// on a Lambertian surface is exact.
 //
 // Shapes as in Transport: map [H, W, 3], taken as constant over its texels;
-// E [points, 3]; BRDF grid [3, nodes].
+// L_o [points, 3]; BRDF grid [3, nodes].
 #pragma once
 #include <vector>
 
@@ -39,11 +39,11 @@ class HarmonicTransport {
   int num_points() const { return static_cast<int>(points_.size()); }
 
   // Radiance, negative where a cut-off series rings below zero.
-  void Render(const BrdfGrid& grid, const float* map, double* E) const;
-  // gradient [3, nodes] of sum adjoint.E in the grid.
+  void Render(const BrdfGrid& grid, const float* map, double* L_o) const;
+  // gradient [3, nodes] of sum adjoint.L_o in the grid.
   void GridGradient(const float* map, const double* adjoint,
                     float* gradient) const;
-  // gradient [H, W, 3] of sum adjoint.E in the map.
+  // gradient [H, W, 3] of sum adjoint.L_o in the map.
   void MapGradient(const BrdfGrid& grid, const double* adjoint,
                    float* gradient) const;
 

@@ -58,7 +58,7 @@ class NormalGrid {
     for (const ShadingPoint& p : points) places_.push_back(PlaceOf(p));
   }
 
-  StatusOr<ReflectanceMapReport> Render(double* E);
+  StatusOr<ReflectanceMapReport> Render(double* L_o);
 
  private:
   Place PlaceOf(const ShadingPoint& point) const {
@@ -246,7 +246,7 @@ bool NormalGrid::Refine(double tolerance) {
   }
 }
 
-StatusOr<ReflectanceMapReport> NormalGrid::Render(double* E) {
+StatusOr<ReflectanceMapReport> NormalGrid::Render(double* L_o) {
   const Status interrupted(StatusCode::kInterrupted, "interrupted");
   ReflectanceMapReport report;
   const size_t count = points_.size();
@@ -317,7 +317,7 @@ StatusOr<ReflectanceMapReport> NormalGrid::Render(double* E) {
   std::vector<int> direct;
   std::vector<char> done(count, 0);
   for (size_t k = 0; k < tests; ++k) {
-    std::copy_n(&truth[3 * k], 3, &E[size_t{3} * given[k]]);
+    std::copy_n(&truth[3 * k], 3, &L_o[size_t{3} * given[k]]);
     done[given[k]] = 1;
   }
   for (const Cell& cell : cells_) {
@@ -326,7 +326,7 @@ StatusOr<ReflectanceMapReport> NormalGrid::Render(double* E) {
       if (done[i] != 0) continue;
       const Eigen::Array3d log_radiance = Interpolate(cell, places_[i]);
       for (int c = 0; c < 3; ++c) {
-        E[size_t{3} * i + c] =
+        L_o[size_t{3} * i + c] =
             std::max(std::exp(log_radiance[c]) - dark_[c], 0.0);
       }
       done[i] = 1;
@@ -343,7 +343,7 @@ StatusOr<ReflectanceMapReport> NormalGrid::Render(double* E) {
   std::vector<double> rendered(3 * rest.size());
   if (!rest.empty() && !render_(rest, rendered.data())) return interrupted;
   for (size_t k = 0; k < rest.size(); ++k) {
-    std::copy_n(&rendered[3 * k], 3, &E[size_t{3} * direct[k]]);
+    std::copy_n(&rendered[3 * k], 3, &L_o[size_t{3} * direct[k]]);
   }
   report.nodes = static_cast<int>(nodes_.size());
   report.rendered += report.nodes + static_cast<int>(rest.size());
@@ -354,7 +354,7 @@ StatusOr<ReflectanceMapReport> NormalGrid::Render(double* E) {
 
 StatusOr<ReflectanceMapReport> RenderByNormal(
     const std::vector<ShadingPoint>& points, const PointRenderer& render,
-    const ReflectanceMapOptions& options, double* E) {
+    const ReflectanceMapOptions& options, double* L_o) {
   CHECK_GT(options.log_error, 0.0);
   if (points.empty()) return ReflectanceMapReport();
   for (const ShadingPoint& p : points) {
@@ -364,7 +364,7 @@ StatusOr<ReflectanceMapReport> RenderByNormal(
                           "orthographic camera)");
     }
   }
-  return NormalGrid(points, render, options).Render(E);
+  return NormalGrid(points, render, options).Render(L_o);
 }
 
 }  // namespace ibrdf

@@ -20,13 +20,13 @@ namespace ibrdf {
 // Radiance [points, 3], >= 0, of unshadowed points in any number and order: of
 // ReferenceRenderer, Transport or another. false: stop.
 using PointRenderer =
-    std::function<bool(const std::vector<ShadingPoint>& points, double* E)>;
+    std::function<bool(const std::vector<ShadingPoint>& points, double* L_o)>;
 
 struct ReflectanceMapOptions {
-  // Mean |log E - log E rendered| over the points and channels, in nats, that
-  // interpolation may bring in. A channel's radiance below 1e-3 of its
+  // Mean |log L_o - log L_o rendered| over the points and channels, in nats,
+  // that interpolation may bring in. A channel's radiance below 1e-3 of its
   // geometric mean counts as not much more than that: log stands for
-  // log(E + 1e-3 mean).
+  // log(L_o + 1e-3 mean).
   double log_error = 1e-3;
   // Points of the image, evenly spread over the list, that are rendered in any
   // case: the error is measured there.
@@ -45,11 +45,11 @@ struct ReflectanceMapReport {
   double standard_error = 0.0;
 };
 
-// E [points, 3]. Fails where two points differ in wo (a perspective camera),
+// L_o [points, 3]. Fails where two points differ in wo (a perspective camera),
 // and with kInterrupted where `render` stops. The caller knows that no point is
 // shadowed and that `render` depends on normal and wo alone.
 StatusOr<ReflectanceMapReport> RenderByNormal(
     const std::vector<ShadingPoint>& points, const PointRenderer& render,
-    const ReflectanceMapOptions& options, double* E);
+    const ReflectanceMapOptions& options, double* L_o);
 
 }  // namespace ibrdf

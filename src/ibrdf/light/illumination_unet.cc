@@ -42,7 +42,7 @@ constexpr float kOutputBiasStd = 1.0f;
 // Of the last layer's output: features enter log-radiance at this scale.
 constexpr float kOutputStd = 1.0f;
 
-// E a(x)^2 for x ~ N(0, 1): the midpoint rule, exact to rounding here.
+// L_o a(x)^2 for x ~ N(0, 1): the midpoint rule, exact to rounding here.
 double ActivationPower() {
   constexpr double kStep = 1e-2;
   double power = 0.0, total = 0.0;

@@ -340,7 +340,7 @@ void ReferenceBatch::AddTexels(const PointFrame& frame, double correction,
 }
 
 void ReferenceBatch::Render(const std::vector<ShadingPoint>& points,
-                            double* E) const {
+                            double* L_o) const {
   const ViewGroups groups(points);
   const size_t tables = tables_.count(), maps = num_maps_;
   const size_t row = RoundUp(tables);
@@ -367,7 +367,7 @@ void ReferenceBatch::Render(const std::vector<ShadingPoint>& points,
       for (size_t m = 0; m < tables; ++m) {
         for (size_t l = 0; l < maps; ++l) {
           double* const to =
-              E + 3 * ((m * maps + l) * points.size() + group[p]);
+              L_o + 3 * ((m * maps + l) * points.size() + group[p]);
           for (int c = 0; c < 3; ++c) {
             to[c] = s.sums[p * sums_size_ + (c * maps + l) * row + m];
           }

@@ -26,12 +26,12 @@ class ReferenceBatch {
                  const std::vector<const Image*>& maps,
                  const ReferenceOptions& options);
 
-  // Radiance E [tables][maps][points][3]. Agrees with every texel of the map,
+  // Radiance L_o [tables][maps][points][3]. Agrees with every texel of the map,
   // mean |log ratio| below 0.001, and with ReferenceRenderer where no texel is
   // bright; under a sun of one texel its rings leave 0.002 to 0.005. Sums of up
   // to kRayBlock products are float, the others double; the same bits for any
   // number of threads.
-  void Render(const std::vector<ShadingPoint>& points, double* E) const;
+  void Render(const std::vector<ShadingPoint>& points, double* L_o) const;
 
  private:
   struct Scratch;

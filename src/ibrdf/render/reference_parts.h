@@ -38,8 +38,8 @@ struct ReferenceOptions {
   // point rendered.
   std::shared_ptr<const VisibilityGrid> shadows;
   // What is met where light is hidden; needs `shadows`. Looked for afresh, too.
-  std::shared_ptr<const SurfaceEmitters> emitters;
-  // Emitters are patches, too wide for lobes of a few degrees: those see the
+  std::shared_ptr<const RadiosityPatches> patches;
+  // Patches are patches, too wide for lobes of a few degrees: those see the
   // object along at most so many rays of their own, a power of 2, and what
   // these meet does along a quarter as many, at a coarser quadrature. 0: never.
   int lobe_rays = 0;

@@ -160,11 +160,11 @@ ReferenceRenderer::ReferenceRenderer(const BrightTexels& map, Light light,
       power_(std::move(light.power)),
       solid_angle_(std::move(light.solid_angle)),
       shadows_(options.shadows),
-      emitters_(options.emitters),
+      patches_(options.patches),
       ranges_(std::move(light.ranges)),
       quadrature_(std::move(light.cells),
                   NearOptions(map.rest.width, options)) {
-  CHECK(emitters_ == nullptr || shadows_ != nullptr);
+  CHECK(patches_ == nullptr || shadows_ != nullptr);
   CHECK(lobe_rays_ >= 0 && (lobe_rays_ & (lobe_rays_ - 1)) == 0);
 }
 
@@ -227,8 +227,8 @@ Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
     if (sight.seen.empty()) return nullptr;
     const Eigen::Vector3f wi =
         axes * Eigen::Vector3f(rays.x[k], rays.y[k], rays.z[k]);
-    const int emitter = emitters_->Along(sight.seen, wi.cast<double>());
-    return emitter < 0 ? nullptr : sight.emitted + size_t{3} * emitter;
+    const int patch = patches_->Along(sight.seen, wi.cast<double>());
+    return patch < 0 ? nullptr : sight.emitted + size_t{3} * patch;
   };
   const Eigen::Vector3d normal = axes.col(2).cast<double>();
   const auto load = [](const float* p) {
@@ -352,7 +352,7 @@ std::vector<double> ReferenceRenderer::LightOfLobes(
         if (lobe[r].isZero()) continue;
         const size_t at = size_t{1} * i * count + r;
         const Eigen::Vector3d wi = axes * lobe[r].cast<double>();
-        is_met[at] = emitters_->Meet(points[i], wi, &met[at]) ? 1 : 0;
+        is_met[at] = patches_->Meet(points[i], wi, &met[at]) ? 1 : 0;
       }
     }
   });
@@ -379,24 +379,25 @@ template <typename Lookup>
 void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
                                    const Lookup& lookup,
                                    const EmittedLight& emitted,
-                                   double* E) const {
+                                   double* L_o) const {
   Common common;
   const bool follow =
-      lobe_rays_ > 0 && emitters_ != nullptr && emitted.radiance != nullptr;
+      lobe_rays_ > 0 && patches_ != nullptr && emitted.radiance != nullptr;
   if (follow || !bright_.empty()) {
     const double half = LobeHalfWidth(std::cref(lookup));
     if (follow && half < kNarrowLobe) common.lobe_width = kLobeWidths * half;
     common.bright = SampleBrightTexels(bright_, map_.height, map_.width,
                                        BrightSamplesPerSide(half));
   }
-  RenderAt(0, common, points, lookup, emitted, E);
+  RenderAt(0, common, points, lookup, emitted, L_o);
 }
 
 template <typename Lookup>
 void ReferenceRenderer::RenderAt(int depth, const Common& common,
                                  const std::vector<ShadingPoint>& points,
                                  const Lookup& lookup,
-                                 const EmittedLight& emitted, double* E) const {
+                                 const EmittedLight& emitted,
+                                 double* L_o) const {
   const ViewGroups groups(points);
   int lobe_rays = 0;
   std::vector<double> of_lobes;
@@ -413,8 +414,8 @@ void ReferenceRenderer::RenderAt(int depth, const Common& common,
     Rays rays;
     VisibilityGrid::Scratch trace;
     VisibilityGrid::Bits bits;
-    std::vector<SeenEmitter> seen;
-    std::vector<EmitterShare> shares;
+    std::vector<SeenPatch> seen;
+    std::vector<PatchShare> shares;
   };
   std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
                                                 : HardwareThreads());
@@ -433,9 +434,9 @@ void ReferenceRenderer::RenderAt(int depth, const Common& common,
         sight.hidden = s.bits.data();
       }
       if (sight.hidden != nullptr && emitted.radiance != nullptr &&
-          emitters_ != nullptr) {
+          patches_ != nullptr) {
         sight.seen =
-            emitters_->Look(points[i], *shadows_, sight.hidden, &s.seen);
+            patches_->Look(points[i], *shadows_, sight.hidden, &s.seen);
         sight.emitted = emitted.radiance;
       }
       if (lobe_rays > 0) sight.lobe = &of_lobes[size_t{3} * lobe_rays * i];
@@ -451,34 +452,34 @@ void ReferenceRenderer::RenderAt(int depth, const Common& common,
         if (visible == 0.0 && sight.seen.empty()) continue;
         Eigen::Array3d light = visible * power_[far.cell];
         if (visible < 1.0 && !sight.seen.empty()) {
-          emitters_->SharesIn(*shadows_, sight.hidden, frame.n,
-                              ranges_[far.cell], sight.seen, &s.shares);
-          for (const EmitterShare& e : s.shares) {
+          patches_->SharesIn(*shadows_, sight.hidden, frame.n,
+                             ranges_[far.cell], sight.seen, &s.shares);
+          for (const PatchShare& e : s.shares) {
             light += e.share * solid_angle_[far.cell] *
                      Eigen::Map<const Eigen::Array3d>(emitted.radiance +
-                                                      size_t{3} * e.emitter);
+                                                      size_t{3} * e.patch);
           }
         }
         sum += far.weight * lookup(far.theta_h, far.theta_d, far.phi_d) * light;
       }
-      for (int c = 0; c < 3; ++c) E[size_t{3} * i + c] = sum[c];
+      for (int c = 0; c < 3; ++c) L_o[size_t{3} * i + c] = sum[c];
     }
   });
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
-                               const MerlTable& table, double* E,
+                               const MerlTable& table, double* L_o,
                                const EmittedLight& emitted) const {
-  RenderWith(points, MerlSampler(table), emitted, E);
+  RenderWith(points, MerlSampler(table), emitted, L_o);
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
-                               const BrdfFunction& brdf, double* E,
+                               const BrdfFunction& brdf, double* L_o,
                                const EmittedLight& emitted) const {
-  RenderWith(points, brdf, emitted, E);
+  RenderWith(points, brdf, emitted, L_o);
 }
 
-Image PixelMeans(const std::vector<ShadingPoint>& points, const double* E,
+Image PixelMeans(const std::vector<ShadingPoint>& points, const double* L_o,
                  int width, int height) {
   Image image(width, height);
   std::vector<double> sums(image.rgb.size(), 0.0);
@@ -488,7 +489,7 @@ Image PixelMeans(const std::vector<ShadingPoint>& points, const double* E,
     CHECK_LT(pixel, coverage.size());
     coverage[pixel] += points[i].coverage;
     for (int c = 0; c < 3; ++c) {
-      sums[3 * pixel + c] += points[i].coverage * E[3 * i + c];
+      sums[3 * pixel + c] += points[i].coverage * L_o[3 * i + c];
     }
   }
   for (size_t k = 0; k < sums.size(); ++k) {

@@ -1,7 +1,7 @@
 // Slow, converged renderer: the image that accuracy is measured against.
 // Full-resolution map, MERL table trilinear between bin centres
 // (InterpolateMerl), no BRDF grid. Shadows where asked for, and the light of
-// emitters whose radiance is given (Transport::Emitted). Points
+// patches whose radiance is given (Transport::Emitted). Points
 // seen at the same angle (most of a sphere's under an orthographic camera)
 // share the BRDF values of their near samples.
 #pragma once
@@ -21,7 +21,7 @@ namespace ibrdf {
 
 // What the object throws on itself.
 struct EmittedLight {
-  const double* radiance = nullptr;  // [emitters, 3]; null: none
+  const double* radiance = nullptr;  // [patches, 3]; null: none
   // Of light, from it to the point that is rendered.
   int bounces = 0;
 };
@@ -33,22 +33,22 @@ class ReferenceRenderer {
 
   // Radiance [points, 3]. Weights and sums are double; BRDF values float.
   void Render(const std::vector<ShadingPoint>& points, const MerlTable& table,
-              double* E, const EmittedLight& emitted = {}) const;
+              double* L_o, const EmittedLight& emitted = {}) const;
   // `brdf` may be called from several threads at a time.
   void Render(const std::vector<ShadingPoint>& points, const BrdfFunction& brdf,
-              double* E, const EmittedLight& emitted = {}) const;
+              double* L_o, const EmittedLight& emitted = {}) const;
 
  private:
   template <typename Lookup>
   void RenderWith(const std::vector<ShadingPoint>& points, const Lookup& lookup,
-                  const EmittedLight& emitted, double* E) const;
+                  const EmittedLight& emitted, double* L_o) const;
   // What is the same for all points of a call.
   struct Common;
   // After so many bounces along rays of the lobe.
   template <typename Lookup>
   void RenderAt(int depth, const Common& common,
                 const std::vector<ShadingPoint>& points, const Lookup& lookup,
-                const EmittedLight& emitted, double* E) const;
+                const EmittedLight& emitted, double* L_o) const;
 
   // Cells of the far rule, their radiance times solid angle, and, under
   // shadows, their texels in the grid.
@@ -65,7 +65,7 @@ class ReferenceRenderer {
   // What a point sees.
   struct Sight {
     const uint64_t* hidden = nullptr;  // its bits; null: nothing is
-    SeenEmitters seen;
+    SeenPatches seen;
     const double* emitted = nullptr;
     // Radiance along the rays of the lobe [rays, 3], negative where they meet
     // nothing; null: there are none.
@@ -116,14 +116,14 @@ class ReferenceRenderer {
   std::vector<Eigen::Array3d> power_;
   std::vector<double> solid_angle_;
   std::shared_ptr<const VisibilityGrid> shadows_;
-  std::shared_ptr<const SurfaceEmitters> emitters_;
+  std::shared_ptr<const RadiosityPatches> patches_;
   std::vector<GridRange> ranges_;
   PointQuadrature quadrature_;
 };
 
 // Mean over the points of each pixel, weighted by coverage; 0 in pixels without
-// a point. E: [points, 3].
-Image PixelMeans(const std::vector<ShadingPoint>& points, const double* E,
+// a point. L_o: [points, 3].
+Image PixelMeans(const std::vector<ShadingPoint>& points, const double* L_o,
                  int width, int height);
 
 }  // namespace ibrdf

@@ -18,9 +18,9 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kGoldenAngle = kPi * (3.0 - 2.23606797749978969641);
 // Of the mean radiance: darker points count as this bright.
 constexpr double kDarkest = 1e-3;
-// Of the emitters: coarser than a solve takes.
+// Of the patches: coarser than a solve takes.
 constexpr double kProbePatch = 0.2;
-constexpr int kProbeEmitters = 500;
+constexpr int kProbePatches = 500;
 
 }  // namespace
 
@@ -80,13 +80,13 @@ double MeanAbsLogRatio(const std::vector<double>& a,
   return sum / count;
 }
 
-EffectsWorth PredictEffects(const Scene& scene,
-                            const std::vector<ShadingPoint>& points,
-                            const std::vector<ProbeLook>& looks,
-                            const SceneProbeOptions& options) {
+OmissionErrors PredictEffects(const Scene& scene,
+                              const std::vector<ShadingPoint>& points,
+                              const std::vector<ProbeLook>& looks,
+                              const SceneProbeOptions& options) {
   CHECK(!looks.empty());
-  EffectsWorth worth;
-  if (!scene.CastsShadows() || points.empty()) return worth;
+  OmissionErrors omission;
+  if (!scene.CastsShadows() || points.empty()) return omission;
   const std::vector<ShadingPoint> few =
       SpreadPoints(points, options.max_points);
   const int height = looks[0].map->height, width = looks[0].map->width;
@@ -104,16 +104,16 @@ EffectsWorth PredictEffects(const Scene& scene,
       static_cast<double>(points.size()) / static_cast<double>(few.size());
   Clock::time_point start = Clock::now();
   all.visibility = std::make_shared<Visibility>(scene, few, rays);
-  worth.shadow_seconds = since(start) * share;
-  SurfaceEmitterOptions emitters;
-  emitters.bounces = kMostBounces;
-  emitters.patch = kProbePatch;
-  emitters.max_emitters = kProbeEmitters;
-  emitters.num_threads = options.num_threads;
+  omission.shadow_seconds = since(start) * share;
+  RadiosityOptions patches;
+  patches.bounces = kMostBounces;
+  patches.patch_size = kProbePatch;
+  patches.max_patches = kProbePatches;
+  patches.num_threads = options.num_threads;
   start = Clock::now();
-  all.emitters =
-      std::make_shared<SurfaceEmitters>(scene, few, all.visibility, emitters);
-  worth.bounce_seconds = since(start) * share;
+  all.patches =
+      std::make_shared<RadiosityPatches>(scene, few, all.visibility, patches);
+  omission.bounce_seconds = since(start) * share;
   const Transport without(few, height, width, bare);
   const Transport with(few, height, width, all);
   std::vector<double> full(3 * few.size()), part(full.size());
@@ -124,14 +124,14 @@ EffectsWorth PredictEffects(const Scene& scene,
       *error = std::max(*error, MeanAbsLogRatio(part, full));
     };
     without.Render(*look.brdf, look.map->rgb.data(), part.data());
-    keep_larger(&worth.unshadowed);
-    // Of a convex object there are no emitters.
+    keep_larger(&omission.unshadowed);
+    // Of a convex object there are no patches.
     for (int b = 0; b < with.bounces(); ++b) {
       with.RenderBounces(*look.brdf, look.map->rgb.data(), b, part.data());
-      keep_larger(&worth.bounces[b]);
+      keep_larger(&omission.bounces[b]);
     }
   }
-  return worth;
+  return omission;
 }
 
 }  // namespace ibrdf

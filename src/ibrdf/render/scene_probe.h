@@ -45,10 +45,10 @@ struct ProbeLook {
 // light hidden and an albedo of 0.9 leave 0.0006 of it to the fifth.
 inline constexpr int kMostBounces = 4;
 
-struct EffectsWorth {
-  // Mean |log E - log E_all| over points and channels, the largest of the
-  // looks, of E without shadows, and of E with shadows and b bounces,
-  // b = 0 to kMostBounces; E_all has all of those. Radiance below 1e-3 of the
+struct OmissionErrors {
+  // Mean |log L_o - log L_o_all| over points and channels, the largest of the
+  // looks, of L_o without shadows, and of L_o with shadows and b bounces,
+  // b = 0 to kMostBounces; L_o_all has all of those. Radiance below 1e-3 of the
   // mean counts as that.
   double unshadowed = 0.0;
   std::array<double, kMostBounces + 1> bounces = {};
@@ -65,9 +65,9 @@ double MeanAbsLogRatio(const std::vector<double>& a,
 
 // Renders the probed points with and without the effects under each of the
 // looks (at least one; maps of one size, grids of one shape).
-EffectsWorth PredictEffects(const Scene& scene,
-                            const std::vector<ShadingPoint>& points,
-                            const std::vector<ProbeLook>& looks,
-                            const SceneProbeOptions& options);
+OmissionErrors PredictEffects(const Scene& scene,
+                              const std::vector<ShadingPoint>& points,
+                              const std::vector<ProbeLook>& looks,
+                              const SceneProbeOptions& options);
 
 }  // namespace ibrdf

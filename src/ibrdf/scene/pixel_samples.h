@@ -7,9 +7,9 @@
 
 namespace ibrdf {
 
-// Expected |log E - log mean of E over the pixel|, mean of the channels, of
-// radiance E at the pixel's centre; 0 outside the mask. Radiance below 1e-3 of
-// the image's mean counts as that.
+// Expected |log L_o - log mean of L_o over the pixel|, mean of the channels, of
+// radiance L_o at the pixel's centre; 0 outside the mask. Radiance below 1e-3
+// of the image's mean counts as that.
 std::vector<double> CentreErrors(const Image& image, const Mask& mask);
 
 // The fewest pixels without whose errors the mean over the mask is at most

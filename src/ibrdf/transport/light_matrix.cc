@@ -29,7 +29,7 @@ std::vector<float> SolidAngles(int height, int width) {
 
 void Transport::LightMatrix(const float* field, float* matrix) const {
   CHECK_EQ(block_, 1) << "a dense matrix is for small maps";
-  CHECK(options_.emitters == nullptr && options_.bright.empty());
+  CHECK(options_.patches == nullptr && options_.bright.empty());
   const BrdfGridShape& s = options_.grid;
   std::vector<float> nodes(PaddedNodes());
   for (int hd = 0; hd < s.h * s.d; ++hd) {
@@ -80,7 +80,7 @@ void Transport::LightMatrix(const float* field, float* matrix) const {
 void Transport::LightMatrixGradient(const float* adjoint,
                                     float* gradient) const {
   CHECK_EQ(block_, 1) << "a dense matrix is for small maps";
-  CHECK(options_.emitters == nullptr && options_.bright.empty());
+  CHECK(options_.patches == nullptr && options_.bright.empty());
   const BrdfGridShape& s = options_.grid;
   const Corners corners(s);
   const std::vector<int> texel = PaddedTexels(map_height_, map_width_);

@@ -22,14 +22,14 @@ LightOperator Transport::ByLight(const BrdfGrid& grid) const {
   op.block_ = block_;
   op.num_blocks_ = num_blocks_;
   op.num_threads_ = options_.num_threads;
-  if (emitters_ != nullptr) {
+  if (patches_ != nullptr) {
     op.bounces_ = bounces();
-    op.emitters_ =
-        std::make_shared<const LightOperator>(emitters_->ByLight(grid));
+    op.patches_ =
+        std::make_shared<const LightOperator>(patches_->ByLight(grid));
   }
   const size_t num_texels = static_cast<size_t>(map_height_) * map_width_;
   const size_t num_sources =
-      num_blocks_ + num_texels + static_cast<size_t>(num_emitters());
+      num_blocks_ + num_texels + static_cast<size_t>(num_patches());
   op.num_sources_ = num_sources;
   op.chunks_.resize(chunks_.size());
   // Per worker: a point's sums by source, all zero between points, and which
@@ -63,9 +63,9 @@ LightOperator Transport::ByLight(const BrdfGrid& grid) const {
           w.sources.clear();
           for (; far < chunk.far_end[i]; ++far) {
             const FarPair& pair = chunk.far[far];
-            if (pair.block >= num_blocks_ + num_emitters()) continue;
-            const size_t emitters = pair.block < num_blocks_ ? 0 : num_texels;
-            add(emitters + pair.block,
+            if (pair.block >= num_blocks_ + num_patches()) continue;
+            const size_t patches = pair.block < num_blocks_ ? 0 : num_texels;
+            add(patches + pair.block,
                 pair.weight * Interpolate(pair, corners, f.data()));
           }
           for (; near < chunk.near_end[i]; ++near) {
@@ -96,7 +96,7 @@ LightOperator Transport::ByLight(const BrdfGrid& grid) const {
 }
 
 size_t LightOperator::MemoryBytes() const {
-  size_t bytes = emitters_ != nullptr ? emitters_->MemoryBytes() : 0;
+  size_t bytes = patches_ != nullptr ? patches_->MemoryBytes() : 0;
   for (const Chunk& chunk : chunks_) {
     bytes += chunk.source.capacity() * sizeof(uint32_t) +
              chunk.value.capacity() * sizeof(float) +
@@ -115,7 +115,7 @@ std::vector<float> LightOperator::Sources(const float* map) const {
 }
 
 void LightOperator::ApplyTo(const std::vector<float>& sources,
-                            double* E) const {
+                            double* L_o) const {
   ParallelFor(static_cast<int64_t>(chunks_.size()), num_threads_,
               [&](int64_t index, int) {
                 const Chunk& chunk = chunks_[index];
@@ -130,25 +130,25 @@ void LightOperator::ApplyTo(const std::vector<float>& sources,
                               Load4(&sources[size_t{4} * chunk.source[entry]]));
                   }
                   for (int c = 0; c < 3; ++c) {
-                    E[3 * static_cast<size_t>(chunk.begin + i) + c] = sum[c];
+                    L_o[3 * static_cast<size_t>(chunk.begin + i) + c] = sum[c];
                   }
                 }
               });
 }
 
-void LightOperator::Apply(const float* map, double* E) const {
+void LightOperator::Apply(const float* map, double* L_o) const {
   std::vector<float> sources = Sources(map);
-  if (emitters_ != nullptr) {
-    std::vector<double> emitted(size_t{3} * emitters_->num_points());
+  if (patches_ != nullptr) {
+    std::vector<double> emitted(size_t{3} * patches_->num_points());
     for (int b = 0; b < bounces_; ++b) {
-      emitters_->ApplyTo(sources, emitted.data());
+      patches_->ApplyTo(sources, emitted.data());
       for (size_t k = 0; k < emitted.size(); ++k) {
         sources[4 * (num_map_sources() + k / 3) + k % 3] =
             static_cast<float>(emitted[k]);
       }
     }
   }
-  ApplyTo(sources, E);
+  ApplyTo(sources, L_o);
 }
 
 void LightOperator::AddTranspose(const double* adjoint,
@@ -182,13 +182,13 @@ void LightOperator::ApplyTranspose(const double* adjoint,
   AddTranspose(adjoint, &sums);
   // Of R_b, b falling: what is left for R_0 = 0 is dropped.
   for (int b = 0; b < bounces_; ++b) {
-    std::vector<double> by_emitted(size_t{3} * emitters_->num_points());
+    std::vector<double> by_emitted(size_t{3} * patches_->num_points());
     for (size_t k = 0; k < by_emitted.size(); ++k) {
       double& sum = sums[4 * (num_map_sources() + k / 3) + k % 3];
       by_emitted[k] = sum;
       sum = 0.0;
     }
-    emitters_->AddTranspose(by_emitted.data(), &sums);
+    patches_->AddTranspose(by_emitted.data(), &sums);
   }
   const int columns = map_width_ / block_;
   for (int y = 0; y < map_height_; ++y) {
@@ -209,24 +209,25 @@ void LightOperator::ApplyTranspose(const double* adjoint,
 void LightOperator::AddEmitted(const double* emitted, int columns,
                                double* out) const {
   const size_t first = num_map_sources();
-  ParallelFor(
-      static_cast<int64_t>(chunks_.size()), num_threads_,
-      [&](int64_t index, int) {
-        const Chunk& chunk = chunks_[index];
-        size_t entry = 0;
-        for (int i = chunk.begin; i < chunk.end; ++i) {
-          for (; entry < chunk.entry_end[i - chunk.begin]; ++entry) {
-            if (chunk.source[entry] < first) continue;
-            const size_t emitter = chunk.source[entry] - first;
-            for (size_t c = 0; c < 3; ++c) {
-              const double value = chunk.value[3 * entry + c];
-              const double* from = emitted + (3 * emitter + c) * columns;
-              double* to = out + (3 * static_cast<size_t>(i) + c) * columns;
-              for (int k = 0; k < columns; ++k) to[k] += value * from[k];
-            }
-          }
-        }
-      });
+  ParallelFor(static_cast<int64_t>(chunks_.size()), num_threads_,
+              [&](int64_t index, int) {
+                const Chunk& chunk = chunks_[index];
+                size_t entry = 0;
+                for (int i = chunk.begin; i < chunk.end; ++i) {
+                  for (; entry < chunk.entry_end[i - chunk.begin]; ++entry) {
+                    if (chunk.source[entry] < first) continue;
+                    const size_t patch = chunk.source[entry] - first;
+                    for (size_t c = 0; c < 3; ++c) {
+                      const double value = chunk.value[3 * entry + c];
+                      const double* from = emitted + (3 * patch + c) * columns;
+                      double* to =
+                          out + (3 * static_cast<size_t>(i) + c) * columns;
+                      for (int k = 0; k < columns; ++k)
+                        to[k] += value * from[k];
+                    }
+                  }
+                }
+              });
 }
 
 }  // namespace ibrdf

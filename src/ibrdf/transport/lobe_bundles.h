@@ -13,7 +13,7 @@ namespace ibrdf {
 double LobeHalfWidth(const BrdfFunction& brdf);
 
 // A lobe whose LobeHalfWidth is below this shows the object as a mirror does:
-// emitters, which are patches, blur it.
+// patches, which are patches, blur it.
 inline constexpr double kNarrowLobe = 4.0 * 3.14159265358979323846 / 180;
 
 struct LobeBundles {

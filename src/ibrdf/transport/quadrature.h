@@ -1,9 +1,9 @@
-// Directions and weights for radiance E(n, wo) = int f_r L cos(theta_i) dwi.
+// Directions and weights for radiance L_o(n, wo) = int f_r L cos(theta_i) dwi.
 //
 // Two rules share the integrand by a smooth partition g(theta_h): half-vectors
 // on rings around the normal where a specular peak may be (near), the cells of
 // the map elsewhere (far). Both depend on geometry and sizes alone, never on
-// f_r or L, so that E is linear in each of them.
+// f_r or L, so that L_o is linear in each of them.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -53,12 +53,12 @@ void ViewFrame(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
 struct NearSample {
   double theta_h, theta_d, phi_d;  // radians
   Eigen::Vector3d wi;              // world, unit; L is looked up here
-  double weight;                   // E += weight f_r L
+  double weight;                   // L_o += weight f_r L
 };
 struct FarSample {
   double theta_h, theta_d, phi_d;
   int cell;
-  double weight;  // E += weight f_r (radiance times solid angle of the cell)
+  double weight;  // L_o += weight f_r (radiance times solid angle of the cell)
 };
 struct PointSamples {
   std::vector<NearSample> near;

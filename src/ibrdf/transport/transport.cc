@@ -63,14 +63,14 @@ void GiveBackSpare(std::vector<Pair>* pairs) {
 Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
                      int map_width, const TransportOptions& options)
     : Transport(points, map_height, map_width, options, Of::kPoints) {
-  if (options.emitters == nullptr || options.emitters->count() == 0) {
-    options_.emitters = nullptr;
+  if (options.patches == nullptr || options.patches->count() == 0) {
+    options_.patches = nullptr;
     return;
   }
   TransportOptions own = options;
-  own.visibility = options.emitters->visibility();
-  emitters_ = std::shared_ptr<const Transport>(new Transport(
-      options.emitters->points(), map_height, map_width, own, Of::kEmitters));
+  own.visibility = options.patches->visibility();
+  patches_ = std::shared_ptr<const Transport>(new Transport(
+      options.patches->points(), map_height, map_width, own, Of::kPatches));
 }
 
 Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
@@ -84,8 +84,8 @@ Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
   CHECK(map_height > 0 && map_width > 1 && map_width % 2 == 0);
   CHECK(options.grid.h >= 2 && options.grid.d >= 2 && options.grid.p >= 1);
   num_blocks_ = (map_height / block_) * (map_width / block_);
-  CHECK(options.emitters == nullptr || options.visibility != nullptr);
-  CHECK_LE(num_blocks_ + num_emitters() + options.bright.size(),
+  CHECK(options.patches == nullptr || options.visibility != nullptr);
+  CHECK_LE(num_blocks_ + num_patches() + options.bright.size(),
            size_t{kMaxFarSources})
       << "map of odd size: resize it first";
   const std::vector<FarCell> cells = MapCells(map_height, map_width, block_);
@@ -105,14 +105,14 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
                            const PointQuadrature& quadrature, Of of,
                            Chunk* chunk) const {
   const Visibility* const visibility = options_.visibility.get();
-  const SurfaceEmitters* const emitters = options_.emitters.get();
+  const RadiosityPatches* const patches = options_.patches.get();
   const int columns = map_width_ / block_;
   PointSamples samples;
-  std::vector<EmitterShare> shares;
-  const auto add_emitter = [&](const auto& sample, int emitter, double weight) {
+  std::vector<PatchShare> shares;
+  const auto add_patch = [&](const auto& sample, int patch, double weight) {
     FarPair pair{};
     SetCell(options_.grid, sample, &pair);
-    pair.block = static_cast<uint16_t>(num_blocks_ + emitter);
+    pair.block = static_cast<uint16_t>(num_blocks_ + patch);
     pair.weight = static_cast<float>(weight);
     chunk->far.push_back(pair);
   };
@@ -120,10 +120,10 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
     const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
     const uint64_t* const hidden =
         visibility != nullptr ? visibility->Hidden(points[i]) : nullptr;
-    SeenEmitters seen;
-    if (hidden != nullptr && emitters != nullptr) {
-      seen = of == Of::kPoints ? emitters->SeenFrom(points[i])
-                               : emitters->SeenFromEmitter(points[i]);
+    SeenPatches seen;
+    if (hidden != nullptr && patches != nullptr) {
+      seen = of == Of::kPoints ? patches->SeenFrom(points[i])
+                               : patches->SeenFromPatch(points[i]);
     }
     quadrature.Sample(n, points[i].wo.cast<double>().normalized(), &samples);
     for (FarSample& s : samples.far) {
@@ -133,10 +133,10 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
                                              map_height_ / block_, columns);
         const double share = grid.VisibleShare(hidden, n, range);
         if (share < 1.0 && !seen.empty()) {
-          emitters->SharesIn(grid, hidden, n, range, seen, &shares);
-          for (const EmitterShare& e : shares) {
-            add_emitter(s, e.emitter,
-                        s.weight * cells[s.cell].solid_angle * e.share);
+          patches->SharesIn(grid, hidden, n, range, seen, &shares);
+          for (const PatchShare& e : shares) {
+            add_patch(s, e.patch,
+                      s.weight * cells[s.cell].solid_angle * e.share);
           }
         }
         if (share <= 0.0) continue;
@@ -157,9 +157,9 @@ void Transport::BuildChunk(const std::vector<ShadingPoint>& points,
       if (hidden != nullptr) {
         const double visible = visibility->grid().VisibleAlong(hidden, n, s.wi);
         if (visible < 1.0 && !seen.empty()) {
-          const int emitter = emitters->Along(seen, s.wi);
-          if (emitter >= 0) {
-            add_emitter(s, emitter, s.weight * (1.0 - visible));
+          const int patch = patches->Along(seen, s.wi);
+          if (patch >= 0) {
+            add_patch(s, patch, s.weight * (1.0 - visible));
           }
         }
         s.weight *= visible;
@@ -194,7 +194,7 @@ void Transport::AddBright(const ShadingPoint& point, const uint64_t* hidden,
   if (options_.bright.empty()) return;
   const Eigen::Vector3d n = point.normal.cast<double>().normalized();
   const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
-  const int first = num_blocks_ + num_emitters();
+  const int first = num_blocks_ + num_patches();
   for (size_t k = 0; k < options_.bright.size(); ++k) {
     const Eigen::Vector3d& wi = options_.bright[k].direction;
     FarSample sample{};
@@ -246,7 +246,7 @@ size_t Transport::MemoryBytes() const {
         chunk.near.capacity() * sizeof(NearPair) +
         (chunk.far_end.capacity() + chunk.near_end.capacity()) * sizeof(size_t);
   }
-  if (emitters_ != nullptr) bytes += emitters_->MemoryBytes();
+  if (patches_ != nullptr) bytes += patches_->MemoryBytes();
   return bytes;
 }
 
@@ -278,7 +278,7 @@ std::vector<float> Transport::FarSources(const float* map,
                                          const double* emitted) const {
   std::vector<float> sources = SumBlocks(map, map_height_, map_width_, block_);
   const size_t first = sources.size();
-  const auto count = static_cast<size_t>(num_emitters());
+  const auto count = static_cast<size_t>(num_patches());
   sources.resize(first + 4 * (count + options_.bright.size()), 0.0f);
   for (size_t k = 0; k < options_.bright.size(); ++k) {
     for (int c = 0; c < 3; ++c) {
@@ -296,7 +296,7 @@ std::vector<float> Transport::FarSources(const float* map,
 }
 
 void Transport::RenderLit(const std::vector<float>& f, const float* map,
-                          const double* emitted, double* E) const {
+                          const double* emitted, double* L_o) const {
   const std::vector<float> texels = PadMap(map),
                            blocks = FarSources(map, emitted);
   const Corners corners(options_.grid);
@@ -319,7 +319,7 @@ void Transport::RenderLit(const std::vector<float>& f, const float* map,
                          LookUp(pair, row, texels.data()));
           }
           for (int c = 0; c < 3; ++c) {
-            E[3 * static_cast<size_t>(chunk.begin + i) + c] = sum[c];
+            L_o[3 * static_cast<size_t>(chunk.begin + i) + c] = sum[c];
           }
         }
       });
@@ -331,9 +331,9 @@ std::vector<std::vector<double>> Transport::Emitted(const std::vector<float>& f,
   CHECK(bounces >= 0 && bounces <= this->bounces());
   std::vector<std::vector<double>> emitted(1);
   for (int b = 0; b < bounces; ++b) {
-    std::vector<double> next(size_t{3} * emitters_->num_points());
+    std::vector<double> next(size_t{3} * patches_->num_points());
     const double* const last = b > 0 ? emitted.back().data() : nullptr;
-    emitters_->RenderLit(f, map, last, next.data());
+    patches_->RenderLit(f, map, last, next.data());
     emitted.push_back(std::move(next));
   }
   return emitted;
@@ -345,15 +345,15 @@ std::vector<std::vector<double>> Transport::Emitted(const BrdfGrid& grid,
 }
 
 void Transport::Render(const BrdfGrid& grid, const float* map,
-                       double* E) const {
-  RenderBounces(grid, map, bounces(), E);
+                       double* L_o) const {
+  RenderBounces(grid, map, bounces(), L_o);
 }
 
 void Transport::RenderBounces(const BrdfGrid& grid, const float* map,
-                              int bounces, double* E) const {
+                              int bounces, double* L_o) const {
   const std::vector<float> f = PadGrid(grid);
   const std::vector<double> emitted = Emitted(f, map, bounces).back();
-  RenderLit(f, map, emitted.empty() ? nullptr : emitted.data(), E);
+  RenderLit(f, map, emitted.empty() ? nullptr : emitted.data(), L_o);
 }
 
 void Transport::AddGridGradient(const float* map, const double* emitted,
@@ -411,7 +411,7 @@ void Transport::AddGridGradient(const float* map, const double* emitted,
 std::vector<double> Transport::ByEmitted(const std::vector<float>& f,
                                          const double* adjoint) const {
   const Corners corners(options_.grid);
-  const size_t size = size_t{4} * options_.emitters->count();
+  const size_t size = size_t{4} * options_.patches->count();
   std::vector<std::vector<double>> partial(chunks_.size());
   ParallelFor(
       static_cast<int64_t>(chunks_.size()), options_.num_threads,
@@ -424,10 +424,10 @@ std::vector<double> Transport::ByEmitted(const std::vector<float>& f,
           const double* a = adjoint + 3 * static_cast<size_t>(chunk.begin + i);
           for (; far < chunk.far_end[i]; ++far) {
             const FarPair& pair = chunk.far[far];
-            const int emitter = pair.block - num_blocks_;
-            if (emitter < 0 || emitter >= num_emitters()) continue;
+            const int patch = pair.block - num_blocks_;
+            if (patch < 0 || patch >= num_patches()) continue;
             const Float4 v = pair.weight * Interpolate(pair, corners, f.data());
-            double* const to = &g[size_t{4} * emitter];
+            double* const to = &g[size_t{4} * patch];
             for (int c = 0; c < 3; ++c) to[c] += v[c] * a[c];
           }
         }
@@ -452,9 +452,9 @@ void Transport::GridGradient(const BrdfGrid& grid, const float* map,
     AddGridGradient(map, emitted.back().data(), adjoint, &sums);
     std::vector<double> by_emitted = ByEmitted(f, adjoint);
     for (int b = bounces(); b > 0; --b) {
-      emitters_->AddGridGradient(map, b > 1 ? emitted[b - 1].data() : nullptr,
-                                 by_emitted.data(), &sums);
-      if (b > 1) by_emitted = emitters_->ByEmitted(f, by_emitted.data());
+      patches_->AddGridGradient(map, b > 1 ? emitted[b - 1].data() : nullptr,
+                                by_emitted.data(), &sums);
+      if (b > 1) by_emitted = patches_->ByEmitted(f, by_emitted.data());
     }
   }
   for (size_t i = 0; i < sums.size(); ++i) {

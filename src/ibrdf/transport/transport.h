@@ -1,20 +1,20 @@
 // Differentiable renderer: radiance of shading points as a form linear in the
 // tabulated BRDF and linear in the map, with both transposes.
 //
-// E_ic = sum_pairs weight f_c(pair) L_c(pair): the pairs of a point are the
+// L_o_ic = sum_pairs weight f_c(pair) L_c(pair): the pairs of a point are the
 // samples of PointQuadrature, each with eight taps into the BRDF grid and one
 // block of the map (far) or four of its texels (near). Shadows, where asked
 // for, are part of the weights: pairs are dropped or lowered when the lists are
 // built, so that every product below is that of the shadowed scene. A block
 // that is hidden in part is taken texel by texel.
 //
-// Interreflection, where asked for, gives what is hidden to emitters: surface
+// Interreflection, where asked for, gives what is hidden to patches: surface
 // points with a transport of their own, lit by the map and, from the second
-// bounce on, by each other. With R their radiance, E = T(f) [L; R] and
-// R_b = T'(f) [L; R_(b-1)], R_0 = 0: E stays linear in L, and is a polynomial
+// bounce on, by each other. With R their radiance, L_o = T(f) [L; R] and
+// R_b = T'(f) [L; R_(b-1)], R_0 = 0: L_o stays linear in L, and is a polynomial
 // in f of one degree more than there are bounces.
 //
-// Shapes: map [H, W, 3] radiance; E [points, 3] radiance; BRDF grid
+// Shapes: map [H, W, 3] radiance; L_o [points, 3] radiance; BRDF grid
 // [3, nodes] in 1/sr. Inputs must be finite; maps and grids may be negative
 // (tangents). Same bits for any number of threads.
 #pragma once
@@ -39,14 +39,14 @@ struct TransportOptions {
   // construction alone.
   std::shared_ptr<const Visibility> visibility;
   // With `visibility`, and of the same points; null: no bounces.
-  std::shared_ptr<const SurfaceEmitters> emitters;
+  std::shared_ptr<const RadiosityPatches> patches;
   // Light besides the map's: what SplitBrightTexels took out of a known one. In
   // all radiance for a grid or for fields and its gradients in those, not in
   // what is linear in the map: ByLight, LightMatrix.
   std::vector<BrightSample> bright;
 };
 
-// Far cells of the map (NumFarCells), emitters and bright samples that a
+// Far cells of the map (NumFarCells), patches and bright samples that a
 // transport takes, together.
 inline constexpr int kMaxFarSources = 65536;
 
@@ -67,31 +67,32 @@ class Transport {
   const BrdfGridShape& grid_shape() const { return options_.grid; }
   // 0 without interreflection.
   int bounces() const {
-    return options_.emitters != nullptr ? options_.emitters->bounces() : 0;
+    return options_.patches != nullptr ? options_.patches->bounces() : 0;
   }
-  // Of the emitters, without emitters that they see where there is but one
+  // Of the patches, without patches that they see where there is but one
   // bounce; null without interreflection.
-  const Transport* emitters() const { return emitters_.get(); }
+  const Transport* patches() const { return patches_.get(); }
   // Bytes held by the lists of pairs.
   size_t MemoryBytes() const;
 
-  void Render(const BrdfGrid& grid, const float* map, double* E) const;
+  void Render(const BrdfGrid& grid, const float* map, double* L_o) const;
   // With only the first of the bounces, 0 to bounces().
   void RenderBounces(const BrdfGrid& grid, const float* map, int bounces,
-                     double* E) const;
+                     double* L_o) const;
 
-  // Radiance of the emitters, [emitters, 3], which lights points after
+  // Radiance of the patches, [patches, 3], which lights points after
   // b = 0 to bounces() bounces: [b], the first one empty.
   std::vector<std::vector<double>> Emitted(const BrdfGrid& grid,
                                            const float* map) const;
 
-  // The linear map from L to E for a fixed BRDF.
+  // The linear map from L to L_o for a fixed BRDF.
   LightOperator ByLight(const BrdfGrid& grid) const;
 
   // For scalar fields s_k on the grid, fields[k] = [nodes]: out
   // [points, num_fields, 3], out_ikc = int s_k L_c cos. A BRDF
-  // f_c = sum_k colour_kc s_k has E_ic = sum_k colour_kc out_ikc. L is that of
-  // the map and, behind hidden directions, of `emitted` [emitters, 3], null: 0.
+  // f_c = sum_k colour_kc s_k has L_o_ic = sum_k colour_kc out_ikc. L is that
+  // of the map and, behind hidden directions, of `emitted` [patches, 3], null:
+  // 0.
   void RenderLobes(const float* const* fields, int num_fields, const float* map,
                    float* out, const double* emitted = nullptr) const;
 
@@ -99,8 +100,8 @@ class Transport {
   // emitted light.
   ReflectanceOperator ByReflectance(const float* map) const;
 
-  // gradient [3, nodes] of sum adjoint.E in the grid. `grid`: where, read with
-  // interreflection alone; without, E is linear.
+  // gradient [3, nodes] of sum adjoint.L_o in the grid. `grid`: where, read
+  // with interreflection alone; without, L_o is linear.
   void GridGradient(const BrdfGrid& grid, const float* map,
                     const double* adjoint, float* gradient) const;
 
@@ -112,7 +113,7 @@ class Transport {
   void LightMatrixGradient(const float* adjoint, float* gradient) const;
 
  private:
-  enum class Of { kPoints, kEmitters };
+  enum class Of { kPoints, kPatches };
   Transport(const std::vector<ShadingPoint>& points, int map_height,
             int map_width, const TransportOptions& options, Of of);
 
@@ -120,7 +121,7 @@ class Transport {
   struct FarPair {
     uint32_t node;  // lowest node of the cell, in the padded grid
     uint16_t fh, fd, fp;
-    uint16_t block;  // or num_blocks_ + an emitter or, after those, a sample of
+    uint16_t block;  // or num_blocks_ + a patch or, after those, a sample of
                      // bright light
     float weight;
   };
@@ -164,10 +165,10 @@ class Transport {
   void GatherLight(const Chunk& chunk, const std::vector<float>& texels,
                    const std::vector<float>& blocks, GatheredLight* scratch,
                    const Use& use) const;
-  // E for given emitted light, radiance [emitters, 3], null: 0; the transposes
+  // L_o for given emitted light, radiance [patches, 3], null: 0; the transposes
   // of that in the grid, added to `sums` [3, nodes], and in the emitted light.
   void RenderLit(const std::vector<float>& f, const float* map,
-                 const double* emitted, double* E) const;
+                 const double* emitted, double* L_o) const;
   void AddGridGradient(const float* map, const double* emitted,
                        const double* adjoint, std::vector<double>* sums) const;
   std::vector<double> ByEmitted(const std::vector<float>& f,
@@ -175,14 +176,14 @@ class Transport {
   // R_0 to R_bounces; empty: R_0 = 0.
   std::vector<std::vector<double>> Emitted(const std::vector<float>& f,
                                            const float* map, int bounces) const;
-  // SumBlocks, then the emitters, then bright samples; four floats each, the
+  // SumBlocks, then the patches, then bright samples; four floats each, the
   // last one 0.
   std::vector<float> FarSources(const float* map, const double* emitted) const;
   // See PaddedTexels; four floats per entry, the last one 0.
   std::vector<float> PadMap(const float* map) const;
   std::vector<float> PadGrid(const BrdfGrid& grid) const;
-  int num_emitters() const {
-    return options_.emitters != nullptr ? options_.emitters->count() : 0;
+  int num_patches() const {
+    return options_.patches != nullptr ? options_.patches->count() : 0;
   }
   int PaddedNodes() const {
     return options_.grid.h * options_.grid.d * (options_.grid.p + 1);
@@ -195,7 +196,7 @@ class Transport {
   int block_ = 1;  // side in texels
   int num_blocks_ = 0;
   std::vector<Chunk> chunks_;
-  std::shared_ptr<const Transport> emitters_;
+  std::shared_ptr<const Transport> patches_;
 };
 
 // Some 40 kB per point: for few points. Holds what it needs: it may outlive its
@@ -230,14 +231,14 @@ class ReflectanceOperator {
 // Holds what it needs: it may outlive its transport. Thread rules as above.
 class LightOperator {
  public:
-  // E [points, 3] from map [H, W, 3].
-  void Apply(const float* map, double* E) const;
-  // gradient [H, W, 3] of sum adjoint.E, adjoint [points, 3].
+  // L_o [points, 3] from map [H, W, 3].
+  void Apply(const float* map, double* L_o) const;
+  // gradient [H, W, 3] of sum adjoint.L_o, adjoint [points, 3].
   void ApplyTranspose(const double* adjoint, float* gradient) const;
-  // Of the emitters; null without interreflection.
-  const LightOperator* emitters() const { return emitters_.get(); }
-  // out [points, 3, columns] += the radiance that emitted light, [emitters, 3,
-  // columns], adds: for tangents of the emitters' radiance.
+  // Of the patches; null without interreflection.
+  const LightOperator* patches() const { return patches_.get(); }
+  // out [points, 3, columns] += the radiance that emitted light, [patches, 3,
+  // columns], adds: for tangents of the patches' radiance.
   void AddEmitted(const double* emitted, int columns, double* out) const;
 
   size_t MemoryBytes() const;
@@ -251,7 +252,7 @@ class LightOperator {
   struct Chunk {
     int begin = 0, end = 0;
     std::vector<size_t> entry_end;  // [end - begin]
-    // A block, num_blocks_ + texel, or after those an emitter.
+    // A block, num_blocks_ + texel, or after those a patch.
     std::vector<uint32_t> source;
     std::vector<float> value;  // [entry * 3 + channel], one spare entry
   };
@@ -260,9 +261,9 @@ class LightOperator {
   size_t num_map_sources() const {
     return num_blocks_ + static_cast<size_t>(map_height_) * map_width_;
   }
-  // Blocks, then texels, then emitters (0); four floats each, the last one 0.
+  // Blocks, then texels, then patches (0); four floats each, the last one 0.
   std::vector<float> Sources(const float* map) const;
-  void ApplyTo(const std::vector<float>& sources, double* E) const;
+  void ApplyTo(const std::vector<float>& sources, double* L_o) const;
   // sums [num_sources_, 4] += the transpose.
   void AddTranspose(const double* adjoint, std::vector<double>* sums) const;
 
@@ -271,7 +272,7 @@ class LightOperator {
   std::vector<Chunk> chunks_;
   size_t num_sources_ = 0;
   int bounces_ = 0;
-  std::shared_ptr<const LightOperator> emitters_;  // null: none
+  std::shared_ptr<const LightOperator> patches_;  // null: none
 };
 
 }  // namespace ibrdf

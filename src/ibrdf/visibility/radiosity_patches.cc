@@ -15,16 +15,16 @@ namespace {
 
 constexpr int kNormalBins = 2;  // per edge of a cube's face: 24 orientations
 constexpr double kPatchGrowth = 1.25;
-// A patch beside a hit's stands for it if their normals are this much alike.
+// A site beside a hit's stands for it if their normals are this much alike.
 constexpr double kLikeNormals = 0.5;
-// Rounds in which emitters find emitters that nothing else sees.
+// Rounds in which patches find patches that nothing else sees.
 constexpr int kMaxRounds = 4;
-// Emitters are looked at from no flatter than this: nearer the horizon tables
+// Patches are looked at from no flatter than this: nearer the horizon tables
 // of reflectance are not to be trusted (interpolated, a smooth surface gives
 // back a thousand times what it gets), and every bounce would multiply the
 // error.
 constexpr double kLeastCosine = 0.15;
-// Emitters see in steps this much wider than points.
+// Patches see in steps this much wider than points.
 constexpr int kCoarser = 2;
 
 // The square of a cube's face, n x n of them each, that a direction goes
@@ -50,23 +50,23 @@ Eigen::Vector3d NotTooFlat(const Eigen::Vector3d& n,
 
 }  // namespace
 
-SurfaceEmitterOptions EmittersFor(size_t num_points, int bounces) {
-  SurfaceEmitterOptions options;
+RadiosityOptions PatchesFor(size_t num_points, int bounces) {
+  RadiosityOptions options;
   options.bounces = bounces;
-  options.max_emitters = static_cast<int>(
-      std::clamp<size_t>(num_points, 500, options.max_emitters));
+  options.max_patches = static_cast<int>(
+      std::clamp<size_t>(num_points, 500, options.max_patches));
   return options;
 }
 
-SurfaceEmitters::SurfaceEmitters(const Scene& scene,
-                                 const std::vector<ShadingPoint>& points,
-                                 std::shared_ptr<const Visibility> visibility,
-                                 const SurfaceEmitterOptions& options)
+RadiosityPatches::RadiosityPatches(const Scene& scene,
+                                   const std::vector<ShadingPoint>& points,
+                                   std::shared_ptr<const Visibility> visibility,
+                                   const RadiosityOptions& options)
     : options_(options), scene_(scene) {
-  CHECK(options.bounces >= 1 && options.views >= 1 && options.patch > 0.0);
+  CHECK(options.bounces >= 1 && options.views >= 1 && options.patch_size > 0.0);
   CHECK_EQ(visibility->grid().rows() % options.lattice_rows, 0);
   CHECK_LE(2 * options.lattice_rows * options.lattice_rows, 65536);
-  CHECK(options.max_emitters >= 200 && options.max_emitters < kNoEmitter);
+  CHECK(options.max_patches >= 200 && options.max_patches < kNoPatch);
   const std::vector<ShadingPoint> few =
       SpreadPoints(points, options.max_points);
   std::vector<std::vector<Hit>> found(few.size());
@@ -95,7 +95,7 @@ SurfaceEmitters::SurfaceEmitters(const Scene& scene,
     high = high.cwiseMax(hit.position);
   }
   const double box = std::max((high - low_).norm(), 1e-300);
-  side_ = options.patch * box / 2;
+  side_ = options.patch_size * box / 2;
   while (!Gather(hits)) {
     side_ *= kPatchGrowth;
     // One cube holds all: 24 orientations, 6 views each.
@@ -109,23 +109,23 @@ SurfaceEmitters::SurfaceEmitters(const Scene& scene,
   by_point_.lattice_rows = options.lattice_rows;
   LookFrom(points, *visibility, &by_point_);
   if (options.bounces == 1) return;
-  by_emitter_.lattice_rows = std::max(options.lattice_rows / kCoarser, 1);
+  by_patch_.lattice_rows = std::max(options.lattice_rows / kCoarser, 1);
   for (int round = 0; round < kMaxRounds; ++round) {
-    const auto looked = static_cast<int64_t>(by_emitter_.begin.size()) - 1;
+    const auto looked = static_cast<int64_t>(by_patch_.begin.size()) - 1;
     const std::vector<ShadingPoint> fresh(points_.begin() + looked,
                                           points_.end());
     if (fresh.empty()) break;
     if (round > 0) own->Add(fresh);
     const std::vector<Unknown> unknown =
-        LookFrom(fresh, *visibility_, &by_emitter_);
-    if (round + 1 < kMaxRounds) AddEmitters(unknown, &by_emitter_);
+        LookFrom(fresh, *visibility_, &by_patch_);
+    if (round + 1 < kMaxRounds) AddPatches(unknown, &by_patch_);
   }
 }
 
-void SurfaceEmitters::HiddenCells(const VisibilityGrid& grid,
-                                  const ShadingPoint& point,
-                                  const uint64_t* hidden, int lattice_rows,
-                                  std::vector<HiddenCell>* cells) {
+void RadiosityPatches::HiddenCells(const VisibilityGrid& grid,
+                                   const ShadingPoint& point,
+                                   const uint64_t* hidden, int lattice_rows,
+                                   std::vector<HiddenCell>* cells) {
   cells->clear();
   const int rows = lattice_rows;
   const Eigen::Vector3d n = point.normal.cast<double>();
@@ -157,8 +157,8 @@ void SurfaceEmitters::HiddenCells(const VisibilityGrid& grid,
   }
 }
 
-bool SurfaceEmitters::Meet(const ShadingPoint& point,
-                           const Eigen::Vector3d& direction, Hit* hit) const {
+bool RadiosityPatches::Meet(const ShadingPoint& point,
+                            const Eigen::Vector3d& direction, Hit* hit) const {
   SurfaceHit surface;
   if (!scene_.Intersect({point.position, direction}, false, &surface)) {
     return false;
@@ -169,9 +169,9 @@ bool SurfaceEmitters::Meet(const ShadingPoint& point,
   return true;
 }
 
-bool SurfaceEmitters::Meet(const ShadingPoint& point,
-                           const Eigen::Vector3d& direction,
-                           ShadingPoint* met) const {
+bool RadiosityPatches::Meet(const ShadingPoint& point,
+                            const Eigen::Vector3d& direction,
+                            ShadingPoint* met) const {
   Hit hit;
   if (!Meet(point, direction, &hit)) return false;
   ShadingPoint point_met{};
@@ -184,7 +184,7 @@ bool SurfaceEmitters::Meet(const ShadingPoint& point,
   return true;
 }
 
-uint64_t SurfaceEmitters::PatchOf(const Eigen::Vector3d& position,
+uint64_t RadiosityPatches::SiteOf(const Eigen::Vector3d& position,
                                   const Eigen::Vector3d& normal) const {
   uint64_t key = 0;
   for (int k = 0; k < 3; ++k) {
@@ -199,9 +199,9 @@ uint64_t SurfaceEmitters::PatchOf(const Eigen::Vector3d& position,
          static_cast<uint64_t>(CubeBin(normal, kNormalBins));
 }
 
-bool SurfaceEmitters::Gather(const std::vector<Hit>& hits) {
+bool RadiosityPatches::Gather(const std::vector<Hit>& hits) {
   struct Group {
-    uint64_t patch;
+    uint64_t site;
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
     Eigen::Vector3d wo = Eigen::Vector3d::Zero();
     int count = 0;
@@ -213,13 +213,13 @@ bool SurfaceEmitters::Gather(const std::vector<Hit>& hits) {
   std::unordered_map<uint64_t, int> by_key;
   std::vector<int> group_of(hits.size());
   for (size_t i = 0; i < hits.size(); ++i) {
-    const uint64_t patch = PatchOf(hits[i].position, hits[i].normal);
-    const uint64_t key = patch * views + static_cast<uint64_t>(CubeBin(
-                                             hits[i].wo, options_.views));
+    const uint64_t site = SiteOf(hits[i].position, hits[i].normal);
+    const uint64_t key = site * views + static_cast<uint64_t>(CubeBin(
+                                            hits[i].wo, options_.views));
     const auto [at, added] =
         by_key.try_emplace(key, static_cast<int>(groups.size()));
-    if (added) groups.emplace_back().patch = patch;
-    if (groups.size() > static_cast<size_t>(options_.max_emitters)) {
+    if (added) groups.emplace_back().site = site;
+    if (groups.size() > static_cast<size_t>(options_.max_patches)) {
       return false;
     }
     Group& group = groups[at->second];
@@ -240,12 +240,12 @@ bool SurfaceEmitters::Gather(const std::vector<Hit>& hits) {
     Hit hit = hits[group.nearest];
     const Eigen::Vector3d wo = group.wo.normalized();
     if (hit.normal.dot(wo) >= kMinViewCosine) hit.wo = wo;
-    AddEmitter(group.patch, hit);
+    AddPatch(group.site, hit);
   }
   return true;
 }
 
-void SurfaceEmitters::AddEmitter(uint64_t patch, const Hit& hit) {
+void RadiosityPatches::AddPatch(uint64_t site, const Hit& hit) {
   ShadingPoint point{};
   point.normal = hit.normal.cast<float>();
   point.wo = NotTooFlat(hit.normal, hit.wo).cast<float>();
@@ -253,36 +253,35 @@ void SurfaceEmitters::AddEmitter(uint64_t patch, const Hit& hit) {
   point.pixel = -1;
   point.coverage = 1.0f;
   point.index = count();
-  patches_[patch].push_back(point.index);
+  sites_[site].push_back(point.index);
   points_.push_back(point);
 }
 
-int SurfaceEmitters::Find(const Hit& hit) const {
-  const auto nearest_view = [&](const std::vector<int>& emitters) {
-    return *std::max_element(emitters.begin(), emitters.end(),
-                             [&](int a, int b) {
-                               return points_[a].wo.cast<double>().dot(hit.wo) <
-                                      points_[b].wo.cast<double>().dot(hit.wo);
-                             });
+int RadiosityPatches::Find(const Hit& hit) const {
+  const auto nearest_view = [&](const std::vector<int>& patches) {
+    return *std::max_element(patches.begin(), patches.end(), [&](int a, int b) {
+      return points_[a].wo.cast<double>().dot(hit.wo) <
+             points_[b].wo.cast<double>().dot(hit.wo);
+    });
   };
-  const auto own = patches_.find(PatchOf(hit.position, hit.normal));
-  if (own != patches_.end()) return nearest_view(own->second);
+  const auto own = sites_.find(SiteOf(hit.position, hit.normal));
+  if (own != sites_.end()) return nearest_view(own->second);
   int best = -1;
   double least = 0.0;
   for (int k = 0; k < 27; ++k) {
     const Eigen::Vector3d step(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
     const Eigen::Vector3d position = hit.position + side_ * step;
-    const uint64_t first = PatchOf(position, Eigen::Vector3d::UnitX()) /
+    const uint64_t first = SiteOf(position, Eigen::Vector3d::UnitX()) /
                            (6 * kNormalBins * kNormalBins) *
                            (6 * kNormalBins * kNormalBins);
     for (int bin = 0; bin < 6 * kNormalBins * kNormalBins; ++bin) {
-      const auto beside = patches_.find(first + bin);
-      if (beside == patches_.end()) continue;
-      const ShadingPoint& emitter = points_[beside->second.front()];
-      if (emitter.normal.cast<double>().dot(hit.normal) < kLikeNormals) {
+      const auto beside = sites_.find(first + bin);
+      if (beside == sites_.end()) continue;
+      const ShadingPoint& patch = points_[beside->second.front()];
+      if (patch.normal.cast<double>().dot(hit.normal) < kLikeNormals) {
         continue;
       }
-      const double distance = (emitter.position - hit.position).norm();
+      const double distance = (patch.position - hit.position).norm();
       if (best >= 0 && distance >= least) continue;
       least = distance;
       best = nearest_view(beside->second);
@@ -291,37 +290,37 @@ int SurfaceEmitters::Find(const Hit& hit) const {
   return best;
 }
 
-SeenEmitters SurfaceEmitters::Look(const ShadingPoint& point,
+SeenPatches RadiosityPatches::Look(const ShadingPoint& point,
                                    const VisibilityGrid& grid,
                                    const uint64_t* hidden,
-                                   std::vector<SeenEmitter>* seen) const {
+                                   std::vector<SeenPatch>* seen) const {
   Look(point, grid, hidden, options_.lattice_rows, seen, nullptr);
   return {seen->data(), seen->data() + seen->size(), options_.lattice_rows};
 }
 
-void SurfaceEmitters::Look(const ShadingPoint& point,
-                           const VisibilityGrid& grid, const uint64_t* hidden,
-                           int lattice_rows, std::vector<SeenEmitter>* seen,
-                           std::vector<Unknown>* unknown) const {
+void RadiosityPatches::Look(const ShadingPoint& point,
+                            const VisibilityGrid& grid, const uint64_t* hidden,
+                            int lattice_rows, std::vector<SeenPatch>* seen,
+                            std::vector<Unknown>* unknown) const {
   std::vector<HiddenCell> cells;
   HiddenCells(grid, point, hidden, lattice_rows, &cells);
   seen->clear();
   for (const HiddenCell& cell : cells) {
     Hit hit;
     const bool met = Meet(point, cell.direction, &hit);
-    const int emitter = met ? Find(hit) : -1;
-    if (emitter < 0 && met && unknown != nullptr) {
+    const int patch = met ? Find(hit) : -1;
+    if (patch < 0 && met && unknown != nullptr) {
       unknown->push_back({static_cast<int64_t>(seen->size()), hit});
     }
     seen->push_back(
-        {cell.cell, emitter < 0 ? kNoEmitter : static_cast<uint16_t>(emitter)});
+        {cell.cell, patch < 0 ? kNoPatch : static_cast<uint16_t>(patch)});
   }
 }
 
-std::vector<SurfaceEmitters::Unknown> SurfaceEmitters::LookFrom(
+std::vector<RadiosityPatches::Unknown> RadiosityPatches::LookFrom(
     const std::vector<ShadingPoint>& points, const Visibility& visibility,
     Table* table) const {
-  std::vector<std::vector<SeenEmitter>> seen(points.size());
+  std::vector<std::vector<SeenPatch>> seen(points.size());
   std::vector<std::vector<Unknown>> missing(points.size());
   ParallelFor(static_cast<int64_t>(points.size()), options_.num_threads,
               [&](int64_t i, int) {
@@ -350,52 +349,51 @@ std::vector<SurfaceEmitters::Unknown> SurfaceEmitters::LookFrom(
   return unknown;
 }
 
-void SurfaceEmitters::AddEmitters(const std::vector<Unknown>& unknown,
+void RadiosityPatches::AddPatches(const std::vector<Unknown>& unknown,
                                   Table* table) {
   for (const Unknown& u : unknown) {
-    int emitter = Find(u.hit);
-    if (emitter < 0 && count() < kNoEmitter) {
-      emitter = count();
-      AddEmitter(PatchOf(u.hit.position, u.hit.normal), u.hit);
+    int patch = Find(u.hit);
+    if (patch < 0 && count() < kNoPatch) {
+      patch = count();
+      AddPatch(SiteOf(u.hit.position, u.hit.normal), u.hit);
     }
-    if (emitter < 0) continue;
-    table->seen[u.entry].emitter = static_cast<uint16_t>(emitter);
+    if (patch < 0) continue;
+    table->seen[u.entry].patch = static_cast<uint16_t>(patch);
   }
 }
 
-int64_t SurfaceEmitters::num_cells() const {
-  return static_cast<int64_t>(by_point_.seen.size() + by_emitter_.seen.size());
+int64_t RadiosityPatches::num_bins() const {
+  return static_cast<int64_t>(by_point_.seen.size() + by_patch_.seen.size());
 }
 
-int64_t SurfaceEmitters::num_lost() const {
+int64_t RadiosityPatches::num_lost() const {
   int64_t lost = 0;
-  for (const Table* table : {&by_point_, &by_emitter_}) {
-    lost +=
-        std::count_if(table->seen.begin(), table->seen.end(),
-                      [](SeenEmitter s) { return s.emitter == kNoEmitter; });
+  for (const Table* table : {&by_point_, &by_patch_}) {
+    lost += std::count_if(table->seen.begin(), table->seen.end(),
+                          [](SeenPatch s) { return s.patch == kNoPatch; });
   }
   return lost;
 }
 
-SeenEmitters SurfaceEmitters::Table::Of(int index) const {
+SeenPatches RadiosityPatches::Table::Of(int index) const {
   if (index < 0 || static_cast<size_t>(index) + 1 >= begin.size()) return {};
   return {seen.data() + begin[index], seen.data() + begin[index + 1],
           lattice_rows};
 }
 
-SeenEmitters SurfaceEmitters::SeenFrom(const ShadingPoint& point) const {
+SeenPatches RadiosityPatches::SeenFrom(const ShadingPoint& point) const {
   return by_point_.Of(point.index);
 }
 
-SeenEmitters SurfaceEmitters::SeenFromEmitter(
-    const ShadingPoint& emitter) const {
-  return by_emitter_.Of(emitter.index);
+SeenPatches RadiosityPatches::SeenFromPatch(const ShadingPoint& patch) const {
+  return by_patch_.Of(patch.index);
 }
 
-void SurfaceEmitters::SharesIn(const VisibilityGrid& grid,
-                               const uint64_t* hidden, const Eigen::Vector3d& n,
-                               const GridRange& range, const SeenEmitters& seen,
-                               std::vector<EmitterShare>* shares) const {
+void RadiosityPatches::SharesIn(const VisibilityGrid& grid,
+                                const uint64_t* hidden,
+                                const Eigen::Vector3d& n,
+                                const GridRange& range, const SeenPatches& seen,
+                                std::vector<PatchShare>* shares) const {
   shares->clear();
   const int stride = grid.rows() / seen.lattice_rows;
   const int columns = 2 * seen.lattice_rows;
@@ -414,47 +412,47 @@ void SurfaceEmitters::SharesIn(const VisibilityGrid& grid,
       grid.CosineSums(hidden, n, part, &part_all, &behind);
       all += part_all;
       if (behind <= 0.0) continue;
-      const int emitter = InCell(seen, row * columns + column);
-      if (emitter >= 0) shares->push_back({emitter, behind});
+      const int patch = InCell(seen, row * columns + column);
+      if (patch >= 0) shares->push_back({patch, behind});
     }
   }
-  for (EmitterShare& share : *shares) share.share /= all;
+  for (PatchShare& share : *shares) share.share /= all;
 }
 
-int SurfaceEmitters::InCell(const SeenEmitters& seen, int cell) {
-  const SeenEmitter* const at = std::lower_bound(
+int RadiosityPatches::InCell(const SeenPatches& seen, int cell) {
+  const SeenPatch* const at = std::lower_bound(
       seen.begin, seen.end, cell,
-      [](const SeenEmitter& s, int wanted) { return s.cell < wanted; });
-  if (at == seen.end || at->cell != cell || at->emitter == kNoEmitter) {
+      [](const SeenPatch& s, int wanted) { return s.cell < wanted; });
+  if (at == seen.end || at->cell != cell || at->patch == kNoPatch) {
     return -1;
   }
-  return at->emitter;
+  return at->patch;
 }
 
-int SurfaceEmitters::Along(const SeenEmitters& seen,
-                           const Eigen::Vector3d& wi) const {
+int RadiosityPatches::Along(const SeenPatches& seen,
+                            const Eigen::Vector3d& wi) const {
   const int rows = seen.lattice_rows;
   double row = 0.0, column = 0.0;
   MapPosition(wi, rows, 2 * rows, &row, &column);
   const int r = std::clamp(static_cast<int>(row), 0, rows - 1);
   const int c = std::clamp(static_cast<int>(column), 0, 2 * rows - 1);
-  // Visibility is interpolated: beside an edge the next cell has the emitter.
+  // Visibility is interpolated: beside an edge the next cell has the patch.
   const int beside_r = std::clamp(r + (row - r < 0.5 ? -1 : 1), 0, rows - 1);
   const int beside_c =
       (c + (column - c < 0.5 ? -1 : 1) + 2 * rows) % (2 * rows);
   for (const int cell :
        {r * 2 * rows + c, r * 2 * rows + beside_c, beside_r * 2 * rows + c,
         beside_r * 2 * rows + beside_c}) {
-    const int emitter = InCell(seen, cell);
-    if (emitter >= 0) return emitter;
+    const int patch = InCell(seen, cell);
+    if (patch >= 0) return patch;
   }
   return -1;
 }
 
-size_t SurfaceEmitters::MemoryBytes() const {
+size_t RadiosityPatches::MemoryBytes() const {
   size_t bytes = points_.capacity() * sizeof(ShadingPoint);
-  for (const Table* table : {&by_point_, &by_emitter_}) {
-    bytes += table->seen.capacity() * sizeof(SeenEmitter) +
+  for (const Table* table : {&by_point_, &by_patch_}) {
+    bytes += table->seen.capacity() * sizeof(SeenPatch) +
              table->begin.capacity() * sizeof(int64_t);
   }
   return bytes + visibility_->MemoryBytes();

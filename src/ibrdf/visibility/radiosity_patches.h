@@ -1,6 +1,6 @@
 // What an object's points see of the object itself: where light from the map
 // is hidden (Visibility), light from other points arrives instead. Those are
-// gathered into few emitters, by place and by the direction that they are
+// gathered into few patches, by place and by the direction that they are
 // looked at from, so that one bounce costs about as much as the image itself.
 //
 // Geometry alone, like visibility: one set serves every map and reflectance.
@@ -16,86 +16,84 @@
 
 namespace ibrdf {
 
-struct SurfaceEmitterOptions {
+struct RadiosityOptions {
   int bounces = 1;
-  // Emitters are one per cube of this side, in half diagonals of the box around
+  // Patches are one per cube of this side, in half diagonals of the box around
   // what is seen, orientation (24) and direction of view (6 views^2). The side
-  // grows until max_emitters are enough.
-  double patch = 0.1;
+  // grows until max_patches are enough.
+  double patch_size = 0.1;
   int views = 2;
-  int max_emitters = 4000;
-  // Of the points, those whose sight decides where emitters are.
+  int max_patches = 4000;
+  // Of the points, those whose sight decides where patches are.
   int max_points = 2048;
   // Directions are told apart in cells of a lattice_rows x 2 lattice_rows grid;
-  // even, divides the rows of the visibility's. Emitters' cells are twice as
+  // even, divides the rows of the visibility's. Patches' cells are twice as
   // wide.
   int lattice_rows = 32;
   int num_threads = 0;  // <= 0: all
 };
 
-// As many emitters as there are points to light, but for few or many points.
-SurfaceEmitterOptions EmittersFor(size_t num_points, int bounces);
+// As many patches as there are points to light, but for few or many points.
+RadiosityOptions PatchesFor(size_t num_points, int bounces);
 
-// Which emitter a point sees in a cell of the lattice.
-struct SeenEmitter {
+// Which patch a point sees in a cell of the lattice.
+struct SeenPatch {
   uint16_t cell;
-  uint16_t emitter;  // or kNoEmitter
+  uint16_t patch;  // or kNoPatch
 };
-inline constexpr uint16_t kNoEmitter = 0xffff;
-struct SeenEmitters {
-  const SeenEmitter* begin = nullptr;  // by cell, ascending
-  const SeenEmitter* end = nullptr;
+inline constexpr uint16_t kNoPatch = 0xffff;
+struct SeenPatches {
+  const SeenPatch* begin = nullptr;  // by cell, ascending
+  const SeenPatch* end = nullptr;
   int lattice_rows = 1;  // and twice as many columns
   bool empty() const { return begin == end; }
 };
-struct EmitterShare {
-  int emitter;
+struct PatchShare {
+  int patch;
   double share;
 };
 
 // Immutable; safe to share between threads.
-class SurfaceEmitters {
+class RadiosityPatches {
  public:
   // `visibility` of `points`, both as for a Transport.
-  SurfaceEmitters(const Scene& scene, const std::vector<ShadingPoint>& points,
-                  std::shared_ptr<const Visibility> visibility,
-                  const SurfaceEmitterOptions& options);
+  RadiosityPatches(const Scene& scene, const std::vector<ShadingPoint>& points,
+                   std::shared_ptr<const Visibility> visibility,
+                   const RadiosityOptions& options);
 
   int bounces() const { return options_.bounces; }
   int count() const { return static_cast<int>(points_.size()); }
-  // The emitters: surface points, wo towards those that see them (at least 8.6
+  // The patches: surface points, wo towards those that see them (at least 8.6
   // degrees above the surface), index their place in the list.
   const std::vector<ShadingPoint>& points() const { return points_; }
-  // What is hidden from the emitters.
+  // What is hidden from the patches.
   const std::shared_ptr<const Visibility>& visibility() const {
     return visibility_;
   }
 
-  // Of a point of the constructor's, by ShadingPoint::index, and of an emitter
+  // Of a point of the constructor's, by ShadingPoint::index, and of a patch
   // (with one bounce none: they are lit by the map alone).
-  SeenEmitters SeenFrom(const ShadingPoint& point) const;
-  SeenEmitters SeenFromEmitter(const ShadingPoint& emitter) const;
+  SeenPatches SeenFrom(const ShadingPoint& point) const;
+  SeenPatches SeenFromPatch(const ShadingPoint& patch) const;
   // Of any point, by new rays; `hidden` as Visibility::Hidden.
-  SeenEmitters Look(const ShadingPoint& point, const VisibilityGrid& grid,
-                    const uint64_t* hidden,
-                    std::vector<SeenEmitter>* seen) const;
+  SeenPatches Look(const ShadingPoint& point, const VisibilityGrid& grid,
+                   const uint64_t* hidden, std::vector<SeenPatch>* seen) const;
 
   // The point that a ray from `point` meets, wo back along it; false: none.
   bool Meet(const ShadingPoint& point, const Eigen::Vector3d& direction,
             ShadingPoint* met) const;
 
-  // The emitters behind a range of grid texels, and which share of the
+  // The patches behind a range of grid texels, and which share of the
   // cosine-weighted light of the range, all of one radiance, each stands for.
   void SharesIn(const VisibilityGrid& grid, const uint64_t* hidden,
                 const Eigen::Vector3d& n, const GridRange& range,
-                const SeenEmitters& seen,
-                std::vector<EmitterShare>* shares) const;
-  // The emitter along wi, where that is hidden; -1: none.
-  int Along(const SeenEmitters& seen, const Eigen::Vector3d& wi) const;
+                const SeenPatches& seen, std::vector<PatchShare>* shares) const;
+  // The patch along wi, where that is hidden; -1: none.
+  int Along(const SeenPatches& seen, const Eigen::Vector3d& wi) const;
 
-  // Hidden cells of the constructor's points and of emitters, and those among
-  // them whose ray met nothing that an emitter stands for: their light is lost.
-  int64_t num_cells() const;
+  // Hidden cells of the constructor's points and of patches, and those among
+  // them whose ray met nothing that a patch stands for: their light is lost.
+  int64_t num_bins() const;
   int64_t num_lost() const;
   size_t MemoryBytes() const;
 
@@ -108,14 +106,14 @@ class SurfaceEmitters {
     uint16_t cell;
     Eigen::Vector3d direction;
   };
-  // Lists of SeenEmitter by point.
+  // Lists of SeenPatch by point.
   struct Table {
     int lattice_rows = 1;
     std::vector<int64_t> begin = {0};  // by index, one more than points
-    std::vector<SeenEmitter> seen;
-    SeenEmitters Of(int index) const;
+    std::vector<SeenPatch> seen;
+    SeenPatches Of(int index) const;
   };
-  // A hit without an emitter, and the entry of a table that wants one.
+  // A hit without a patch, and the entry of a table that wants one.
   struct Unknown {
     int64_t entry;
     Hit hit;
@@ -128,35 +126,34 @@ class SurfaceEmitters {
                           std::vector<HiddenCell>* cells);
   bool Meet(const ShadingPoint& point, const Eigen::Vector3d& direction,
             Hit* hit) const;
-  uint64_t PatchOf(const Eigen::Vector3d& position,
-                   const Eigen::Vector3d& normal) const;
-  // Emitters for the hits; false where there would be too many.
+  uint64_t SiteOf(const Eigen::Vector3d& position,
+                  const Eigen::Vector3d& normal) const;
+  // Patches for the hits; false where there would be too many.
   bool Gather(const std::vector<Hit>& hits);
-  void AddEmitter(uint64_t patch, const Hit& hit);
-  // The emitter of the hit's patch, or of one beside it, seen from most nearly
+  void AddPatch(uint64_t site, const Hit& hit);
+  // The patch of the hit's site, or of one beside it, seen from most nearly
   // the same direction; -1: none.
   int Find(const Hit& hit) const;
   void Look(const ShadingPoint& point, const VisibilityGrid& grid,
             const uint64_t* hidden, int lattice_rows,
-            std::vector<SeenEmitter>* seen,
-            std::vector<Unknown>* unknown) const;
+            std::vector<SeenPatch>* seen, std::vector<Unknown>* unknown) const;
   // Adds what the points, of indices beyond the table's, see.
   std::vector<Unknown> LookFrom(const std::vector<ShadingPoint>& points,
                                 const Visibility& visibility,
                                 Table* table) const;
-  // One for each patch that has none.
-  void AddEmitters(const std::vector<Unknown>& unknown, Table* table);
+  // One for each site that has none.
+  void AddPatches(const std::vector<Unknown>& unknown, Table* table);
   // -1: none.
-  static int InCell(const SeenEmitters& seen, int cell);
+  static int InCell(const SeenPatches& seen, int cell);
 
-  SurfaceEmitterOptions options_;
+  RadiosityOptions options_;
   Scene scene_;
   Eigen::Vector3d low_ = Eigen::Vector3d::Zero();
   double side_ = 1.0;
   std::vector<ShadingPoint> points_;
-  std::unordered_map<uint64_t, std::vector<int>> patches_;
+  std::unordered_map<uint64_t, std::vector<int>> sites_;
   std::shared_ptr<const Visibility> visibility_;
-  Table by_point_, by_emitter_;
+  Table by_point_, by_patch_;
 };
 
 }  // namespace ibrdf
