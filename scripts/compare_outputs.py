@@ -169,6 +169,8 @@ class Recorder:
 def timeless(value):
     if isinstance(value, dict):
         return {k: timeless(v) for k, v in value.items() if k not in CLOCKS}
+    if isinstance(value, str):
+        return re.sub(r"[\d.]+ s\b", "TIME", value)
     return [timeless(v) for v in value] if isinstance(value, list) else value
 
 
@@ -179,7 +181,7 @@ def normal(path):
     if path.suffix in (".html", ".txt"):
         text = re.sub(r"data:image/png;base64,[A-Za-z0-9+/=]+", "PNG", path.read_text(errors="replace"))
         text = re.sub(r"<svg.*?</svg>", "SVG", text, flags=re.S)
-        text = re.sub(r"\d+(\.\d+)?( ?s\b|</td>)", "TIME", text)
+        text = re.sub(r"seconds [\d.]+|ibrdf \d\.\d\.\d|\d+(\.\d+)?( ?s\b|</td>)", "TIME", text)
         text = re.sub(r"\d+ %|\d+(\.\d+)? (seconds|steps/s)|[\d.]+e?-?\d*\s+[\d.]+\s*\d* %", "TIME", text)
         return re.sub(r" +", " ", text).encode()
     if path.suffix == ".csv":

@@ -21,13 +21,13 @@
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/solvers/baselines/cook_torrance_prior.h"
-#include "ibrdf/solvers/estimation/level_gauge.h"
-#include "ibrdf/solvers/estimation/reflectance_spread.h"
+#include "ibrdf/solvers/estimation/scale_ambiguity.h"
 #include "ibrdf/solvers/marginal/marginal_descent.h"
 #include "ibrdf/solvers/marginal/reflectance_search.h"
 #include "ibrdf/solvers/observation/observation.h"
 #include "ibrdf/solvers/problem/load_problem.h"
 #include "ibrdf/solvers/problem/truth.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
 #include "ibrdf/solvers/training/lobe_table_fit.h"
 
 namespace ibrdf {

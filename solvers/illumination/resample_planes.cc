@@ -32,4 +32,13 @@ std::vector<float> ResamplePlanes(const std::vector<float>& planes,
   return out;
 }
 
+Image ImageOfPlanes(const std::vector<double>& planes, int width, int height) {
+  Image image(width, height);
+  const size_t texels = image.num_pixels();
+  for (size_t i = 0; i < 3 * texels; ++i) {
+    image.rgb[i] = static_cast<float>(planes[i % 3 * texels + i / 3]);
+  }
+  return image;
+}
+
 }  // namespace ibrdf

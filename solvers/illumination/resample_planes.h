@@ -2,6 +2,8 @@
 #pragma once
 #include <vector>
 
+#include "ibrdf/image/image.h"
+
 namespace ibrdf {
 
 struct MapSize {
@@ -17,5 +19,8 @@ struct MapSize {
 // [channels][from.height][from.width], bilinear between their texels' centres.
 std::vector<float> ResamplePlanes(const std::vector<float>& planes,
                                   MapSize from, MapSize to);
+
+// The image [H, W, 3] of planes [3][H][W].
+Image ImageOfPlanes(const std::vector<double>& planes, int width, int height);
 
 }  // namespace ibrdf

@@ -61,31 +61,4 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
   return summary.final_cost;
 }
 
-std::vector<double> GaugeShift(const LobeModel& lobes, const LobePrior& prior,
-                               const std::vector<double>& parameters,
-                               const double* mean_log_radiance,
-                               double light_std) {
-  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  const double w = 1.0 / (prior.colour_sigma * prior.colour_sigma);
-  for (int k = 0; k < lobes.num_lobes(); ++k) {
-    for (int c = 0; c < 3; ++c) {
-      const double a =
-          parameters[k * lobes.lobe_size() + lobes.code_size() + c];
-      A(c, c) += w;
-      b[c] += w * (prior.colour_mean[c] - a);
-    }
-  }
-  const double v = 1.0 / (light_std * light_std);
-  for (const int c : {0, 2}) {
-    Eigen::Vector3d row = Eigen::Vector3d::Zero();
-    row[c] = 1.0;
-    row[1] = -1.0;
-    A += v * row * row.transpose();
-    b += v * row * (mean_log_radiance[c] - mean_log_radiance[1]);
-  }
-  const Eigen::Vector3d d = A.ldlt().solve(b);
-  return {d[0], d[1], d[2]};
-}
-
 }  // namespace ibrdf

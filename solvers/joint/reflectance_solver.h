@@ -32,15 +32,4 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
                         const ReflectanceStepOptions& options,
                         std::vector<double>* parameters);
 
-// The gauge (s R, L / s), one s per channel, leaves the image as it is and is
-// fixed by the colours' prior and by natural light being nearly grey:
-// minimises, over shifts d_c of the lobes' log colours (and -d_c of the map's
-// log radiance), the prior of the colours plus
-// 1/2 sum_{c != green} ((m_c - d_c) - (m_green - d_green))^2 / light_std^2,
-// m_c the map's mean log radiance. Returns d.
-std::vector<double> GaugeShift(const LobeModel& lobes, const LobePrior& prior,
-                               const std::vector<double>& parameters,
-                               const double* mean_log_radiance,
-                               double light_std);
-
 }  // namespace ibrdf

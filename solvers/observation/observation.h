@@ -1,51 +1,52 @@
-// The image as sets of points: every pixel, or fewer that say nearly as much.
-// Internal.
+// The image as points with radiance: every pixel of the object, or fewer that
+// say nearly as much.
 #pragma once
-#include <memory>
 #include <vector>
 
+#include "ibrdf/image/image.h"
+#include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/costs/log_likelihood.h"
-#include "ibrdf/solvers/problem/inverse_problem.h"
 
 namespace ibrdf {
 
-// A set of points with its observations and transport.
-struct Level {
+struct Observation {
   std::vector<ShadingPoint> points;
-  Observations observed;
-  std::unique_ptr<Transport> transport;  // null until first used
+  Observations observed;  // radiance of the points, and which can be used
 };
 
 // Radiance of the points' pixels, [points * 3].
 std::vector<double> RadianceOf(const Image& image,
                                const std::vector<ShadingPoint>& points);
 
-// All of the problem's points.
-std::unique_ptr<Level> MakeFullLevel(const InverseProblem& problem);
+// The points with the radiance of their pixels.
+Observation Observe(const Image& image,
+                    const std::vector<ShadingPoint>& points);
 
-// Points of like normals joined, bins_across > 0 of the diameter of the disc
-// of normals; all pixels where the image has none away from the limb. With
-// shadows, which points of like normals do not share, some pixels as they are:
-// every so many rows and columns.
-std::unique_ptr<Level> MakeBinnedLevel(const InverseProblem& problem,
-                                       int bins_across);
+// One synthetic point for each bin of like normals (MeanByNormal); bins_across
+// > 0 bins span the diameter of the disc of normals. All pixels where the image
+// has none away from the limb.
+Observation MeansByNormal(const Observation& pixels, int bins_across);
 
-// A ninth of the image, of a large one less, as MakeBinnedLevel's and pixel by
-// pixel.
-struct LevelPair {
-  std::unique_ptr<Level> bins, pixels;
-};
-LevelPair MakeLevelPair(const InverseProblem& problem, int bins_across);
-
-// What joining leaves out of an image: mean |log bin - mean log of its pixels|
-// of the radiance [points * 3] that a model gives a pair's points. 0 where it
-// gives a pixel none.
-double BinningError(const Level& pixels, const std::vector<double>& of_pixels,
-                    const std::vector<double>& of_bins, int bins_across);
+// Some 4000 pixels at most as they are, every so many rows and columns of an
+// image of this width; all where none of those can be used.
+Observation Thin(const Observation& pixels, int image_width);
 
 // One pixel, as it is, of each bin of like normals; all where there is none
 // away from the limb.
-std::unique_ptr<Level> MakeSampleLevel(const InverseProblem& problem,
-                                       int bins_across);
+Observation OnePixelPerBin(const Observation& pixels, int bins_across);
+
+// A ninth of the image, or less of a large one, binned and pixel by pixel.
+struct ObservationPair {
+  Observation bins, pixels;
+};
+ObservationPair MakePair(const Observation& pixels, int image_width,
+                         int bins_across);
+
+// What binning leaves out of an image: mean |log bin - mean log of its pixels|
+// of the radiance [points * 3] that a model gives a pair's points. 0 where it
+// gives a pixel none.
+double BinningError(const Observation& pixels,
+                    const std::vector<double>& of_pixels,
+                    const std::vector<double>& of_bins, int bins_across);
 
 }  // namespace ibrdf

@@ -12,11 +12,11 @@
 #include "ibrdf/base/stopwatch.h"
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/problem_file.h"
-#include "ibrdf/solvers/estimation/inverse_rendering.h"
 #include "ibrdf/solvers/optim/blas_memory.h"
 #include "ibrdf/solvers/problem/load_problem.h"
 #include "ibrdf/solvers/programs/common_flags.h"
 #include "ibrdf/solvers/report/write_results.h"
+#include "ibrdf/solvers/solve/solve.h"
 
 namespace ibrdf {
 namespace {

@@ -17,10 +17,10 @@
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/metrics/illumination_metrics.h"
 #include "ibrdf/metrics/image_metrics.h"
-#include "ibrdf/solvers/estimation/reflectance_spread.h"
 #include "ibrdf/solvers/optim/conditioning.h"
 #include "ibrdf/solvers/report/report_page.h"
 #include "ibrdf/solvers/report/result_preview.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/problem_file.h"
-#include "ibrdf/solvers/estimation/inverse_rendering.h"
 #include "ibrdf/solvers/forward/render_scene.h"
 #include "ibrdf/solvers/problem/load_problem.h"
 #include "ibrdf/solvers/report/write_results.h"
+#include "ibrdf/solvers/solve/solve.h"
 #include "tests/support/solver_testing.h"
 #include "tests/support/temp_dir.h"
 

@@ -142,60 +142,6 @@ TEST_F(ReflectanceSolverTest, InfeasibleStartIsLeftAsItIs) {
   EXPECT_EQ(truth_, p);
 }
 
-class GaugeShiftTest : public ReflectanceSolverTest {
- protected:
-  // The function that the shift minimises, from the header's words.
-  double Value(const std::vector<double>& d) const {
-    std::vector<double> p = truth_;
-    for (int k = 0; k < 2; ++k) {
-      for (int c = 0; c < 3; ++c) p[7 * k + 4 + c] += d[c];
-    }
-    double sum = LobePriorCostValue(scene_.lobes, options_.prior, p);
-    for (const int c : {0, 2}) {
-      const double chroma = (mean_[c] - d[c]) - (mean_[1] - d[1]);
-      sum += 0.5 * chroma * chroma / (kLightStd * kLightStd);
-    }
-    return sum;
-  }
-
-  static constexpr double kLightStd = 0.3;
-  const double mean_[3] = {1.0, 0.2, -2.0};
-};
-
-TEST_F(GaugeShiftTest, IsTheMinimiser) {
-  const std::vector<double> d =
-      GaugeShift(scene_.lobes, options_.prior, truth_, mean_, kLightStd);
-  ASSERT_EQ(size_t{3}, d.size());
-  EXPECT_GT(Norm(d), 0.1);
-  for (int c = 0; c < 3; ++c) {
-    std::vector<double> up = d, down = d;
-    up[c] += 0.1;
-    down[c] -= 0.1;
-    // Quadratic, so central differences are exact.
-    EXPECT_NEAR(0.0, (Value(up) - Value(down)) / 0.2, 1e-9);
-    EXPECT_GT(Value(up), Value(d));
-  }
-}
-
-TEST_F(GaugeShiftTest, LeavesTheImageAsItIs) {
-  const std::vector<double> d =
-      GaugeShift(scene_.lobes, options_.prior, truth_, mean_, kLightStd);
-  std::vector<double> p = truth_;
-  std::vector<float> map = map_;
-  for (int c = 0; c < 3; ++c) {
-    for (int k = 0; k < 2; ++k) p[7 * k + 4 + c] += d[c];
-    for (size_t t = c; t < map.size(); t += 3) {
-      map[t] *= static_cast<float>(std::exp(-d[c]));
-    }
-  }
-  const std::vector<double> before = scene_.Render(truth_, map_);
-  const std::vector<double> after = scene_.Render(p, map);
-  // Some roundings of float per term.
-  for (size_t i = 0; i < before.size(); ++i) {
-    EXPECT_NEAR(before[i], after[i], 2e-6 * before[i]);
-  }
-}
-
 TEST(EmbeddingPrior, IsMeanAndSpreadOfTheColours) {
   NeuralBrdfModel model = TinyModel(2);
   model.log_colours = {1, 2, 3, 5, 6, 7};

@@ -18,58 +18,53 @@ constexpr int kAcross = 24;  // 3x3 pixels to a bin
 constexpr double kMinCosine = 0.1;
 
 // Of radiance that is another in every pixel; one of them is black.
-InverseProblem SphereProblem() {
-  InverseProblem problem;
-  problem.points = SpherePoints(kSize);
-  problem.image = Image(kSize, kSize);
-  for (size_t i = 0; i < problem.image.rgb.size(); ++i) {
-    problem.image.rgb[i] = static_cast<float>(std::exp(std::sin(7.0 * i)));
+Observation SphereObservation() {
+  Image image(kSize, kSize);
+  for (size_t i = 0; i < image.rgb.size(); ++i) {
+    image.rgb[i] = static_cast<float>(std::exp(std::sin(7.0 * i)));
   }
-  problem.image.rgb[size_t{3} * (kSize / 2 * kSize + kSize / 2)] = 0.0f;
-  return problem;
+  image.rgb[size_t{3} * (kSize / 2 * kSize + kSize / 2)] = 0.0f;
+  return Observe(image, SpherePoints(kSize));
 }
 
-TEST(LevelPair, IsANinthOfTheImageAndItsCells) {
-  const InverseProblem problem = SphereProblem();
-  const LevelPair pair = MakeLevelPair(problem, kAcross);
+TEST(ObservationPair, IsANinthOfTheImageAndItsBins) {
+  const Observation all = SphereObservation();
+  const ObservationPair pair = MakePair(all, kSize, kAcross);
   const double share =
-      static_cast<double>(pair.pixels->points.size()) / problem.points.size();
+      static_cast<double>(pair.pixels.points.size()) / all.points.size();
   EXPECT_NEAR(1.0 / 9.0, share, 0.02);
   std::set<int> blocks;
-  for (const ShadingPoint& p : pair.pixels->points) {
+  for (const ShadingPoint& p : pair.pixels.points) {
     blocks.insert(p.pixel / kSize / 8 * 100 + p.pixel % kSize / 8);
   }
   EXPECT_GE(blocks.size(), 8u);  // of nine, corners may miss the sphere
   const BinMeans bins = MeanByNormal(
-      pair.pixels->points, RadianceOf(problem.image, pair.pixels->points),
-      kAcross, kMinCosine);
-  ASSERT_EQ(bins.points.size(), pair.bins->points.size());
-  EXPECT_LT(3 * bins.points.size(), pair.pixels->points.size());
-  EXPECT_EQ(bins.radiance, pair.bins->observed.radiance);
+      pair.pixels.points, pair.pixels.observed.radiance, kAcross, kMinCosine);
+  ASSERT_EQ(bins.points.size(), pair.bins.points.size());
+  EXPECT_LT(3 * bins.points.size(), pair.pixels.points.size());
+  EXPECT_EQ(bins.radiance, pair.bins.observed.radiance);
 }
 
 // All pixels of the pair are transported at once.
-TEST(LevelPair, OfALargeImageIsThinner) {
-  InverseProblem problem;
-  problem.points = SpherePoints(700);
-  problem.image = Image(700, 700);
-  std::fill(problem.image.rgb.begin(), problem.image.rgb.end(), 1.0f);
-  ASSERT_GT(problem.points.size() / 9, 40000u);
-  const LevelPair pair = MakeLevelPair(problem, kAcross);
-  EXPECT_LT(pair.pixels->points.size(), 9000u);
-  EXPECT_GT(pair.pixels->points.size(), 4000u);
-  EXPECT_GT(pair.bins->points.size(), 300u);
+TEST(ObservationPair, OfALargeImageIsThinner) {
+  Image image(700, 700);
+  std::fill(image.rgb.begin(), image.rgb.end(), 1.0f);
+  const Observation all = Observe(image, SpherePoints(700));
+  ASSERT_GT(all.points.size() / 9, 40000u);
+  const ObservationPair pair = MakePair(all, 700, kAcross);
+  EXPECT_LT(pair.pixels.points.size(), 9000u);
+  EXPECT_GT(pair.pixels.points.size(), 4000u);
+  EXPECT_GT(pair.bins.points.size(), 300u);
 }
 
 TEST(BinningError, IsTheMeanDifferenceOfLogarithms) {
-  const InverseProblem problem = SphereProblem();
-  const LevelPair pair = MakeLevelPair(problem, kAcross);
-  const std::vector<double> of_pixels =
-      RadianceOf(problem.image, pair.pixels->points);
-  std::vector<double> of_bins = pair.bins->observed.radiance;
+  const Observation all = SphereObservation();
+  const ObservationPair pair = MakePair(all, kSize, kAcross);
+  const std::vector<double>& of_pixels = pair.pixels.observed.radiance;
+  std::vector<double> of_bins = pair.bins.observed.radiance;
   const auto error = [&](const std::vector<double>& pixels,
                          const std::vector<double>& bins) {
-    return BinningError(*pair.pixels, pixels, bins, kAcross);
+    return BinningError(pair.pixels, pixels, bins, kAcross);
   };
   EXPECT_LT(error(of_pixels, of_bins), 1e-12);
   for (size_t i = 0; i < of_bins.size(); ++i) {
@@ -80,6 +75,42 @@ TEST(BinningError, IsTheMeanDifferenceOfLogarithms) {
   EXPECT_EQ(0.0, error(std::vector<double>(of_pixels.size(), 0.0), of_bins));
   of_bins[0] = 0.0;
   EXPECT_EQ(0.0, error(of_pixels, of_bins));
+}
+
+TEST(OnePixelPerBin, KeepsPixelsAsTheyAre) {
+  const Observation all = SphereObservation();
+  const Observation some = OnePixelPerBin(all, kAcross);
+  EXPECT_LT(4 * some.points.size(), all.points.size());
+  EXPECT_GT(some.points.size(), 200u);
+  size_t i = 0;  // both run by pixel within a bin, not over all
+  for (size_t k = 0; k < some.points.size(); ++k) {
+    for (i = 0; all.points[i].pixel != some.points[k].pixel; ++i) {
+    }
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_EQ(all.observed.radiance[3 * i + c],
+                some.observed.radiance[3 * k + c]);
+    }
+  }
+}
+
+TEST(Thin, KeepsEveryFewRowsAndColumnsOfALargeImage) {
+  Image image(300, 300);
+  std::fill(image.rgb.begin(), image.rgb.end(), 1.0f);
+  const Observation all = Observe(image, SpherePoints(300));
+  const Observation thin = Thin(all, 300);
+  ASSERT_GT(all.points.size(), 60000u);
+  EXPECT_LE(thin.points.size(), 4100u);
+  EXPECT_GT(thin.points.size(), 2000u);
+  for (const ShadingPoint& p : thin.points) {
+    EXPECT_EQ(0, p.pixel % 300 % 5);
+    EXPECT_EQ(0, p.pixel / 300 % 5);
+  }
+}
+
+// What cannot be used leaves nothing to thin.
+TEST(Thin, OfABlackImageIsTheImage) {
+  const Observation all = Observe(Image(300, 300), SpherePoints(300));
+  EXPECT_EQ(all.points.size(), Thin(all, 300).points.size());
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/flow_lobes.h"
-#include "ibrdf/solvers/estimation/inverse_rendering.h"
+#include "ibrdf/solvers/solve/solve.h"
 #include "ibrdf/transport/transport.h"
 #include "tests/properties/generators.h"
 #include "tests/support/solver_testing.h"

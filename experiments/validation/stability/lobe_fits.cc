@@ -10,8 +10,8 @@
 #include "experiments/validation/stability/naive_flow.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/flow/triangular_reference.h"
-#include "ibrdf/solvers/estimation/exposure.h"
 #include "ibrdf/solvers/joint/reflectance_solver.h"
+#include "ibrdf/solvers/solve/exposure.h"
 #include "tests/support/render_testing.h"
 
 namespace ibrdf {

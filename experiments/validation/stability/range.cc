@@ -9,7 +9,7 @@
 #include "experiments/validation/stability/sweeps.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/solvers/costs/log_radiance_cost.h"
-#include "ibrdf/solvers/estimation/exposure.h"
+#include "ibrdf/solvers/solve/exposure.h"
 #include "tests/support/render_testing.h"
 
 namespace ibrdf {

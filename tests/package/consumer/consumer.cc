@@ -6,7 +6,7 @@
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/light/illumination_unet.h"
-#include "ibrdf/solvers/programs/evaluate_files.h"
+#include "ibrdf/metrics/brdf_metrics.h"
 
 // The network reaches the kernels, compiled once per instruction set.
 bool InitialMapIsConstant() {
@@ -28,13 +28,21 @@ bool TableEqualsItself(const char* path) {
   ibrdf::MerlTable table;
   table.raw.assign(size_t{3} * ibrdf::kMerlBins, 100.0);
   if (!ibrdf::WriteMerl(table, path).ok()) return false;
-  const auto metrics = ibrdf::EvaluateBrdfFiles(path, path);
-  return metrics.ok() && metrics->front().second == 0.0;
+  const auto read = ibrdf::ReadMerl(path);
+  if (!read.ok()) return false;
+  const auto metrics = ibrdf::CompareBrdfs(*read, table);
+  return metrics.ok() && metrics->log_rmse == 0.0;
+}
+
+// A problem without an image is refused.
+bool RefusesAnEmptyProblem() {
+  return !ibrdf::SolveInverseRendering({}, nullptr, nullptr).ok();
 }
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  const bool ok = InitialMapIsConstant() && TableEqualsItself(argv[1]);
+  const bool ok = InitialMapIsConstant() && TableEqualsItself(argv[1]) &&
+                  RefusesAnEmptyProblem();
   std::printf("%s\n", ok ? "ok" : "failed");
   return ok ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/estimation/exposure.h"
+#include "ibrdf/solvers/solve/exposure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/estimation/inverse_rendering.h"
+#include "ibrdf/solvers/solve/solve.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/estimation/reflectance_spread.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
 
 #include <glog/logging.h>
 

@@ -1,6 +1,6 @@
 // Units of radiance: an estimate must not depend on them.
 #pragma once
-#include "ibrdf/solvers/estimation/inverse_rendering.h"
+#include "ibrdf/solvers/solve/solve.h"
 
 namespace ibrdf {
 

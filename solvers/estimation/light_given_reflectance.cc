@@ -1,0 +1,237 @@
+#include "ibrdf/solvers/estimation/light_given_reflectance.h"
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "ibrdf/solvers/estimation/outer_iterations.h"
+#include "ibrdf/solvers/illumination/log_map_fit.h"
+#include "ibrdf/solvers/illumination/process_illumination.h"
+#include "ibrdf/solvers/illumination/resample_planes.h"
+
+namespace ibrdf {
+namespace {
+
+// Shares of the time that remains, at most: the MAP estimate under the Gaussian
+// process; the last stage, whose last steps take the rest.
+constexpr double kProcessShare = 0.5;
+constexpr double kMapShare = 0.9;
+// The network is dropped above this multiple of the MAP estimate's misfit: the
+// latter is the smoother of the two where the image tells nothing and has the
+// finer detail where it does.
+constexpr double kWorseMisfit = 1.02;
+// Finer bins are taken where binning leaves out more than this share of the
+// misfit.
+constexpr double kBlurredShare = 0.2;
+// Maps are first found at this size or below, where their sides halve; in no
+// case at a larger one than a process's (ProcessSize).
+constexpr int kProcessWidth = 128;
+
+bool IsFree(const SolveSetup& setup) {
+  return setup.problem->illumination_prior == IlluminationPrior::kNone;
+}
+
+Estimate Begin(const SolveSetup& setup, ReflectanceEstimate reflectance) {
+  Estimate estimate;
+  estimate.iterate.state.lobes = reflectance.lobes;
+  estimate.iterate.scale = setup.initial_scale;
+  estimate.reflectance = std::move(reflectance);
+  estimate.pixels = std::make_unique<ObservedPixels>(setup, setup.binned);
+  return estimate;
+}
+
+void Report(const std::string& stage, const SolveSetup& setup,
+            const Estimate& estimate, SolveContext* context) {
+  context->Report(Evaluate(stage, setup, *context, estimate.iterate,
+                           estimate.pixels.get()));
+}
+
+// Whether the map at hand makes light that binned pixels cannot show.
+bool BinsBlur(const SolveSetup& setup, const SolveContext& context,
+              const Estimate& estimate) {
+  // Points in shadow are not binned. And what pixels tell beyond bins of an
+  // estimated reflectance is as much its errors as the map.
+  if (setup.transport.visibility != nullptr || setup.lobes_unknown()) {
+    return false;
+  }
+  if (context.StopAfter(1.0)()) return false;
+  // A dense method was found to take the coarser bins.
+  if (MethodFor(setup.problem->solver, JointBlocks::kLight) ==
+      JointMethod::kTrustRegion) {
+    return false;
+  }
+  ObservationPair pair =
+      MakePair(setup.pixels, setup.problem->image.width, kMapBins);
+  if (pair.bins.observed.num_valid == 0) return false;
+  const Iterate& iterate = estimate.iterate;
+  const auto radiance = [&](const Observation& observation) {
+    ObservedPixels pixels(setup, observation);
+    const PosteriorObjective on = ObjectiveOn(
+        &pixels, setup, iterate.light, iterate.light.priors, iterate.scale);
+    on.objective->Evaluate(iterate.state);
+    return on.objective->radiance();
+  };
+  const double error = BinningError(pair.pixels, radiance(pair.pixels),
+                                    radiance(pair.bins), kMapBins);
+  return error > kBlurredShare * Evaluate("map", setup, context, iterate,
+                                          estimate.pixels.get())
+                                     .misfit;
+}
+
+// The map from binned pixels, and from finer bins where those tell more.
+Status IterateMap(const SolveSetup& setup, JointMethod method, double share,
+                  SolveContext* context, Estimate* estimate) {
+  OuterIterationOptions options;
+  options.stage = "map";
+  options.method = method;
+  options.share = share;
+  IBRDF_RETURN_IF_ERROR(RunOuterIterations(
+      options, setup, estimate->pixels.get(), context, &estimate->iterate));
+  if (!BinsBlur(setup, *context, *estimate)) return OkStatus();
+  *estimate->pixels =
+      ObservedPixels(setup, MeansByNormal(setup.pixels, kFineMapBins));
+  options.stage = "fine map";
+  return RunOuterIterations(options, setup, estimate->pixels.get(), context,
+                            &estimate->iterate);
+}
+
+// The MAP estimate under the Gaussian process, whose parameters are as good as
+// whitened and take a tenth of the time of a network's.
+Status EstimateProcessMap(const SolveSetup& setup, MapSize size,
+                          JointMethod method, double share,
+                          SolveContext* context, Estimate* estimate) {
+  const LightPosterior& posterior = estimate->reflectance.light;
+  BeginLight(MakeLightModel(
+                 MakeProcessIllumination(
+                     size.width, size.height, LightProcess(),
+                     posterior.hyperparameters, posterior.directional_lights),
+                 false),
+             setup, estimate);
+  SetReference(setup, estimate);
+  Report("constant map", setup, *estimate, context);
+  if (!posterior.mode.empty()) {
+    LogMapFitOptions o;
+    o.should_stop = context->StopAfter(kProcessShare / 2);
+    FitLogMap(ResamplePlanes(posterior.mode, posterior.mode_size, size), o,
+              estimate->iterate.light.map.get(),
+              &estimate->iterate.state.light);
+  }
+  return IterateMap(setup, method, share, context, estimate);
+}
+
+// Log radiance of the iterate's map, planes [3][H][W].
+std::vector<float> LogMapOf(const Iterate& iterate) {
+  std::vector<float> log_map(iterate.light.map->num_outputs());
+  iterate.light.map->Forward(iterate.state.light.data(), log_map.data());
+  return log_map;
+}
+
+// The map as the network's output, fitted first to the MAP estimate at hand,
+// which is kept where the network does not explain the image as well.
+Status EstimateNetworkMap(const SolveSetup& setup, SolveContext* context,
+                          Estimate* estimate) {
+  Iterate* const iterate = &estimate->iterate;
+  ObservedPixels* const pixels = estimate->pixels.get();
+  const double process_misfit =
+      Evaluate("map", setup, *context, *iterate, pixels).misfit;
+  const std::vector<float> log_map = LogMapOf(*iterate);
+  const std::vector<float> process_parameters = iterate->state.light;
+  const MapSize process_size = SizeOf(iterate->light, setup);
+  std::unique_ptr<IlluminationModel> process = std::move(iterate->light.map);
+
+  BeginLightAtLevel(MakeLightModel(MakeIllumination(*setup.problem), true),
+                    estimate);
+  SetReference(setup, estimate);
+  const MapSize size = SizeOf(iterate->light, setup);
+  LogMapFitOptions o;
+  o.should_stop = context->StopAfter(kMapShare / 2);
+  FitLogMap(ResamplePlanes(log_map, process_size, size), o,
+            iterate->light.map.get(), &iterate->state.light);
+  Report("network", setup, *estimate, context);
+  OuterIterationOptions options;
+  options.stage = "network";
+  options.method = MethodFor(setup.problem->solver, JointBlocks::kLight);
+  options.share = kMapShare;
+  // A MAP estimate of another size is no map to fall back on.
+  options.most_misfit =
+      process_size == size ? kWorseMisfit * process_misfit : 0.0;
+  IBRDF_RETURN_IF_ERROR(
+      RunOuterIterations(options, setup, pixels, context, iterate));
+  const double misfit =
+      Evaluate("network", setup, *context, *iterate, pixels).misfit;
+  if (options.most_misfit > 0.0 && misfit > options.most_misfit) {
+    BeginLightAtLevel(MakeLightModel(std::move(process), false), estimate);
+    SetReference(setup, estimate);
+    iterate->state.light = process_parameters;
+    Report("map: the draw kept", setup, *estimate, context);
+  }
+  return OkStatus();
+}
+
+// The size at which the MAP estimate is made for a network of the map's size.
+MapSize FirstSize(MapSize size) {
+  while (size.width > kProcessWidth && size.width % 4 == 0 &&
+         size.height % 2 == 0) {
+    size.width /= 2;
+    size.height /= 2;
+  }
+  return ProcessSize(size);
+}
+
+Status EstimateByProcessAndNetwork(const SolveSetup& setup,
+                                   SolveContext* context, Estimate* estimate) {
+  // solver.method is the network's.
+  const JointMethod method = JointMethod::kGaussNewton;
+  const MapSize size = FirstSize(setup.map_size());
+  const std::function<bool()> cut_short = context->StopAfter(kProcessShare);
+  IBRDF_RETURN_IF_ERROR(EstimateProcessMap(setup, size, method, kProcessShare,
+                                           context, estimate));
+  if (cut_short() && size == setup.map_size()) {
+    // What time is left serves the MAP estimate better than a network.
+    return IterateMap(setup, method, kMapShare, context, estimate);
+  }
+  return EstimateNetworkMap(setup, context, estimate);
+}
+
+// The map of the problem's own parameterisation from a constant one, without a
+// MAP estimate before it.
+Status EstimateDirectly(const SolveSetup& setup, JointMethod method,
+                        SolveContext* context, Estimate* estimate) {
+  BeginLight(MakeLightModel(MakeIllumination(*setup.problem), !IsFree(setup)),
+             setup, estimate);
+  SetReference(setup, estimate);
+  Report("constant map", setup, *estimate, context);
+  return IterateMap(setup, method, kMapShare, context, estimate);
+}
+
+}  // namespace
+
+StatusOr<Estimate> EstimateLight(const SolveSetup& setup,
+                                 ReflectanceEstimate reflectance,
+                                 SolveContext* context) {
+  const InverseProblem& problem = *setup.problem;
+  const JointMethod method = MethodFor(problem.solver, JointBlocks::kLight);
+  Estimate estimate = Begin(setup, std::move(reflectance));
+  Status status;
+  if (IsFree(setup) || problem.solver.max_iterations == 0) {
+    status = EstimateDirectly(setup, method, context, &estimate);
+  } else if (problem.illumination_prior == IlluminationPrior::kProcess) {
+    status = EstimateProcessMap(setup, setup.map_size(), method, kMapShare,
+                                context, &estimate);
+  } else {
+    status = EstimateByProcessAndNetwork(setup, context, &estimate);
+  }
+  if (!status.ok()) return status;
+  return estimate;
+}
+
+Estimate ConstantLight(const SolveSetup& setup,
+                       ReflectanceEstimate reflectance) {
+  Estimate estimate = Begin(setup, std::move(reflectance));
+  BeginLight(MakeLightModel(MakeIllumination(*setup.problem), !IsFree(setup)),
+             setup, &estimate);
+  SetReference(setup, &estimate);
+  return estimate;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,26 @@
+// The reflectance with the light integrated out, and what that says of the
+// light.
+#pragma once
+#include "ibrdf/base/status.h"
+#include "ibrdf/solvers/estimation/posterior.h"
+#include "ibrdf/solvers/estimation/solve_context.h"
+#include "ibrdf/solvers/estimation/solve_setup.h"
+
+namespace ibrdf {
+
+// The reflectance whose posterior is highest with the light integrated out, at
+// the materials' mean level (LevelGauge). kNoImprovement where the light
+// explains the image of no material.
+StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
+                                                  SolveContext* context);
+
+// For a known reflectance: directional lights and hyperparameters of highest
+// posterior probability with the map integrated out; at the average where the
+// image does not tell, or where no stage would use them.
+LightPosterior EstimateLightPosterior(const SolveSetup& setup,
+                                      SolveContext* context);
+
+// The most central of the model's materials.
+ReflectanceEstimate MeanMaterial(const SolveSetup& setup);
+
+}  // namespace ibrdf

@@ -1,0 +1,15 @@
+// The reflectance under a known light.
+#pragma once
+#include "ibrdf/solvers/estimation/posterior.h"
+#include "ibrdf/solvers/estimation/solve_context.h"
+#include "ibrdf/solvers/estimation/solve_setup.h"
+
+namespace ibrdf {
+
+// The materials of the embedding are rendered under the light, the few that
+// explain the image best take some steps of Ceres' trust region, and the best
+// of those are finished at a scale b that falls with their misfit.
+Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
+                                       SolveContext* context);
+
+}  // namespace ibrdf

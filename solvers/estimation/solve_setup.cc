@@ -1,0 +1,143 @@
+#include "ibrdf/solvers/estimation/solve_setup.h"
+
+#include <cmath>
+#include <utility>
+
+#include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/solvers/priors/embedding_prior.h"
+#include "ibrdf/transport/bright_texels.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kInitialScale = 0.1;   // tolerant: scale continuation begins
+constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
+
+// Of directions that stand for a bright texel: finer than the narrowest lobes.
+constexpr double kBrightSpacing = 0.75 * M_PI / 180.0;
+int BrightSamplesPerSide(int map_height) {
+  const double texel = M_PI / map_height;
+  return 2 * static_cast<int>(std::ceil(texel / kBrightSpacing));
+}
+
+double MeanRadiance(const Observations& observed) {
+  double sum = 0.0;
+  for (size_t i = 0; i < observed.radiance.size(); ++i) {
+    if (observed.valid[i / 3]) sum += observed.radiance[i];
+  }
+  return sum / (3.0 * observed.num_valid);
+}
+
+void SetKnownLight(const Image& map, SolveSetup* setup) {
+  BrightTexels split = SplitBrightTexels(map);
+  setup->known_map = std::move(split.rest.rgb);
+  setup->transport.bright = SampleBrightTexels(
+      split.texels, map.height, map.width, BrightSamplesPerSide(map.height));
+}
+
+void SetUnknownLobes(const InverseProblem& problem, SolveSetup* setup) {
+  setup->lobes =
+      std::make_unique<FlowLobes>(problem.model, problem.lobes,
+                                  problem.transport.grid, problem.num_threads);
+  setup->lobe_prior = EmbeddingPrior(problem.model, problem.prior_sigma);
+  setup->materials =
+      JointMaterialPrior(problem.model, problem.lobes, problem.prior_sigma);
+}
+
+}  // namespace
+
+bool SolveSetup::joint_maximum() const {
+  return lobes_unknown() && light_unknown() &&
+         problem->solver.estimator == SolverEstimator::kMaximum;
+}
+
+StatusOr<SolveSetup> SetUp(const InverseProblem& problem) {
+  SolveSetup setup;
+  setup.problem = &problem;
+  setup.pixels = Observe(problem.image, problem.points);
+  if (setup.pixels.observed.num_valid == 0) {
+    return InvalidInput("image",
+                        "no pixel of the object is finite and positive in "
+                        "all three channels");
+  }
+  setup.epsilon = problem.epsilon.value_or(kEpsilonShare *
+                                           MeanRadiance(setup.pixels.observed));
+  setup.initial_scale = problem.scale.value_or(kInitialScale);
+  setup.transport = problem.transport;
+  setup.transport.num_threads = problem.num_threads;
+  if (problem.known_map.has_value()) {
+    SetKnownLight(*problem.known_map, &setup);
+  } else {
+    setup.binned = problem.transport.visibility != nullptr
+                       ? Thin(setup.pixels, problem.image.width)
+                       : MeansByNormal(setup.pixels, kMapBins);
+  }
+  if (!problem.known_brdf.has_value()) SetUnknownLobes(problem, &setup);
+  return setup;
+}
+
+JointMethod MethodFor(const SolverSpec& solver, JointBlocks blocks) {
+  switch (solver.method) {
+    case SolverMethod::kAuto:
+      break;
+    case SolverMethod::kAlternating:
+      return JointMethod::kAlternating;
+    case SolverMethod::kGaussNewton:
+      return JointMethod::kGaussNewton;
+    case SolverMethod::kLbfgs:
+      return JointMethod::kLbfgs;
+    case SolverMethod::kAdam:
+      return JointMethod::kAdam;
+    case SolverMethod::kTrustRegion:
+      return JointMethod::kTrustRegion;
+  }
+  return blocks == JointBlocks::kLight ? JointMethod::kGaussNewton
+                                       : JointMethod::kAlternating;
+}
+
+std::unique_ptr<IlluminationModel> MakeIllumination(
+    const InverseProblem& problem) {
+  if (problem.illumination_prior == IlluminationPrior::kNone) {
+    return MakeFreeIllumination(problem.map_width, problem.map_height);
+  }
+  IlluminationUnetOptions unet;
+  unet.width = problem.map_width;
+  unet.height = problem.map_height;
+  unet.channels = problem.unet_channels;
+  unet.seed = problem.seed;
+  unet.num_threads = problem.num_threads;
+  return MakeUnetIllumination(unet);
+}
+
+Status CheckMethod(const SolveSetup& setup) {
+  const InverseProblem& problem = *setup.problem;
+  const JointMethod method = MethodFor(problem.solver, JointBlocks::kLight);
+  if (!setup.light_unknown() || problem.solver.max_iterations == 0 ||
+      method != JointMethod::kTrustRegion) {
+    return OkStatus();
+  }
+  const bool process =
+      problem.illumination_prior == IlluminationPrior::kProcess &&
+      !setup.joint_maximum();
+  const int64_t texels = int64_t{problem.map_width} * problem.map_height;
+  const int64_t light =
+      process ? 3 * texels : MakeIllumination(problem)->num_parameters();
+  const int64_t lobes =
+      setup.joint_maximum() ? setup.lobes->num_parameters() : 0;
+  return CheckJointMethod(method, light + lobes,
+                          static_cast<int64_t>(3 * setup.binned.points.size()));
+}
+
+ObservedPixels::ObservedPixels(const SolveSetup& setup, Observation observation)
+    : options_(&setup.transport), observation_(std::move(observation)) {}
+
+const Transport& ObservedPixels::TransportFrom(MapSize size) {
+  if (transport_ == nullptr || transport_->map_height() != size.height ||
+      transport_->map_width() != size.width) {
+    transport_ = std::make_unique<Transport>(points(), size.height, size.width,
+                                             *options_);
+  }
+  return *transport_;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,81 @@
+#include "ibrdf/solvers/solve/solve.h"
+
+#include <glog/logging.h>
+
+#include <utility>
+
+#include "ibrdf/solvers/estimation/light_given_reflectance.h"
+#include "ibrdf/solvers/estimation/marginal_search.h"
+#include "ibrdf/solvers/estimation/reflectance_given_light.h"
+#include "ibrdf/solvers/estimation/scale_ambiguity.h"
+#include "ibrdf/solvers/estimation/solve_setup.h"
+#include "ibrdf/solvers/published/joint_maximum.h"
+#include "ibrdf/solvers/solve/exposure.h"
+#include "ibrdf/solvers/solve/summary.h"
+
+namespace ibrdf {
+namespace {
+
+// The light integrated out gives the reflectance; the light is the most
+// probable one given it.
+StatusOr<Estimate> EstimateReflectanceThenLight(const SolveSetup& setup,
+                                                SolveContext* context) {
+  StatusOr<ReflectanceEstimate> reflectance =
+      EstimateReflectance(setup, context);
+  if (reflectance.status().code() == StatusCode::kNoImprovement) {
+    LOG(WARNING) << reflectance.status().message();
+    return ConstantLight(setup, MeanMaterial(setup));
+  }
+  if (!reflectance.ok()) return reflectance.status();
+  return EstimateLight(setup, *std::move(reflectance), context);
+}
+
+StatusOr<Estimate> EstimateLightOfKnownReflectance(const SolveSetup& setup,
+                                                   SolveContext* context) {
+  ReflectanceEstimate known;
+  known.light = EstimateLightPosterior(setup, context);
+  return EstimateLight(setup, std::move(known), context);
+}
+
+StatusOr<Estimate> EstimateUnknowns(const SolveSetup& setup,
+                                    SolveContext* context) {
+  if (!setup.light_unknown()) {
+    return EstimateReflectanceGivenLight(setup, context);
+  }
+  if (!setup.lobes_unknown()) {
+    return EstimateLightOfKnownReflectance(setup, context);
+  }
+  if (setup.joint_maximum()) return EstimateJointMaximum(setup, context);
+  return EstimateReflectanceThenLight(setup, context);
+}
+
+// In units in which radiance is near 1.
+StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
+  const StatusOr<SolveSetup> setup = SetUp(problem);
+  if (!setup.ok()) return setup.status();
+  IBRDF_RETURN_IF_ERROR(CheckMethod(*setup));
+  context->Reserve(PredictSummarySeconds(*setup, *context));
+  StatusOr<Estimate> estimate = EstimateUnknowns(*setup, context);
+  if (!estimate.ok()) return estimate.status();
+  return Summarise(*setup, *std::move(estimate), context);
+}
+
+}  // namespace
+
+StatusOr<Solution> SolveInverseRendering(const InverseProblem& problem,
+                                         const SolveProgress& progress,
+                                         const std::atomic<bool>* stop) {
+  const double exposure = ExposureOf(problem);
+  const InverseProblem scaled = InUnitsOf(exposure, problem);
+  SolveContext context(scaled, progress, stop);
+  StatusOr<Solution> solution = Solve(scaled, &context);
+  if (!solution.ok()) return solution;
+  RestoreUnits(exposure, &*solution);
+  if (problem.solver.gauge != SolverGauge::kPrior &&
+      !problem.known_map.has_value() && !problem.known_brdf.has_value()) {
+    SetGauge(problem.solver.gauge, problem.lobes, &*solution);
+  }
+  return solution;
+}
+
+}  // namespace ibrdf

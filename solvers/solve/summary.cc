@@ -1,0 +1,210 @@
+#include "ibrdf/solvers/solve/summary.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
+
+namespace ibrdf {
+namespace {
+
+// Pixels that are transported at once: the lists of pairs of all of them would
+// take gigabytes.
+constexpr size_t kPointsAtOnce = 4096;
+constexpr int kSpreadSamples = 64;
+// The time of a summary over that of a transport of all pixels, which it builds
+// and renders by; and that of the table and the samples of the posterior.
+constexpr double kSummaryPerTransport = 1.4;
+constexpr double kTableSeconds = 0.3;
+constexpr size_t kProbePoints = 128;  // that a transport is timed on
+// Of the time that remains when it is predicted.
+constexpr double kMostSummaryShare = 0.6;
+
+// A state at every pixel.
+struct View {
+  JointCost cost;
+  BrdfGrid grid;
+  std::vector<float> map;        // [H, W, 3]
+  std::vector<double> radiance;  // [pixels * 3]
+};
+
+// All but the likelihood of every pixel, and its radiance.
+View ViewOf(const JointState& state, const LightPriors& priors,
+            const SolveSetup& setup, const Estimate& estimate) {
+  // Priors and map are the same on any pixels.
+  const PosteriorObjective on =
+      ObjectiveOn(estimate.pixels.get(), setup, estimate.iterate.light, priors,
+                  estimate.iterate.scale);
+  View view;
+  view.cost = on.objective->Evaluate(state);
+  view.map = on.objective->map();
+  view.grid = setup.lobes_unknown() ? setup.lobes->Grid(state.lobes.data())
+                                    : *setup.problem->known_brdf;
+  return view;
+}
+
+// Radiance and likelihood of the views at every pixel, slice by slice.
+void RenderPixels(const SolveSetup& setup, const Estimate& estimate,
+                  const std::vector<View*>& views) {
+  const std::vector<ShadingPoint>& points = setup.pixels.points;
+  for (View* const view : views) view->radiance.resize(3 * points.size());
+  const bool bounces = setup.transport.patches != nullptr;
+  const size_t at_once = bounces ? kPointsAtOnceWithBounces : kPointsAtOnce;
+  const MapSize size = SizeOf(estimate.iterate.light, setup);
+  for (size_t begin = 0; begin < points.size(); begin += at_once) {
+    const size_t end = std::min(begin + at_once, points.size());
+    const Transport transport(
+        std::vector<ShadingPoint>(points.begin() + begin, points.begin() + end),
+        size.height, size.width, setup.transport);
+    for (View* const view : views) {
+      transport.Render(view->grid, view->map.data(),
+                       &view->radiance[3 * begin]);
+    }
+  }
+  for (View* const view : views) {
+    const LikelihoodValue value = EvaluateLikelihood(
+        view->radiance, setup.pixels.observed,
+        LikelihoodOf(setup, estimate.iterate.scale), nullptr);
+    view->cost.likelihood = value.cost;
+    view->cost.misfit = value.misfit;
+  }
+}
+
+// The reference in the estimate's place, without what speaks of the estimate
+// that was turned down.
+void TurnDown(Estimate* estimate) {
+  estimate->iterate.state = estimate->reference.state;
+  estimate->reflectance.covariance.resize(0, 0);
+  estimate->reflectance.light.log_std = Image();
+  estimate->reflectance.candidates.clear();
+}
+
+Image RenderOf(const View& view, const SolveSetup& setup) {
+  Image render(setup.problem->image.width, setup.problem->image.height);
+  const std::vector<ShadingPoint>& points = setup.pixels.points;
+  for (size_t i = 0; i < points.size(); ++i) {
+    float* rgb = render.rgb.data() + size_t{3} * points[i].pixel;
+    for (int c = 0; c < 3; ++c) {
+      rgb[c] = static_cast<float>(view.radiance[3 * i + c]);
+    }
+  }
+  return render;
+}
+
+// Other candidates, with their distances from the estimate.
+std::vector<Alternative> AlternativesOf(
+    const std::vector<TriedMaterial>& candidates, const LobeDistance& distance,
+    const std::vector<double>& lobes) {
+  std::vector<Alternative> alternatives;
+  if (candidates.empty()) return alternatives;
+  const std::vector<double> found = distance.LogValues(lobes);
+  for (const TriedMaterial& candidate : candidates) {
+    Alternative a;
+    a.start = candidate.name;
+    a.cost = candidate.cost - candidates.front().cost;
+    a.brdf_log_difference =
+        distance.Aligned(distance.LogValues(candidate.parameters), found);
+    if (std::isfinite(a.brdf_log_difference)) alternatives.push_back(a);
+  }
+  return alternatives;
+}
+
+void SummariseReflectance(const SolveSetup& setup, const Estimate& estimate,
+                          Solution* solution) {
+  const InverseProblem& problem = *setup.problem;
+  const std::vector<double>& lobes = estimate.iterate.state.lobes;
+  const Eigen::MatrixXd& covariance = estimate.reflectance.covariance;
+  solution->lobe_parameters = lobes;
+  solution->brdf = setup.lobes->ToMerl(lobes.data());
+  solution->lobe_covariance.assign(covariance.data(),
+                                   covariance.data() + covariance.size());
+  const LobeDistance distance(
+      FlowLobes::Factory(problem.model, problem.lobes, problem.num_threads));
+  if (covariance.size() > 0) {
+    solution->spread =
+        ReflectanceSpread(distance, lobes, solution->lobe_covariance,
+                          kSpreadSamples, problem.seed);
+  }
+  solution->alternatives =
+      AlternativesOf(estimate.reflectance.candidates, distance, lobes);
+}
+
+}  // namespace
+
+double PredictSummarySeconds(const SolveSetup& setup,
+                             const SolveContext& context) {
+  const std::vector<ShadingPoint>& points = setup.pixels.points;
+  const size_t stride = std::max<size_t>(points.size() / kProbePoints, 1);
+  Observation probe;
+  for (size_t i = 0; i < points.size(); i += stride) {
+    probe.points.push_back(points[i]);
+  }
+  const size_t probed = probe.points.size();
+  const double start = context.Elapsed();
+  ObservedPixels(setup, std::move(probe)).TransportFrom(setup.map_size());
+  // Each transport has one of the radiosity patches besides.
+  const auto& patches = setup.transport.patches;
+  const size_t besides = patches ? patches->points().size() : 0;
+  const double transport = (context.Elapsed() - start) *
+                           static_cast<double>(points.size() + besides) /
+                           static_cast<double>(probed + besides);
+  const double seconds =
+      std::min(kSummaryPerTransport * transport +
+                   (setup.lobes_unknown() ? kTableSeconds : 0.0) +
+                   setup.problem->seconds_reserved,
+               kMostSummaryShare * std::max(context.budget() - start, 0.0));
+  VLOG(1) << "the summary is predicted to take " << seconds << " s";
+  return seconds;
+}
+
+Solution Summarise(const SolveSetup& setup, Estimate estimate,
+                   SolveContext* context) {
+  const InverseProblem& problem = *setup.problem;
+  const int num_pixels = setup.pixels.observed.num_valid;
+  const double scale = estimate.iterate.scale;
+  const Reference& reference = estimate.reference;
+  View first = ViewOf(reference.state, reference.priors, setup, estimate);
+  View last = ViewOf(estimate.iterate.state, estimate.iterate.light.priors,
+                     setup, estimate);
+  RenderPixels(setup, estimate, {&first, &last});
+  const TraceEntry start = MakeEntry("start", setup, *context, num_pixels,
+                                     scale, reference.state, first.cost);
+  TraceEntry end = MakeEntry("end", setup, *context, num_pixels, scale,
+                             estimate.iterate.state, last.cost);
+  Solution solution;
+  if (!(end.cost < start.cost)) {
+    TurnDown(&estimate);
+    last = std::move(first);
+    end = start;
+    end.stage = "end";
+    solution.status = Status(StatusCode::kNoImprovement,
+                             "the solver could not improve on its start");
+  }
+  if (context->Interrupted()) {
+    solution.status = Status(StatusCode::kInterrupted,
+                             "interrupted; the best iterate was kept");
+  }
+  context->Report(end);
+  solution.map = Image(problem.map_width, problem.map_height);
+  solution.map.rgb = setup.light_unknown() ? last.map : problem.known_map->rgb;
+  solution.render = RenderOf(last, setup);
+  if (setup.lobes_unknown()) SummariseReflectance(setup, estimate, &solution);
+  solution.map_std = estimate.reflectance.light.log_std;
+  solution.scale = scale;
+  solution.epsilon = setup.epsilon;
+  solution.misfit = end.misfit;
+  solution.start_cost = start.cost;
+  solution.end_cost = end.cost;
+  solution.pixels_used = num_pixels;
+  solution.start = estimate.reflectance.initial_guess;
+  solution.trace = context->trace();
+  solution.seconds = context->Elapsed();
+  return solution;
+}
+
+}  // namespace ibrdf
