@@ -7,6 +7,7 @@
 #include "ibrdf/io/merl.h"
 #include "ibrdf/light/illumination_unet.h"
 #include "ibrdf/metrics/brdf_metrics.h"
+#include "ibrdf/solvers/solve/solve.h"
 
 // The network reaches the kernels, compiled once per instruction set.
 bool InitialMapIsConstant() {
