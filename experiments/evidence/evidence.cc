@@ -101,7 +101,7 @@ class EvidenceStudy {
         factory_, problem_.points, radiance_, options_.process, options_.fine,
         problem_.num_threads, found->directional_lights);
     std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
-                found->start.c_str());
+                found->initial_guess.c_str());
     const Point end = {ToEigen(found->parameters), found->hyperparameters};
     Show(fine, "found", end);
     if (study_.spread) ShowSpread(*found);
@@ -165,7 +165,7 @@ class EvidenceStudy {
     o.least_gain = least_gain;
     descent.summary = Descend(objective, o, &y);
     descent.value = objective.last_value();
-    descent.end = {objective.LobesOf(y.data()), objective.ScalesOf(y.data())};
+    descent.end = {objective.LobesOf(y.data()), objective.HyperparametersOf(y.data())};
     return descent;
   }
 

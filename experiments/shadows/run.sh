@@ -56,7 +56,7 @@ solve() {  # PROBLEM MESH MATERIAL MAP EFFECTS KEY=VALUE...
   "$bin/ibrdf_solve" --problem "$out/$case/problem.yaml" --out "$to" \
     --threads "$threads" --seed 1 --set problem="$problem" \
     --set effects="$effects" "$@" >"$out/$case/$problem-$effects.log" || status=$?
-  # 3: not better than its start; a result all the same.
+  # 3: not better than its initial guess; a result all the same.
   [[ $status == 0 || $status == 3 ]] || return "$status"
   row "$to" "$problem" "$mesh" "$material" "$map" "$effects"
 }

@@ -29,7 +29,7 @@ STEPS = re.compile(r"^  (\d+) steps further", re.M)
 
 def run(command):
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
-    # 3: not better than its start; a result all the same.
+    # 3: not better than its initial guess; a result all the same.
     if done.returncode not in (0, 3):
         sys.exit(f"{command[0]}: exit {done.returncode}: {done.stderr}")
     return done.stdout

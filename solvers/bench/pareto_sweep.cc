@@ -115,7 +115,7 @@ Status Finish(const ParetoSweepOptions& options, const SolverRun& run,
   const StatusOr<std::vector<TraceLine>> trace =
       ReadTrace(EstimateFile(options, run, "result.json"));
   if (!trace.ok()) return trace.status();
-  row->Set("rounds", std::to_string(CountRounds(*trace)));
+  row->Set("rounds", std::to_string(CountIterations(*trace)));
   const StatusOr<Image> map =
       ReadImage(EstimateFile(options, run, "illumination.exr"));
   if (!map.ok()) return map.status();
@@ -153,13 +153,13 @@ std::string MisfitTimeTable(const ParetoSweepOptions& options,
         ReadTrace(EstimateFile(options, reference, "result.json"));
     const auto fast = ReadTrace(EstimateFile(options, *of_case, "result.json"));
     if (!slow.ok() || !fast.ok()) continue;
-    const TraceLine* const last = LastRound(*slow);
+    const TraceLine* const last = LastIteration(*slow);
     if (last == nullptr) continue;
     const double schedule = slow->back().seconds;
     const std::optional<double> at = SecondsToMisfit(*fast, *last);
     lines +=
         Cells({reference.of.material, reference.of.map,
-               std::to_string(CountRounds(*slow)), Format("%.4f", last->misfit),
+               std::to_string(CountIterations(*slow)), Format("%.4f", last->misfit),
                Format("%.1f", last->seconds), Format("%.1f", schedule),
                at.has_value() ? Format("%.1f", *at) : "not reached",
                at.has_value() ? Format("%.1f", schedule / *at) : "",

@@ -49,14 +49,14 @@ StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json) {
   return DecodeTrace(result_json, *text);
 }
 
-int CountRounds(const std::vector<TraceLine>& trace) {
+int CountIterations(const std::vector<TraceLine>& trace) {
   return static_cast<int>(
       std::count_if(trace.begin(), trace.end(), [](const TraceLine& line) {
-        return line.stage.find(" round ") != std::string::npos;
+        return line.stage.find(" iteration ") != std::string::npos;
       }));
 }
 
-const TraceLine* LastRound(const std::vector<TraceLine>& trace) {
+const TraceLine* LastIteration(const std::vector<TraceLine>& trace) {
   const TraceLine* last = nullptr;
   for (const TraceLine& line : trace) {
     if (line.has_map && line.stage != "end") last = &line;

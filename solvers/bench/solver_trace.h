@@ -27,11 +27,11 @@ StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json);
 
 // Steps of the optimiser of the map, or of both unknowns, that lowered the
 // cost: lines "STAGE round N". With Adam each is one round of its schedule.
-int CountRounds(const std::vector<TraceLine>& trace);
+int CountIterations(const std::vector<TraceLine>& trace);
 
 // The last line with a map before the end, whose misfit is of all pixels; null:
 // there is none.
-const TraceLine* LastRound(const std::vector<TraceLine>& trace);
+const TraceLine* LastIteration(const std::vector<TraceLine>& trace);
 
 // Seconds until a map and a reflectance had at most the misfit of a line on as
 // many pixels: joined ones have less noise. None: never.

@@ -163,7 +163,7 @@ Status EstimateNetworkMap(const SolveSetup& setup, SolveContext* context,
     BeginLightAtLevel(MakeLightModel(std::move(process), false), estimate);
     SetReference(setup, estimate);
     iterate->state.light = process_parameters;
-    Report("map: the draw kept", setup, *estimate, context);
+    Report("map: Gaussian process kept", setup, *estimate, context);
   }
   return OkStatus();
 }

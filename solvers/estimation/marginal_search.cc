@@ -184,15 +184,15 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
   out.lobes = found->parameters;
   const LevelGauge gauge(problem.model, setup.materials, problem.num_threads);
   out.light = LightOf(*found, gauge.Fix(out.lobes.data()));
-  out.initial_guess = found->start;
+  out.initial_guess = found->initial_guess;
   const auto& materials = setup.materials.materials;
   const auto initial =
       std::find_if(materials.begin(), materials.end(),
-                   [&](const auto& m) { return m.name == found->start; });
+                   [&](const auto& m) { return m.name == found->initial_guess; });
   out.initial_lobes = ToVector(initial->parameters);
   gauge.Fix(out.initial_lobes.data());
   out.covariance = found->covariance;
-  for (const TriedMaterial& candidate : found->tried) {
+  for (const MaterialCandidate& candidate : found->candidates) {
     if (std::isfinite(candidate.cost)) out.candidates.push_back(candidate);
   }
   return out;

@@ -90,7 +90,7 @@ Status RunOuterIterations(const OuterIterationOptions& options,
     MinimiseJoint(options.method, on.objective.get(), &iterate->state, inner);
     if (options.blocks == JointBlocks::kBoth) SettleScale(setup, iterate);
     const TraceEntry after =
-        Evaluate(options.stage + " round " + std::to_string(k), setup, *context,
+        Evaluate(options.stage + " iteration " + std::to_string(k), setup, *context,
                  *iterate, pixels);
     context->CountIteration();
     if (!(after.cost < before.cost)) {

@@ -60,7 +60,7 @@ struct ReflectanceEstimate {
   std::string initial_guess;
   std::vector<double> initial_lobes;
   Eigen::MatrixXd covariance;             // of the lobes; empty: not known
-  std::vector<TriedMaterial> candidates;  // by cost
+  std::vector<MaterialCandidate> candidates;  // by cost
   LightPosterior light;
 };
 

@@ -120,7 +120,7 @@ std::vector<Candidate> Search::FirstCandidates(
     next.lobes = ranked[k].parameters;
     Step(kFirstSteps, kFirstRadius, &next);
     candidates.push_back(MakeCandidate(ranked[k].name, std::move(next)));
-    context_->Report(Entry("start " + ranked[k].name, candidates.back()));
+    context_->Report(Entry("candidate " + ranked[k].name, candidates.back()));
   }
   return candidates;
 }
@@ -187,7 +187,7 @@ void Search::OuterIteration(Candidate* candidate) {
   JointState state = candidate->state;
   Step(kSteps, kRadius, &state);
   Candidate next = MakeCandidate(candidate->name, std::move(state));
-  const TraceEntry after = Entry("refine " + next.name + " round " +
+  const TraceEntry after = Entry("refine " + next.name + " iteration " +
                                      std::to_string(context_->iterations() + 1),
                                  next);
   if (!(after.cost < before.cost)) {

@@ -39,7 +39,8 @@ Eigen::VectorXd MarginalObjective::ParametersOf(const double* y) const {
   return out;
 }
 
-LightHyperparameters MarginalObjective::ScalesOf(const double* y) const {
+LightHyperparameters MarginalObjective::HyperparametersOf(
+    const double* y) const {
   return LightHyperparameters::FromWhitened(y + reflectance_->num_parameters());
 }
 
@@ -69,7 +70,7 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
       !trial_.empty() && std::equal(trial_.begin(), trial_.end(), y);
   LightMode mode = tried ? trial_mode_ : *mode_;
   const MarginalValue value = reflectance_->Evaluate(
-      parameters.data(), noise_, ScalesOf(y), mode_tolerance_, &mode,
+      parameters.data(), noise_, HyperparametersOf(y), mode_tolerance_, &mode,
       gradient != nullptr ? &by_parameter : nullptr);
   if (!value.ok) return false;
   const Eigen::Map<const Eigen::VectorXd> whitened(y, all);
@@ -102,8 +103,8 @@ Eigen::MatrixXd MarginalObjective::Information(const double* y) const {
   const Eigen::Index n = prior_->num_parameters(), all = NumParameters();
   const Eigen::Index first_scale = reflectance_->num_parameters();
   const Eigen::VectorXd parameters = ParametersOf(y);
-  Eigen::MatrixXd information =
-      reflectance_->Information(parameters.data(), noise_, ScalesOf(y), *mode_);
+  Eigen::MatrixXd information = reflectance_->Information(
+      parameters.data(), noise_, HyperparametersOf(y), *mode_);
   if (information.size() == 0 || !information.allFinite()) return {};
   prior_->AddWallInformation(parameters.head(n), &information);
   // Both sides by the whitening.

@@ -39,7 +39,7 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   // MarginalReflectance's, and the lobes' among them.
   Eigen::VectorXd ParametersOf(const double* y) const;
   Eigen::VectorXd LobesOf(const double* y) const;
-  LightHyperparameters ScalesOf(const double* y) const;
+  LightHyperparameters HyperparametersOf(const double* y) const;
   std::vector<double> Whitened(
       const Eigen::VectorXd& parameters,
       const LightHyperparameters& hyperparameters) const;

@@ -19,20 +19,30 @@
 namespace ibrdf {
 namespace {
 
-// Of a ranking's modes, nats: materials differ by tens.
+// A ranking finds modes to so many nats; materials differ by tens.
 constexpr double kRankingTolerance = 0.5;
-// At the fine resolution, of every candidate.
+// Every candidate takes so many steps at the fine resolution.
 constexpr int kTrialIterations = 3;
 
+// Where a refinement at one resolution ended.
+struct LocalOptimum {
+  bool ok = false;
+  std::vector<double> y;
+  double cost = std::numeric_limits<double>::infinity();
+  MarginalValue value;
+  LightMode mode;
+  Eigen::VectorXd noise;
+};
+
 // A search at one resolution.
-class Level {
+class SearchLevel {
  public:
-  Level(const LobeFactory& lobes, const MaterialPrior& prior,
-        const std::vector<ShadingPoint>& points,
-        const std::vector<double>& radiance,
-        const MarginalResolution& resolution,
-        const std::vector<Eigen::Vector3d>& directional_lights,
-        const ReflectanceSearchOptions& options)
+  SearchLevel(const LobeFactory& lobes, const MaterialPrior& prior,
+              const std::vector<ShadingPoint>& points,
+              const std::vector<double>& radiance,
+              const MarginalResolution& resolution,
+              const std::vector<Eigen::Vector3d>& directional_lights,
+              const ReflectanceSearchOptions& options)
       : prior_(prior),
         options_(options),
         reflectance_(lobes, points, radiance, options.process, resolution,
@@ -60,43 +70,37 @@ class Level {
         matrices, noise, hyperparameters, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
     *misfit = value.misfit;
-    double of_scales = 0.0;
-    for (const double y : hyperparameters.Whitened()) of_scales += 0.5 * y * y;
-    return value.cost + prior_.Cost(lobes, nullptr) + of_scales;
+    double of_hyperparameters = 0.0;
+    for (const double y : hyperparameters.Whitened())
+      of_hyperparameters += 0.5 * y * y;
+    return value.cost + prior_.Cost(lobes, nullptr) + of_hyperparameters;
   }
 
-  struct End {
-    bool ok = false;
-    std::vector<double> y;
-    double cost = std::numeric_limits<double>::infinity();
-    MarginalValue value;
-    LightMode mode;
-    Eigen::VectorXd noise;
-  };
-  End Refine(const Eigen::VectorXd& parameters,
-             const LightHyperparameters& hyperparameters,
-             int iterations) const {
-    End end;
-    end.noise = reflectance_.likelihood().FindNoise(
+  LocalOptimum Refine(const Eigen::VectorXd& parameters,
+                      const LightHyperparameters& hyperparameters,
+                      int iterations) const {
+    LocalOptimum optimum;
+    optimum.noise = reflectance_.likelihood().FindNoise(
         reflectance_.Matrices(parameters.data()), options_.sigma,
-        hyperparameters, MarginalObjective::kModeTolerance, &end.mode);
-    const MarginalObjective objective = Objective(end.noise, &end.mode);
-    end.y = objective.Whitened(parameters, hyperparameters);
+        hyperparameters, MarginalObjective::kModeTolerance, &optimum.mode);
+    const MarginalObjective objective = Objective(optimum.noise, &optimum.mode);
+    optimum.y = objective.Whitened(parameters, hyperparameters);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
     o.should_stop = options_.should_stop;
-    const MarginalDescent descent = Descend(objective, o, &end.y);
-    end.ok = descent.ok;
-    end.cost = descent.cost;
-    end.value = objective.last_value();
-    return end;
+    const MarginalDescent descent = Descend(objective, o, &optimum.y);
+    optimum.ok = descent.ok;
+    optimum.cost = descent.cost;
+    optimum.value = objective.last_value();
+    return optimum;
   }
 
-  // Laplace's, of the lobe parameters, by the Gauss-Newton Hessian; empty where
-  // there is none.
-  Eigen::MatrixXd Covariance(End* end) const {
+  // Laplace's covariance of the lobe parameters, by the Gauss-Newton Hessian;
+  // empty where there is none.
+  Eigen::MatrixXd Covariance(LocalOptimum* optimum) const {
     const Eigen::MatrixXd information =
-        Objective(end->noise, &end->mode).Information(end->y.data());
+        Objective(optimum->noise, &optimum->mode)
+            .Information(optimum->y.data());
     if (information.size() == 0) return {};
     VLOG(1) << "marginal posterior: condition of the information, scaled, "
             << ScaledCondition(information);
@@ -114,7 +118,8 @@ class Level {
   MarginalReflectance reflectance_;
 };
 
-// The search from stage to stage: what was tried, and the best end so far.
+// The search from stage to stage: the materials, the candidates that are left
+// of them, and the best local optimum so far.
 class Search {
  public:
   Search(const LobeFactory& lobes, const MaterialPrior& prior,
@@ -127,24 +132,24 @@ class Search {
         directional_lights_(FindDirectionalLights(
             points, radiance, options.most_directional_lights)),
         level_at_([&](const MarginalResolution& resolution) {
-          return std::make_unique<Level>(lobes, prior, points, radiance_,
-                                         resolution, directional_lights_,
-                                         options);
+          return std::make_unique<SearchLevel>(lobes, prior, points, radiance_,
+                                               resolution, directional_lights_,
+                                               options);
         }) {
     for (const MaterialPrior::Material& m : prior.materials) {
-      tried_.push_back(
+      materials_.push_back(
           {m.name, kInfinity, 0.0, kInfinity, ToVector(m.parameters)});
     }
   }
 
   // Ranks the materials and refines the best; false where none explains the
   // image.
-  bool Start() {
+  bool RankAndRefine() {
     std::vector<Ranking> rankings;
     for (const LightHyperparameters& hyperparameters :
          {LightHyperparameters(), LightHyperparameters::Harsh()}) {
       Ranking& ranking = rankings.emplace_back();
-      for (size_t i = 0; i < tried_.size(); ++i) {
+      for (size_t i = 0; i < materials_.size(); ++i) {
         ranking.push_back({static_cast<int>(i), hyperparameters});
       }
     }
@@ -159,35 +164,36 @@ class Search {
                 return a.front().cost < b.front().cost;
               });
     if (!std::isfinite(rankings.front().front().cost)) return false;
-    Report("rank " + std::to_string(tried_.size()) + " materials",
+    Report("rank " + std::to_string(materials_.size()) + " materials",
            rankings.front().front().cost, rankings.front().front().misfit);
     for (int k = 0; k < options_.coarse_stages.front().most; ++k) {
-      for (const Ranked& ranked : rankings[k % rankings.size()]) {
+      for (const RankedMaterial& ranked : rankings[k % rankings.size()]) {
         if (!std::isfinite(ranked.cost)) break;
         const bool taken = std::any_of(
-            from_.begin(), from_.end(),
-            [&](const Candidate& c) { return c.tried == ranked.tried; });
+            candidates_.begin(), candidates_.end(),
+            [&](const Candidate& c) { return c.material == ranked.material; });
         if (taken) continue;
-        from_.push_back({ranked.tried,
-                         coarse_->reflectance().WithDirectionalLights(
-                             ToEigen(tried_[ranked.tried].parameters)),
-                         ranked.hyperparameters, 0.0});
+        candidates_.push_back(
+            {ranked.material,
+             coarse_->reflectance().WithDirectionalLights(
+                 ToEigen(materials_[ranked.material].parameters)),
+             ranked.hyperparameters, 0.0});
         break;
       }
     }
-    for (const SearchStage& round : options_.coarse_stages) {
-      from_.resize(std::min<size_t>(from_.size(), round.most));
-      if (from_.empty() || !Refine("", *coarse_, round.iterations)) {
+    for (const SearchStage& stage : options_.coarse_stages) {
+      candidates_.resize(std::min<size_t>(candidates_.size(), stage.most));
+      if (candidates_.empty() || !Refine("", *coarse_, stage.iterations)) {
         return false;
       }
-      Report("refine " + std::to_string(from_.size()), best_.cost,
+      Report("refine " + std::to_string(candidates_.size()), best_.cost,
              best_.value.misfit);
     }
     return true;
   }
 
-  // Compares the ends at the fine resolution and finishes the best.
-  void Finish() {
+  // Compares the candidates at the fine resolution and finishes the best.
+  void FinishBest() {
     if (options_.fine_iterations == 0 || Stopped()) return;
     fine_ = level_at_(options_.fine);
     DropBeyond(options_.coarse_margin);
@@ -199,17 +205,18 @@ class Search {
   // Takes what the object throws on itself out of the image.
   void TakeBouncesOut() {
     if (!options_.bounce_gain || options_.fine_iterations == 0) return;
-    for (int round = 0; round < options_.bounce_rounds && !Stopped(); ++round) {
+    for (int round = 0; round < options_.bounce_iterations && !Stopped();
+         ++round) {
       const std::vector<double> gain =
           options_.bounce_gain(Lobes(best_candidate_), LogRadiance());
       if (gain.empty()) return;
       for (size_t i = 0; i < gain.size(); ++i) {
         radiance_[i] = image_[i] / gain[i];
       }
-      // The last level stays until the next has an end: the best one is of it.
-      std::unique_ptr<Level> next =
+      // The last level stays until the next has an optimum: the best is of it.
+      std::unique_ptr<SearchLevel> next =
           level_at_(best_level_->reflectance().resolution());
-      from_ = {best_candidate_};
+      candidates_ = {best_candidate_};
       if (!Refine("bounces ", *next, options_.fine_iterations)) return;
       fine_ = std::move(next);
     }
@@ -218,7 +225,7 @@ class Search {
   ReflectanceSearchResult Result() {
     ReflectanceSearchResult result;
     result.parameters = Lobes(best_candidate_);
-    result.start = tried_[best_candidate_.tried].name;
+    result.initial_guess = materials_[best_candidate_.material].name;
     result.cost = best_.cost;
     result.misfit = best_.value.misfit;
     result.hyperparameters = best_candidate_.hyperparameters;
@@ -237,33 +244,35 @@ class Search {
                 reflectance.Matrices(best_candidate_.parameters.data()),
                 best_.noise, best_candidate_.hyperparameters, best_.mode)
             .cwiseSqrt());
-    std::stable_sort(tried_.begin(), tried_.end(),
-                     [](const TriedMaterial& a, const TriedMaterial& b) {
-                       return std::tie(a.cost, a.first_cost) <
-                              std::tie(b.cost, b.first_cost);
-                     });
-    result.tried = std::move(tried_);
+    std::stable_sort(
+        materials_.begin(), materials_.end(),
+        [](const MaterialCandidate& a, const MaterialCandidate& b) {
+          return std::tie(a.cost, a.first_cost) <
+                 std::tie(b.cost, b.first_cost);
+        });
+    result.candidates = std::move(materials_);
     return result;
   }
 
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  // Where a refinement of tried_[tried] ended and the next begins.
+  // Where a refinement of materials_[material] led, and the next begins.
   struct Candidate {
-    int tried = 0;
+    int material = 0;
     Eigen::VectorXd parameters;
     LightHyperparameters hyperparameters;
     double cost = 0.0;
   };
 
-  // Of from_, all whose costs are not within the margin of the lowest.
+  // Drops the candidates whose costs are not within the margin of the lowest.
   void DropBeyond(double margin) {
-    from_.erase(std::find_if(from_.begin(), from_.end(),
-                             [&](const Candidate& c) {
-                               return c.cost > from_.front().cost + margin;
-                             }),
-                from_.end());
+    candidates_.erase(std::find_if(candidates_.begin(), candidates_.end(),
+                                   [&](const Candidate& c) {
+                                     return c.cost >
+                                            candidates_.front().cost + margin;
+                                   }),
+                      candidates_.end());
   }
 
   std::vector<double> LogRadiance() const {
@@ -283,70 +292,78 @@ class Search {
   }
 
   // Materials under light of one kind.
-  struct Ranked {
-    int tried = 0;
+  struct RankedMaterial {
+    int material = 0;
     LightHyperparameters hyperparameters;
     double cost = kInfinity, misfit = 0.0;
   };
-  using Ranking = std::vector<Ranked>;
+  using Ranking = std::vector<RankedMaterial>;
 
   // Whole materials in parallel: what each does inside then runs in its thread.
-  void RankAll(const Level& level, std::vector<Ranking>* rankings) {
+  void RankAll(const SearchLevel& level, std::vector<Ranking>* rankings) {
     // Costs of two resolutions do not compare.
-    for (TriedMaterial& tried : tried_) tried.first_cost = kInfinity;
+    for (MaterialCandidate& material : materials_)
+      material.first_cost = kInfinity;
     for (Ranking& ranking : *rankings) {
       ParallelFor(static_cast<int64_t>(ranking.size()), options_.num_threads,
                   [&](int64_t i, int) {
-                    Ranked& ranked = ranking[i];
+                    RankedMaterial& ranked = ranking[i];
                     ranked.cost = kInfinity;
                     if (i > 0 && Stopped()) return;
-                    ranked.cost =
-                        level.Rank(ToEigen(tried_[ranked.tried].parameters),
-                                   ranked.hyperparameters, &ranked.misfit);
+                    ranked.cost = level.Rank(
+                        ToEigen(materials_[ranked.material].parameters),
+                        ranked.hyperparameters, &ranked.misfit);
                   });
-      for (const Ranked& ranked : ranking) {
-        TriedMaterial& tried = tried_[ranked.tried];
-        if (ranked.cost < tried.first_cost) {
-          tried.first_cost = ranked.cost;
-          tried.first_misfit = ranked.misfit;
+      for (const RankedMaterial& ranked : ranking) {
+        MaterialCandidate& material = materials_[ranked.material];
+        if (ranked.cost < material.first_cost) {
+          material.first_cost = ranked.cost;
+          material.first_misfit = ranked.misfit;
         }
       }
-      std::stable_sort(
-          ranking.begin(), ranking.end(),
-          [](const Ranked& a, const Ranked& b) { return a.cost < b.cost; });
+      std::stable_sort(ranking.begin(), ranking.end(),
+                       [](const RankedMaterial& a, const RankedMaterial& b) {
+                         return a.cost < b.cost;
+                       });
     }
   }
 
-  // Whole refinements of from_ in parallel, joined in order. The candidates
-  // that come to something take their places, the best first; false where none
-  // does, which leaves all as it was.
-  bool Refine(const std::string& what, const Level& level, int iterations) {
-    std::vector<Level::End> ends(from_.size());
-    ParallelFor(static_cast<int64_t>(from_.size()), options_.num_threads,
+  // Whole refinements of candidates_ in parallel, joined in order. The
+  // candidates that come to something take their places, the best first; false
+  // where none does, which leaves all as it was.
+  bool Refine(const std::string& what, const SearchLevel& level,
+              int iterations) {
+    std::vector<LocalOptimum> optima(candidates_.size());
+    ParallelFor(static_cast<int64_t>(candidates_.size()), options_.num_threads,
                 [&](int64_t k, int) {
                   if (k > 0 && Stopped()) return;
-                  ends[k] = level.Refine(from_[k].parameters,
-                                         from_[k].hyperparameters, iterations);
+                  optima[k] =
+                      level.Refine(candidates_[k].parameters,
+                                   candidates_[k].hyperparameters, iterations);
                 });
     std::vector<Candidate> reached;
-    for (size_t k = 0; k < ends.size(); ++k) {
-      Level::End& end = ends[k];
-      if (!end.ok) continue;
+    for (size_t k = 0; k < optima.size(); ++k) {
+      LocalOptimum& optimum = optima[k];
+      if (!optimum.ok) continue;
       // Costs of two resolutions do not compare.
       if (best_level_ != &level) {
-        for (TriedMaterial& tried : tried_) tried.cost = kInfinity;
+        for (MaterialCandidate& material : materials_)
+          material.cost = kInfinity;
       }
-      TriedMaterial& tried = tried_[from_[k].tried];
-      const MarginalObjective objective = level.Objective(end.noise, &end.mode);
-      reached.push_back({from_[k].tried, objective.ParametersOf(end.y.data()),
-                         objective.ScalesOf(end.y.data()), end.cost});
-      tried.cost = end.cost;
-      tried.parameters = ToVector(objective.LobesOf(end.y.data()));
-      if (!what.empty()) Report(what + tried.name, end.cost, end.value.misfit);
-      // With the noise taken anew an end may cost more than it did before.
-      if (reached.size() == 1 || end.cost < best_.cost) {
+      MaterialCandidate& material = materials_[candidates_[k].material];
+      const MarginalObjective objective =
+          level.Objective(optimum.noise, &optimum.mode);
+      reached.push_back(
+          {candidates_[k].material, objective.ParametersOf(optimum.y.data()),
+           objective.HyperparametersOf(optimum.y.data()), optimum.cost});
+      material.cost = optimum.cost;
+      material.parameters = ToVector(objective.LobesOf(optimum.y.data()));
+      if (!what.empty())
+        Report(what + material.name, optimum.cost, optimum.value.misfit);
+      // With the noise taken anew an optimum may cost more than before.
+      if (reached.size() == 1 || optimum.cost < best_.cost) {
         best_level_ = &level;
-        best_ = std::move(end);
+        best_ = std::move(optimum);
         best_candidate_ = reached.back();
       }
     }
@@ -354,7 +371,7 @@ class Search {
     std::stable_sort(
         reached.begin(), reached.end(),
         [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
-    from_ = std::move(reached);
+    candidates_ = std::move(reached);
     return true;
   }
 
@@ -362,13 +379,13 @@ class Search {
   const std::vector<double>& image_;
   std::vector<double> radiance_;  // the image without bounces
   const std::vector<Eigen::Vector3d> directional_lights_;
-  const std::function<std::unique_ptr<Level>(const MarginalResolution&)>
+  const std::function<std::unique_ptr<SearchLevel>(const MarginalResolution&)>
       level_at_;
-  std::unique_ptr<Level> coarse_, fine_;
-  std::vector<TriedMaterial> tried_;
-  std::vector<Candidate> from_;
-  const Level* best_level_ = nullptr;
-  Level::End best_;
+  std::unique_ptr<SearchLevel> coarse_, fine_;
+  std::vector<MaterialCandidate> materials_;
+  std::vector<Candidate> candidates_;
+  const SearchLevel* best_level_ = nullptr;
+  LocalOptimum best_;
   Candidate best_candidate_;
 };
 
@@ -386,11 +403,11 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
                         "positive in all three channels");
   }
   Search search(lobes, prior, points, radiance, options);
-  if (!search.Start()) {
+  if (!search.RankAndRefine()) {
     return Status(StatusCode::kNoImprovement,
                   "no training material explains the image at all");
   }
-  search.Finish();
+  search.FinishBest();
   search.TakeBouncesOut();
   return search.Result();
 }

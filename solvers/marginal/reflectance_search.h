@@ -23,7 +23,7 @@ struct SearchStage {
 struct ReflectanceSearchOptions {
   LightProcess process;
   // All materials are ranked at the first resolution, the best of them at the
-  // second, where some are refined; the end is found at the third.
+  // second, where some are refined; the optimum is found at the third.
   MarginalResolution screen = {{8, 4, 0.2}, 16, 8, {48, 20, 12}};
   MarginalResolution coarse = {{12, 4, 0.2}, 24, 12, {48, 20, 12}};
   MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}, {}};
@@ -31,8 +31,9 @@ struct ReflectanceSearchOptions {
   // At the coarse resolution, the best of each going on to the next. The first
   // takes the rankings' best in turns.
   std::vector<SearchStage> coarse_stages = {{10, 2}, {8, 4}, {3, 6}};
-  // Nats above the lowest cost: ends of the coarse resolution that go on to the
-  // fine one, and of those, after some steps there, the ones that are finished.
+  // Nats above the lowest cost: candidates of the coarse resolution that go on
+  // to the fine one, and of those, after some steps there, the ones that are
+  // finished.
   double coarse_margin = 40.0;
   double margin = 12.0;
   int fine_iterations = 20;
@@ -47,42 +48,43 @@ struct ReflectanceSearchOptions {
   int num_threads = 0;
   // Light that the object throws on itself, of which the search knows nothing:
   // by what each point's radiance [points][3] is above the map's light alone,
-  // at the lobes and the log radiance [3][H W] of an end (factors > 0; empty:
-  // not to be had). The image is divided by them and the end refined, so many
-  // times. Where it settles the model explains the image with its own bounces;
-  // that the factors follow the lobes is left out of the covariance.
+  // at the lobes and the log radiance [3][H W] of an optimum (factors > 0;
+  // empty: not to be had). The image is divided by them and the optimum
+  // refined, so many times. Where it settles the model explains the image with
+  // its own bounces; that the factors follow the lobes is left out of the
+  // covariance.
   std::function<std::vector<double>(const std::vector<double>& lobes,
                                     const std::vector<double>& log_radiance)>
       bounce_gain;
-  int bounce_rounds = 3;
+  int bounce_iterations = 3;
   // Checked between steps, by several threads; true ends early with the best so
   // far.
   std::function<bool()> should_stop;
-  // After each material refined and the end; may be empty.
+  // After each material refined and the last optimum; may be empty.
   std::function<void(const std::string& stage, double cost, double misfit)>
       report;
 };
 
-// A start and where it led, costs in nats.
-struct TriedMaterial {
+// A material and the local optimum that it led to, costs in nats.
+struct MaterialCandidate {
   std::string name;
   double first_cost = 0.0;    // coarse
   double first_misfit = 0.0;  // mean |log L_o - log I| over bins
-  // At the finest resolution that the search came to; infinite where this start
-  // did not come to it.
+  // At the finest resolution that the search came to; infinite where this
+  // candidate was dropped before.
   double cost = 0.0;
-  std::vector<double> parameters;  // at the end
+  std::vector<double> parameters;  // at the optimum
 };
 
 struct ReflectanceSearchResult {
   std::vector<double> parameters;  // as LobeModel's
-  std::string start;               // the material that it began from
+  std::string initial_guess;       // the material that it began from
   double cost = 0.0;               // -log posterior, nats, up to a constant
   double misfit = 0.0;             // mean |log L_o - log I| over bins
   LightHyperparameters hyperparameters;             // of the light's process
   std::vector<Eigen::Vector3d> directional_lights;  // their directions
   // By cost: the refined ones, then the others by their first cost.
-  std::vector<TriedMaterial> tried;
+  std::vector<MaterialCandidate> candidates;
   // Of the parameters (Laplace, by the Gauss-Newton Hessian); empty where it
   // was not asked for.
   Eigen::MatrixXd covariance;

@@ -35,7 +35,7 @@ Estimate InitialGuess(const SolveSetup& setup) {
 StatusOr<Estimate> EstimateJointMaximum(const SolveSetup& setup,
                                         SolveContext* context) {
   Estimate estimate = InitialGuess(setup);
-  context->Report(Evaluate("start", setup, *context, estimate.iterate,
+  context->Report(Evaluate("initial guess", setup, *context, estimate.iterate,
                            estimate.pixels.get()));
   OuterIterationOptions options;
   options.stage = "maximum";

@@ -98,12 +98,12 @@ Image RenderOf(const View& view, const SolveSetup& setup) {
 
 // Other candidates, with their distances from the estimate.
 std::vector<Alternative> AlternativesOf(
-    const std::vector<TriedMaterial>& candidates, const LobeDistance& distance,
+    const std::vector<MaterialCandidate>& candidates, const LobeDistance& distance,
     const std::vector<double>& lobes) {
   std::vector<Alternative> alternatives;
   if (candidates.empty()) return alternatives;
   const std::vector<double> found = distance.LogValues(lobes);
-  for (const TriedMaterial& candidate : candidates) {
+  for (const MaterialCandidate& candidate : candidates) {
     Alternative a;
     a.start = candidate.name;
     a.cost = candidate.cost - candidates.front().cost;
@@ -183,7 +183,7 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
     end = start;
     end.stage = "end";
     solution.status = Status(StatusCode::kNoImprovement,
-                             "the solver could not improve on its start");
+                             "the solver could not improve on its initial guess");
   }
   if (context->Interrupted()) {
     solution.status = Status(StatusCode::kInterrupted,

@@ -12,9 +12,9 @@ TEST(SolverTrace, TimeToAMisfitCountsMapsOnly) {
   WriteBytes(dir.File("result.json"), R"({"trace": [
       {"stage": "search", "seconds": 1, "scale": 0, "pixels": 9,
        "misfit": 0.01},
-      {"stage": "coarse round 1", "seconds": 4, "scale": 0.2, "pixels": 4,
+      {"stage": "coarse iteration 1", "seconds": 4, "scale": 0.2, "pixels": 4,
        "misfit": 0.3},
-      {"stage": "full round 1", "seconds": 6, "scale": 0.1, "pixels": 4,
+      {"stage": "full iteration 1", "seconds": 6, "scale": 0.1, "pixels": 4,
        "misfit": 0.2},
       {"stage": "end", "seconds": 8, "scale": 0.1, "pixels": 9,
        "misfit": 0.25}]})");
@@ -22,9 +22,9 @@ TEST(SolverTrace, TimeToAMisfitCountsMapsOnly) {
       ReadTrace(dir.File("result.json")).value();
   ASSERT_EQ(4u, trace.size());
   EXPECT_EQ("end", trace[3].stage);
-  EXPECT_EQ(2, CountRounds(trace));
-  EXPECT_EQ("full round 1", LastRound(trace)->stage);
-  EXPECT_EQ(nullptr, LastRound({trace[0], trace[3]}));
+  EXPECT_EQ(2, CountIterations(trace));
+  EXPECT_EQ("full iteration 1", LastIteration(trace)->stage);
+  EXPECT_EQ(nullptr, LastIteration({trace[0], trace[3]}));
   const auto seconds_to = [&](double misfit, int64_t pixels) {
     TraceLine of;
     of.misfit = misfit;

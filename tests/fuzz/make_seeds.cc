@@ -146,7 +146,7 @@ void WriteOwnFiles(const std::string& checkpoint, const std::string& results,
   WriteBytes(
       trace + "/two.json",
       "{\"trace\": [{\"stage\": \"rank\", \"seconds\": 0.5, \"scale\": 0, "
-      "\"misfit\": 1e-2}, {\"stage\": \"map round 1\", \"seconds\": 2, "
+      "\"misfit\": 1e-2}, {\"stage\": \"map iteration 1\", \"seconds\": 2, "
       "\"scale\": 0.1, \"misfit\": 0.02}]}");
 }
 

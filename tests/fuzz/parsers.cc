@@ -169,7 +169,7 @@ void FuzzTrace(const std::string& text) {
   for (const TraceLine& line : *trace) {
     CHECK(std::isfinite(line.seconds) && std::isfinite(line.misfit));
   }
-  CHECK_LE(CountRounds(*trace), static_cast<int>(trace->size()));
+  CHECK_LE(CountIterations(*trace), static_cast<int>(trace->size()));
 }
 
 void FuzzModel(const std::string& input) {

@@ -164,7 +164,7 @@ TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
   std::vector<double> y = objective.Whitened(x, {0.4});
   EXPECT_LT((objective.ParametersOf(y.data()) - x).norm(), 1e-9);
   EXPECT_LT((objective.LobesOf(y.data()) - x.head(14)).norm(), 1e-9);
-  EXPECT_NEAR(0.4, objective.ScalesOf(y.data()).log_amplitude, 1e-12);
+  EXPECT_NEAR(0.4, objective.HyperparametersOf(y.data()).log_amplitude, 1e-12);
   std::vector<double> gradient(23);
   double cost = 0.0;
   ASSERT_TRUE(objective.Evaluate(y.data(), &cost, gradient.data()));

@@ -61,10 +61,10 @@ TEST_F(ReflectanceSearchTest, AmongCookTorranceExplainsItsOwn) {
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       CookTorranceLobes::Factory(1), prior, points_, image, Options());
   ASSERT_TRUE(found.ok()) << found.status().message();
-  EXPECT_LT(found->misfit, found->tried[0].first_misfit);
+  EXPECT_LT(found->misfit, found->candidates[0].first_misfit);
   ASSERT_EQ(10u, found->parameters.size());
   // All three resolutions are one: costs compare.
-  for (const TriedMaterial& tried : found->tried) {
+  for (const MaterialCandidate& tried : found->candidates) {
     EXPECT_LT(found->cost, tried.first_cost - 5.0) << tried.name;
   }
 }
@@ -104,7 +104,7 @@ TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       TableLobes::Factory(known), prior, points, image, options);
   ASSERT_TRUE(found.ok()) << found.status().message();
-  EXPECT_EQ("known", found->start);
+  EXPECT_EQ("known", found->initial_guess);
   ASSERT_EQ(parameters.size(), found->parameters.size());
   for (size_t i = 0; i < parameters.size(); ++i) {
     EXPECT_NEAR(parameters[i], found->parameters[i], 1e-6);
@@ -113,8 +113,8 @@ TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
   EXPECT_GT(found->directional_lights[0].dot(directional_light),
             std::cos(5.0 * M_PI / 180.0));
   // All resolutions are one: costs compare.
-  EXPECT_LT(found->cost, found->tried[0].first_cost);
-  EXPECT_LT(found->misfit, found->tried[0].first_misfit);
+  EXPECT_LT(found->cost, found->candidates[0].first_cost);
+  EXPECT_LT(found->misfit, found->candidates[0].first_misfit);
 }
 
 // No infinite cost gets into a trace either.
@@ -141,12 +141,12 @@ TEST_F(ReflectanceSearchTest, LowersTheCostWhateverTheThreads) {
       FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
   ASSERT_TRUE(one.ok()) << one.status().message();
   ASSERT_EQ(14u, one->parameters.size());
-  ASSERT_EQ(4u, one->tried.size());
-  EXPECT_EQ(one->tried[0].cost, one->cost);
-  EXPECT_EQ(one->tried[0].name, one->start);
-  EXPECT_EQ(one->tried[0].parameters, one->parameters);
-  for (size_t i = 1; i < one->tried.size(); ++i) {
-    EXPECT_LE(one->tried[i - 1].cost, one->tried[i].cost);
+  ASSERT_EQ(4u, one->candidates.size());
+  EXPECT_EQ(one->candidates[0].cost, one->cost);
+  EXPECT_EQ(one->candidates[0].name, one->initial_guess);
+  EXPECT_EQ(one->candidates[0].parameters, one->parameters);
+  for (size_t i = 1; i < one->candidates.size(); ++i) {
+    EXPECT_LE(one->candidates[i - 1].cost, one->candidates[i].cost);
   }
   EXPECT_LT(one->misfit, 0.1);
   for (const double s : one->log_radiance_std) {
@@ -199,7 +199,7 @@ TEST_F(ReflectanceSearchTest, BouncesAreTakenOutOfTheImage) {
       SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
                         brighter, options)
           .value();
-  EXPECT_EQ(options.bounce_rounds, calls);
+  EXPECT_EQ(options.bounce_iterations, calls);
   EXPECT_GT(left.cost, clean.cost + 5.0);
   EXPECT_LT(taken.misfit, 1.2 * clean.misfit);
   // Lower where its rounds, of more iterations, came further.
@@ -230,8 +230,8 @@ TEST_F(ReflectanceSearchTest, WiderMarginsNeverEndAtAHigherCost) {
   EXPECT_LE(all->cost, one->cost);
   // What the narrow ones left where it was is refined now.
   double change = 0.0;
-  for (const TriedMaterial& a : one->tried) {
-    for (const TriedMaterial& b : all->tried) {
+  for (const MaterialCandidate& a : one->candidates) {
+    for (const MaterialCandidate& b : all->candidates) {
       if (a.name == b.name && std::isfinite(a.cost)) change += a.cost - b.cost;
     }
   }

@@ -54,7 +54,7 @@ def program(command):
     child = subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL)
     _, status, usage = os.wait4(child.pid, 0)
     code = os.waitstatus_to_exitcode(status)
-    # 3: not better than its start; a result all the same.
+    # 3: not better than its initial guess; a result all the same.
     if code not in (0, 3):
         sys.exit(f"{command[0]}: exit {code}")
     return time.monotonic() - start, usage.ru_maxrss / 1024

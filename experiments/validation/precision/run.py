@@ -84,7 +84,7 @@ class Study:
             environment["IBRDF_SIMD"] = level
         done = subprocess.run([str(self.args.bin / name), *map(str, arguments)], capture_output=True, text=True,
                               env=environment)
-        # 3: not better than its start; a result all the same.
+        # 3: not better than its initial guess; a result all the same.
         if done.returncode not in (0, 3):
             sys.exit(f"{name}: exit {done.returncode}: {done.stderr}")
         return done.stdout

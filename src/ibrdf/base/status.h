@@ -10,7 +10,7 @@ enum class StatusCode {
   kOk = 0,
   kInternal = 1,       // our bug; programs exit with 1
   kInvalidInput = 2,   // the user's file or option; programs exit with 2
-  kNoImprovement = 3,  // the solver could not improve on its start
+  kNoImprovement = 3,  // the solver could not improve on its initial guess
   kInterrupted = 130,  // stopped by the user; the best iterate was kept
 };
 
