@@ -16,7 +16,7 @@ packages=(
 )
 for option in "$@"; do
   case "${option}" in
-    --tests) packages+=(libgtest-dev librapidcheck-dev) ;;
+    --tests) packages+=(libgtest-dev librapidcheck-dev python3) ;;
     --benchmarks) packages+=(libbenchmark-dev) ;;
     *) echo "usage: $0 [--tests] [--benchmarks]" >&2; exit 2 ;;
   esac
