@@ -1,5 +1,7 @@
 #include "ibrdf/solvers/costs/log_radiance_cost.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -127,6 +129,9 @@ LobeRadianceCost::LobeRadianceCost(const Transport* transport,
       likelihood_(likelihood) {
   if (operator_ == nullptr && IsStored(*transport)) {
     operator_ = &own_.emplace(transport->ByReflectance(map_.data()));
+  }
+  if (operator_ != nullptr) {
+    CHECK_EQ(transport->num_points(), operator_->num_points());
   }
   mutable_parameter_block_sizes()->push_back(lobes->num_parameters());
   set_num_residuals(transport->num_points() * 3);

@@ -94,7 +94,7 @@ JointState JointObjective::Moved(const JointState& state,
   return FromVector(ToVector(state) + length * step, state);
 }
 
-const LightOperator& JointObjective::OperatorOf(const JointState& state) {
+const LinearTransport& JointObjective::OperatorOf(const JointState& state) {
   if (!lobes_unknown()) return *terms_.known_brdf;
   if (!operator_.has_value() || operator_lobes_ != state.lobes) {
     operator_.emplace(
@@ -204,7 +204,7 @@ Eigen::VectorXd JointObjective::RadianceJvp(const Eigen::VectorXd& v) {
   if (np > 0) {
     std::vector<float> d_log, d_map;
     light_->Jvp(v.data() + nl, &d_log, &d_map);
-    Operator().Apply(d_map.data(), dL_o.data());
+    Operator().ApplyLinear(d_map.data(), dL_o.data());
   }
   if (nl > 0) dL_o.noalias() += lobe_jacobian_ * v.head(nl);
   return dL_o;
@@ -236,7 +236,7 @@ Eigen::VectorXd JointObjective::Product(const Eigen::VectorXd& v) {
   std::vector<float> d_log, d_map;
   if (np > 0) {
     light_->Jvp(v.data() + nl, &d_log, &d_map);
-    Operator().Apply(d_map.data(), dL_o.data());
+    Operator().ApplyLinear(d_map.data(), dL_o.data());
   }
   if (nl > 0) dL_o.noalias() += lobe_jacobian_ * v.head(nl);
   dL_o.array() *= Array(derivatives_.weight);

@@ -25,8 +25,8 @@ struct JointTerms {
   const Transport* transport = nullptr;
   const LobeModel* lobes = nullptr;
   LobePrior lobe_prior;
-  // Known: the operator of its grid (then `lobes` is null).
-  const LightOperator* known_brdf = nullptr;
+  // Known: its transport of light (then `lobes` is null).
+  const LinearTransport* known_brdf = nullptr;
   // Illumination, unknown: its model and priors, see LightBlock.
   IlluminationModel* illumination = nullptr;
   std::vector<float> light_mean;
@@ -87,10 +87,10 @@ class JointObjective {
   // Radiance and map of the state that was last given.
   const std::vector<double>& radiance() const { return L_o_; }
   const std::vector<float>& map() const { return map_; }
-  // The map of a state, [H, W, 3], and the operator of its reflectance, which
+  // The map of a state, [H, W, 3], and the transport of its reflectance, which
   // holds until the lobes change.
   std::vector<float> MapOf(const JointState& state);
-  const LightOperator& OperatorOf(const JointState& state);
+  const LinearTransport& OperatorOf(const JointState& state);
 
   // Cost and gradient [size] by reverse passes; no point for products is left,
   // and an earlier one is lost. NaN cost: the gradient is not set.
@@ -123,8 +123,9 @@ class JointObjective {
                    LikelihoodDerivatives* derivatives);
   // by_map [H, W, 3] of sum adjoint . L_o at the last operator.
   std::vector<float> ByMap(const double* adjoint) const;
-  const LightOperator& Operator() const {
-    return lobes_unknown() ? *operator_ : *terms_.known_brdf;
+  const LinearTransport& Operator() const {
+    if (!lobes_unknown()) return *terms_.known_brdf;
+    return *operator_;
   }
   void CheckPoint() const;
 

@@ -146,5 +146,54 @@ TEST(MirrorLike, FreeTexelsRecoverTheImageAndTheMap) {
   EXPECT_LT(ends[0], 2.0 * ends[1]);
 }
 
+// Light that is no part of the map (TransportOptions::bright) is in the
+// radiance, not in its derivatives.
+TEST(BrightLight, TangentsAreThoseOfTheMapAlone) {
+  TransportOptions options = TinyTransportOptions();
+  options.bright = {{Eigen::Vector3d(0.4, 0.5, 0.8).normalized(),
+                     Eigen::Array3d(5.0, 3.0, 1.0)}};
+  const Transport transport(SpherePoints(8), 8, 16, options);
+  const LightOperator known = transport.ByLight(
+      BrdfGrid::FromFunction(Glossy(0.3, 0.5, 20), options.grid));
+  const Observations observed =
+      MakeObservations(std::vector<double>(3 * transport.num_points(), 1.0));
+  const std::unique_ptr<IlluminationModel> light = MakeFreeIllumination(16, 8);
+  const double zero[3] = {0, 0, 0};
+  JointTerms terms;
+  terms.observed = &observed;
+  terms.likelihood.scale = 0.1;
+  terms.known_brdf = &known;
+  terms.illumination = light.get();
+  terms.light_mean = light->ConstantMap(zero);
+  JointObjective objective(terms);
+  const JointState at{{}, terms.light_mean};
+  const Eigen::VectorXd v = RandomDirection(objective, 5);
+  const double step = 1e-2;
+  objective.Evaluate(objective.Moved(at, v, step));
+  std::vector<double> slope = objective.radiance();
+  objective.Evaluate(objective.Moved(at, v, -step));
+  for (size_t i = 0; i < slope.size(); ++i) {
+    slope[i] = (slope[i] - objective.radiance()[i]) / (2.0 * step);
+  }
+  objective.Linearise(at);
+  std::vector<double> by_map(slope.size());
+  known.ApplyLinear(objective.map().data(), by_map.data());
+  const Eigen::VectorXd tangent = objective.RadianceJvp(v);
+  double bright = 0.0, all = 0.0;
+  for (size_t i = 0; i < slope.size(); ++i) {
+    // Differences of float maps.
+    EXPECT_NEAR(slope[i], tangent[i], 2e-3 * tangent.cwiseAbs().maxCoeff());
+    bright += objective.radiance()[i] - by_map[i];
+    all += objective.radiance()[i];
+  }
+  EXPECT_GT(bright, 0.1 * all);
+  // The transpose of the tangent.
+  const Eigen::VectorXd adjoint = Eigen::VectorXd::LinSpaced(
+      static_cast<Eigen::Index>(slope.size()), -1.0, 1.0);
+  const double forward = adjoint.dot(tangent);
+  EXPECT_NEAR(forward, objective.RadianceVjp(adjoint).dot(v),
+              1e-5 * std::abs(forward));
+}
+
 }  // namespace
 }  // namespace ibrdf

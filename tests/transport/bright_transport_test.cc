@@ -93,7 +93,7 @@ TEST(BrightTransport, ProductsAgree) {
     EXPECT_NEAR(L_o[i], lobes[i / 3 * 9 + i % 3 * 4], 2e-5 * L_o[i]) << i;
   }
 
-  // L_o is linear in the grid, and ByLight is what the map alone adds.
+  // L_o is linear in the grid.
   std::mt19937 rng(4);
   std::normal_distribution<double> gauss;
   std::vector<double> adjoint(L_o.size());
@@ -111,13 +111,28 @@ TEST(BrightTransport, ProductsAgree) {
   }
   EXPECT_NEAR(by_points, by_nodes, 1e-5 * size);
 
-  std::vector<double> by_map(L_o.size());
-  transport.ByLight(grid).Apply(split.rest.rgb.data(), by_map.data());
+  // The light operator is what the map alone adds, and an offset.
+  const LightOperator by_light = transport.ByLight(grid);
+  std::vector<double> by_map(L_o.size()), with_bright(L_o.size());
+  by_light.ApplyLinear(split.rest.rgb.data(), by_map.data());
+  by_light.Apply(split.rest.rgb.data(), with_bright.data());
   const std::vector<double> rest =
       Render(Transport(points, kHeight, kWidth, {}), grid, split.rest);
   for (size_t i = 0; i < rest.size(); ++i) {
     EXPECT_NEAR(rest[i], by_map[i], 2e-5 * rest[i]) << i;
+    EXPECT_NEAR(L_o[i], with_bright[i], 2e-5 * L_o[i]) << i;
   }
+}
+
+TEST(BrightTransport, ADenseMatrixRefusesIt) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  TransportOptions options;
+  options.grid = {12, 8, 6};
+  options.bright = {{Eigen::Vector3d::UnitY(), Eigen::Array3d::Ones()}};
+  const Transport transport({PointAt(0.3, 0.2)}, 8, 16, options);
+  std::vector<float> field(options.grid.num_nodes(), 1.0f), matrix(8 * 16);
+  EXPECT_DEATH(transport.LightMatrix(field.data(), matrix.data()),
+               "no bright light");
 }
 
 class ShadowedSun : public ::testing::Test {
@@ -177,6 +192,41 @@ TEST_F(ShadowedSun, IsSeenWhereNothingHidesIt) {
   double direct = 0.0, all = 0.0;
   for (size_t i = 0; i < L_o.size(); ++i) direct += L_o[i], all += lit[i];
   EXPECT_GT(all, 1.004 * direct);
+}
+
+// The operator that a solver of the map gets has all light that Render has, and
+// its derivatives are those of the map alone.
+TEST_F(ShadowedSun, TheLightOperatorHasItAsAnOffset) {
+  const Transport transport(points_, kHeight, kWidth, options_);
+  const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.3, 0.4, 5), {});
+  const std::vector<double> L_o = Render(transport, grid, split_.rest);
+  const LightOperator op = transport.ByLight(grid);
+  std::vector<double> by_light(L_o.size());
+  op.Apply(split_.rest.rgb.data(), by_light.data());
+  ASSERT_EQ(L_o.size(), op.offset().size());
+  double offset = 0.0, all = 0.0;
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    EXPECT_NEAR(L_o[i], by_light[i], 2e-5 * L_o[i]) << i;
+    offset += op.offset()[i];
+    all += L_o[i];
+  }
+  EXPECT_GT(offset, 0.1 * all);
+  // The offset is the radiance under a black map.
+  const std::vector<double> dark = Render(transport, grid, black_);
+  for (size_t i = 0; i < dark.size(); ++i) {
+    EXPECT_NEAR(dark[i], op.offset()[i], 2e-5 * dark[i] + 1e-12) << i;
+  }
+  // A step of the map moves Apply by ApplyLinear of the step.
+  Image moved = split_.rest;
+  for (float& v : moved.rgb) v *= 3.0f;
+  std::vector<double> by_moved(L_o.size()), step(L_o.size());
+  op.Apply(moved.rgb.data(), by_moved.data());
+  Image difference = split_.rest;
+  for (float& v : difference.rgb) v *= 2.0f;
+  op.ApplyLinear(difference.rgb.data(), step.data());
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    EXPECT_NEAR(by_moved[i] - by_light[i], step[i], 1e-5 * by_moved[i]) << i;
+  }
 }
 
 // Through two bounces radiance is a cubic of the grid's values, to which five

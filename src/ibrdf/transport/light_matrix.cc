@@ -1,14 +1,15 @@
-// Dense forms of the transport, for maps of few texels.
+// Transport::LightMatrix: the transport as a dense matrix, for maps of few
+// texels.
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/light/environment_map.h"
-#include "ibrdf/transport/map_sources.h"
 #include "ibrdf/transport/transport.h"
-#include "ibrdf/transport/transport_taps.h"
+#include "ibrdf/transport/transport_pairs.h"
 
 namespace ibrdf {
 
@@ -16,111 +17,61 @@ using namespace taps;  // NOLINT
 
 namespace {
 
-std::vector<float> SolidAngles(int height, int width) {
-  std::vector<float> solid_angle;
-  for (int r = 0; r < height; ++r) {
-    solid_angle.insert(solid_angle.end(), width,
-                       static_cast<float>(TexelSolidAngle(r, height, width)));
-  }
-  return solid_angle;
-}
-
-}  // namespace
-
-void Transport::LightMatrix(const float* field, float* matrix) const {
-  CHECK_EQ(block_, 1) << "a dense matrix is for small maps";
-  CHECK(options_.patches == nullptr && options_.bright.empty());
-  const BrdfGridShape& s = options_.grid;
-  std::vector<float> nodes(PaddedNodes());
-  for (int hd = 0; hd < s.h * s.d; ++hd) {
-    for (int p = 0; p <= s.p; ++p) {
-      nodes[static_cast<size_t>(hd) * (s.p + 1) + p] =
-          field[hd * s.p + p % s.p];
+// What a pair of one point reads, as shares of the map's texels, which are the
+// far rule's blocks. Light is a row of the matrix, or its adjoint.
+class TexelTaps {
+ public:
+  explicit TexelTaps(const TransportPairs& pairs)
+      : texel_(pairs.padded_texels), row_(pairs.padded_row()) {
+    for (int r = 0; r < pairs.map_height; ++r) {
+      solid_angle_.insert(solid_angle_.end(), pairs.map_width,
+                          static_cast<float>(TexelSolidAngle(
+                              r, pairs.map_height, pairs.map_width)));
     }
   }
-  const Corners corners(s);
-  const std::vector<int> texel = PaddedTexels(map_height_, map_width_);
-  const std::vector<float> solid_angle = SolidAngles(map_height_, map_width_);
-  const int row = map_width_ + 1;
-  const size_t texels = static_cast<size_t>(map_height_) * map_width_;
-  const auto value = [&](const auto& pair) {
-    float weight[8], sum = 0.0f;
-    TrilinearWeights(pair, weight);
-    for (int k = 0; k < 8; ++k) {
-      sum += weight[k] * nodes[pair.node + corners.offset[k]];
-    }
-    return sum * pair.weight;
-  };
-  ParallelFor(static_cast<int64_t>(chunks_.size()), options_.num_threads,
-              [&](int64_t index, int) {
-                const Chunk& chunk = chunks_[index];
-                size_t far = 0, near = 0;
-                for (int i = 0; i < chunk.end - chunk.begin; ++i) {
-                  float* const out = matrix + texels * (chunk.begin + i);
-                  std::fill(out, out + texels, 0.0f);
-                  for (; far < chunk.far_end[i]; ++far) {
-                    const FarPair& pair = chunk.far[far];
-                    out[pair.block] += value(pair) * solid_angle[pair.block];
-                  }
-                  for (; near < chunk.near_end[i]; ++near) {
-                    const NearPair& pair = chunk.near[near];
-                    const float v = value(pair);
-                    float weight[4];
-                    BilinearWeights(pair, weight);
-                    const int* const to = &texel[pair.texel];
-                    out[to[0]] += weight[0] * v;
-                    out[to[1]] += weight[1] * v;
-                    out[to[row]] += weight[2] * v;
-                    out[to[row + 1]] += weight[3] * v;
-                  }
-                }
-              });
+
+  void Add(const FarPair& pair, float value, float* light) const {
+    light[pair.source] += value * solid_angle_[pair.source];
+  }
+  void Add(const NearPair& pair, float value, float* light) const {
+    float weight[4];
+    BilinearWeights(pair, weight);
+    const int* const to = &texel_[pair.texel];
+    light[to[0]] += weight[0] * value;
+    light[to[1]] += weight[1] * value;
+    light[to[row_]] += weight[2] * value;
+    light[to[row_ + 1]] += weight[3] * value;
+  }
+
+  float WeightedLight(const FarPair& pair, const float* light) const {
+    return pair.weight * light[pair.source] * solid_angle_[pair.source];
+  }
+  float WeightedLight(const NearPair& pair, const float* light) const {
+    float weight[4];
+    BilinearWeights(pair, weight);
+    const int* const from = &texel_[pair.texel];
+    return pair.weight *
+           (weight[0] * light[from[0]] + weight[1] * light[from[1]] +
+            weight[2] * light[from[row_]] + weight[3] * light[from[row_ + 1]]);
+  }
+
+ private:
+  const std::vector<int>& texel_;
+  const int row_;
+  std::vector<float> solid_angle_;  // [texel]
+};
+
+void CheckIsForMatrix(const TransportPairs& pairs,
+                      const TransportOptions& options) {
+  CHECK_EQ(pairs.block, 1) << "a dense matrix is for small maps";
+  CHECK(options.patches == nullptr) << "a dense matrix has no bounces";
+  CHECK(options.bright.empty()) << "a dense matrix has no bright light";
 }
 
-void Transport::LightMatrixGradient(const float* adjoint,
-                                    float* gradient) const {
-  CHECK_EQ(block_, 1) << "a dense matrix is for small maps";
-  CHECK(options_.patches == nullptr && options_.bright.empty());
-  const BrdfGridShape& s = options_.grid;
-  const Corners corners(s);
-  const std::vector<int> texel = PaddedTexels(map_height_, map_width_);
-  const std::vector<float> solid_angle = SolidAngles(map_height_, map_width_);
-  const int row = map_width_ + 1;
-  const size_t texels = static_cast<size_t>(map_height_) * map_width_;
-  std::vector<std::vector<float>> partial(chunks_.size());
-  ParallelFor(
-      static_cast<int64_t>(chunks_.size()), options_.num_threads,
-      [&](int64_t index, int) {
-        const Chunk& chunk = chunks_[index];
-        std::vector<float>& sums = partial[index];
-        sums.assign(PaddedNodes(), 0.0f);
-        const auto scatter = [&](const auto& pair, float light) {
-          float weight[8];
-          TrilinearWeights(pair, weight);
-          for (int k = 0; k < 8; ++k) {
-            sums[pair.node + corners.offset[k]] += weight[k] * light;
-          }
-        };
-        size_t far = 0, near = 0;
-        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
-          const float* const in = adjoint + texels * (chunk.begin + i);
-          for (; far < chunk.far_end[i]; ++far) {
-            const FarPair& pair = chunk.far[far];
-            scatter(pair,
-                    pair.weight * in[pair.block] * solid_angle[pair.block]);
-          }
-          for (; near < chunk.near_end[i]; ++near) {
-            const NearPair& pair = chunk.near[near];
-            float weight[4];
-            BilinearWeights(pair, weight);
-            const int* const from = &texel[pair.texel];
-            scatter(pair, pair.weight * (weight[0] * in[from[0]] +
-                                         weight[1] * in[from[1]] +
-                                         weight[2] * in[from[row]] +
-                                         weight[3] * in[from[row + 1]]));
-          }
-        }
-      });
+// Sums over the chunks, gradient [nodes] from sums over the padded grid.
+void JoinNodes(const BrdfGridShape& s,
+               const std::vector<std::vector<float>>& partial,
+               float* gradient) {
   for (int hd = 0; hd < s.h * s.d; ++hd) {
     for (int p = 0; p < s.p; ++p) {
       double sum = 0.0;
@@ -133,6 +84,70 @@ void Transport::LightMatrixGradient(const float* adjoint,
       gradient[hd * s.p + p] = static_cast<float>(sum);
     }
   }
+}
+
+}  // namespace
+
+void Transport::LightMatrix(const float* field, float* matrix) const {
+  CheckIsForMatrix(*pairs_, options_);
+  const std::vector<float> nodes =
+      PadFields(options_.grid, &field, 1, 1, options_.num_threads);
+  const Corners corners(options_.grid);
+  const TexelTaps texels(*pairs_);
+  const auto value = [&](const auto& pair) {
+    float weight[8], sum = 0.0f;
+    TrilinearWeights(pair, weight);
+    for (int k = 0; k < 8; ++k) {
+      sum += weight[k] * nodes[pair.node + corners.offset[k]];
+    }
+    return sum * pair.weight;
+  };
+  ParallelFor(static_cast<int64_t>(pairs_->chunks.size()), options_.num_threads,
+              [&](int64_t index, int) {
+                ForPoints(pairs_->chunks[index], [&](int point, const auto& far,
+                                                     const auto& near) {
+                  float* const out = matrix + pairs_->num_texels() * point;
+                  std::fill_n(out, pairs_->num_texels(), 0.0f);
+                  for (const FarPair& pair : far) {
+                    texels.Add(pair, value(pair), out);
+                  }
+                  for (const NearPair& pair : near) {
+                    texels.Add(pair, value(pair), out);
+                  }
+                });
+              });
+}
+
+void Transport::LightMatrixGradient(const float* adjoint,
+                                    float* gradient) const {
+  CheckIsForMatrix(*pairs_, options_);
+  const Corners corners(options_.grid);
+  const TexelTaps texels(*pairs_);
+  std::vector<std::vector<float>> partial(pairs_->chunks.size());
+  ParallelFor(static_cast<int64_t>(partial.size()), options_.num_threads,
+              [&](int64_t index, int) {
+                std::vector<float>& sums = partial[index];
+                sums.assign(pairs_->num_padded_nodes(), 0.0f);
+                const auto scatter = [&](const auto& pair, float light) {
+                  float weight[8];
+                  TrilinearWeights(pair, weight);
+                  for (int k = 0; k < 8; ++k) {
+                    sums[pair.node + corners.offset[k]] += weight[k] * light;
+                  }
+                };
+                ForPoints(pairs_->chunks[index],
+                          [&](int point, const auto& far, const auto& near) {
+                            const float* const in =
+                                adjoint + pairs_->num_texels() * point;
+                            for (const FarPair& pair : far) {
+                              scatter(pair, texels.WeightedLight(pair, in));
+                            }
+                            for (const NearPair& pair : near) {
+                              scatter(pair, texels.WeightedLight(pair, in));
+                            }
+                          });
+              });
+  JoinNodes(options_.grid, partial, gradient);
 }
 
 }  // namespace ibrdf

@@ -1,98 +1,130 @@
+#include "ibrdf/transport/light_operator.h"
+
 #include <algorithm>
-#include <cstdint>
+#include <utility>
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/transport/map_sources.h"
-#include "ibrdf/transport/transport.h"
-#include "ibrdf/transport/transport_taps.h"
+#include "ibrdf/transport/transport_pairs.h"
 
 namespace ibrdf {
 
 using namespace taps;  // NOLINT
 
-LightOperator Transport::ByLight(const BrdfGrid& grid) const {
-  const std::vector<float> f = PadGrid(grid);
-  const Corners corners(options_.grid);
-  const std::vector<int> texel = PaddedTexels(map_height_, map_width_);
-  const int row = map_width_ + 1;
-  LightOperator op;
-  op.map_height_ = map_height_;
-  op.map_width_ = map_width_;
-  op.block_ = block_;
-  op.num_blocks_ = num_blocks_;
-  op.num_threads_ = options_.num_threads;
-  if (patches_ != nullptr) {
-    op.bounces_ = bounces();
-    op.patches_ =
-        std::make_shared<const LightOperator>(patches_->ByLight(grid));
+// Joins pairs by source, one point after another. One per worker: its sums are
+// all zero between points.
+class LightOperator::EntryBuilder {
+ public:
+  // f: the padded grid.
+  EntryBuilder(const TransportPairs& pairs, const std::vector<float>& f,
+               LightOperator* op)
+      : pairs_(pairs), corners_(pairs.grid), f_(f.data()), op_(*op) {}
+
+  // The entries of a chunk, and the bright light of its points.
+  void Join(const PairChunk& from, Chunk* to) {
+    sums_.resize(4 * op_.num_sources_, 0.0f);
+    touched_.resize(op_.num_sources_, 0);
+    to->begin = from.begin;
+    to->end = from.end;
+    ForPoints(from, [&](int point, const auto& far, const auto& near) {
+      for (const FarPair& pair : far) Add(pair, point);
+      for (const NearPair& pair : near) Add(pair);
+      Close(to);
+    });
+    to->value.push_back(0.0f);
+    to->source.shrink_to_fit();
+    to->value.shrink_to_fit();
   }
-  const size_t num_texels = static_cast<size_t>(map_height_) * map_width_;
-  const size_t num_sources =
-      num_blocks_ + num_texels + static_cast<size_t>(num_patches());
-  op.num_sources_ = num_sources;
-  op.chunks_.resize(chunks_.size());
-  // Per worker: a point's sums by source, all zero between points, and which
-  // sources it has touched, in order of first touch.
-  struct Scratch {
-    std::vector<float> sums;
-    std::vector<uint8_t> touched;
-    std::vector<uint32_t> sources;
-  };
-  std::vector<Scratch> scratch(options_.num_threads > 0 ? options_.num_threads
-                                                        : HardwareThreads());
-  ParallelFor(
-      static_cast<int64_t>(chunks_.size()), options_.num_threads,
-      [&](int64_t index, int worker) {
-        Scratch& w = scratch[worker];
-        w.sums.resize(4 * num_sources, 0.0f);
-        w.touched.resize(num_sources, 0);
-        const auto add = [&](size_t source, Float4 v) {
-          if (w.touched[source] == 0) {
-            w.touched[source] = 1;
-            w.sources.push_back(static_cast<uint32_t>(source));
-          }
-          Add4(&w.sums[4 * source], v);
-        };
-        const Chunk& chunk = chunks_[index];
-        LightOperator::Chunk& out = op.chunks_[index];
-        out.begin = chunk.begin;
-        out.end = chunk.end;
-        size_t far = 0, near = 0;
-        for (int i = 0; i < chunk.end - chunk.begin; ++i) {
-          w.sources.clear();
-          for (; far < chunk.far_end[i]; ++far) {
-            const FarPair& pair = chunk.far[far];
-            if (pair.block >= num_blocks_ + num_patches()) continue;
-            const size_t patches = pair.block < num_blocks_ ? 0 : num_texels;
-            add(patches + pair.block,
-                pair.weight * Interpolate(pair, corners, f.data()));
-          }
-          for (; near < chunk.near_end[i]; ++near) {
-            const NearPair& pair = chunk.near[near];
-            const Float4 v = pair.weight * Interpolate(pair, corners, f.data());
-            float weight[4];
-            BilinearWeights(pair, weight);
-            const int* const to = &texel[pair.texel];
-            add(num_blocks_ + to[0], weight[0] * v);
-            add(num_blocks_ + to[1], weight[1] * v);
-            add(num_blocks_ + to[row], weight[2] * v);
-            add(num_blocks_ + to[row + 1], weight[3] * v);
-          }
-          for (const uint32_t source : w.sources) {
-            const float* const sum = &w.sums[size_t{4} * source];
-            out.source.push_back(source);
-            out.value.insert(out.value.end(), sum, sum + 3);
-            std::fill_n(&w.sums[size_t{4} * source], 4, 0.0f);
-            w.touched[source] = 0;
-          }
-          out.entry_end.push_back(out.source.size());
-        }
-        out.value.push_back(0.0f);
-        out.source.shrink_to_fit();
-        out.value.shrink_to_fit();
-      });
-  return op;
+
+ private:
+  void Add(const FarPair& pair, int point) {
+    const Float4 v = pair.weight * Interpolate(pair, corners_, f_);
+    if (pair.source >= pairs_.first_bright()) {
+      const auto& power =
+          pairs_.bright[pair.source - pairs_.first_bright()].power;
+      for (int c = 0; c < 3; ++c) {
+        op_.offset_[size_t{3} * point + c] += v[c] * power[c];
+      }
+      return;
+    }
+    const bool is_patch = pair.source >= pairs_.num_blocks;
+    AddTo(pair.source + (is_patch ? pairs_.num_texels() : 0), v);
+  }
+
+  void Add(const NearPair& pair) {
+    const Float4 v = pair.weight * Interpolate(pair, corners_, f_);
+    float weight[4];
+    BilinearWeights(pair, weight);
+    const int* const texel = &pairs_.padded_texels[pair.texel];
+    const int row = pairs_.padded_row();
+    AddTo(pairs_.num_blocks + texel[0], weight[0] * v);
+    AddTo(pairs_.num_blocks + texel[1], weight[1] * v);
+    AddTo(pairs_.num_blocks + texel[row], weight[2] * v);
+    AddTo(pairs_.num_blocks + texel[row + 1], weight[3] * v);
+  }
+
+  void AddTo(size_t source, Float4 value) {
+    if (touched_[source] == 0) {
+      touched_[source] = 1;
+      order_.push_back(static_cast<uint32_t>(source));
+    }
+    Add4(&sums_[4 * source], value);
+  }
+
+  // Ends a point: its entries, in order of first touch, go to the chunk.
+  void Close(Chunk* chunk) {
+    for (const uint32_t source : order_) {
+      float* const sum = &sums_[size_t{4} * source];
+      chunk->source.push_back(source);
+      chunk->value.insert(chunk->value.end(), sum, sum + 3);
+      std::fill_n(sum, 4, 0.0f);
+      touched_[source] = 0;
+    }
+    chunk->entry_end.push_back(chunk->source.size());
+    order_.clear();
+  }
+
+  const TransportPairs& pairs_;
+  const Corners corners_;
+  const float* const f_;
+  LightOperator& op_;
+  std::vector<float> sums_;  // [source][4]
+  std::vector<uint8_t> touched_;
+  std::vector<uint32_t> order_;
+};
+
+LightOperator::LightOperator(const TransportPairs& pairs,
+                             const std::vector<float>& f,
+                             std::shared_ptr<const LightOperator> patches,
+                             int bounces)
+    : map_height_(pairs.map_height),
+      map_width_(pairs.map_width),
+      block_(pairs.block),
+      num_blocks_(pairs.num_blocks),
+      num_threads_(pairs.num_threads),
+      chunks_(pairs.chunks.size()),
+      num_sources_(num_map_sources() + pairs.num_patches),
+      bounces_(bounces),
+      patches_(std::move(patches)) {
+  if (!pairs.bright.empty()) offset_.resize(size_t{3} * pairs.num_points, 0.0);
+  std::vector<EntryBuilder> builders(
+      num_threads_ > 0 ? num_threads_ : HardwareThreads(),
+      EntryBuilder(pairs, f, this));
+  ParallelFor(static_cast<int64_t>(chunks_.size()), num_threads_,
+              [&](int64_t index, int worker) {
+                builders[worker].Join(pairs.chunks[index], &chunks_[index]);
+              });
+  AddBouncesToOffset();
+}
+
+void LightOperator::AddBouncesToOffset() {
+  if (offset_.empty() || patches_ == nullptr) return;
+  std::vector<float> sources(4 * num_sources_, 0.0f);
+  Bounce(true, &sources);
+  std::vector<double> bounced(offset_.size());
+  ApplyTo(sources, bounced.data());
+  for (size_t k = 0; k < offset_.size(); ++k) offset_[k] += bounced[k];
 }
 
 size_t LightOperator::MemoryBytes() const {
@@ -136,18 +168,23 @@ void LightOperator::ApplyTo(const std::vector<float>& sources,
               });
 }
 
-void LightOperator::Apply(const float* map, double* L_o) const {
-  std::vector<float> sources = Sources(map);
-  if (patches_ != nullptr) {
-    std::vector<double> emitted(size_t{3} * patches_->num_points());
-    for (int b = 0; b < bounces_; ++b) {
-      patches_->ApplyTo(sources, emitted.data());
-      for (size_t k = 0; k < emitted.size(); ++k) {
-        sources[4 * (num_map_sources() + k / 3) + k % 3] =
-            static_cast<float>(emitted[k]);
-      }
+void LightOperator::Bounce(bool with_offset,
+                           std::vector<float>* sources) const {
+  if (patches_ == nullptr) return;
+  std::vector<double> emitted(size_t{3} * patches_->num_points());
+  for (int b = 0; b < bounces_; ++b) {
+    patches_->ApplyTo(*sources, emitted.data());
+    for (size_t k = 0; k < emitted.size(); ++k) {
+      if (with_offset) emitted[k] += patches_->offset_[k];
+      (*sources)[4 * (num_map_sources() + k / 3) + k % 3] =
+          static_cast<float>(emitted[k]);
     }
   }
+}
+
+void LightOperator::ApplyLinear(const float* map, double* L_o) const {
+  std::vector<float> sources = Sources(map);
+  Bounce(false, &sources);
   ApplyTo(sources, L_o);
 }
 

@@ -6,6 +6,9 @@ namespace ibrdf {
 
 // Floats per node in the fields' array are a multiple of this.
 inline constexpr int kLobeStride = 16;
+inline int LobeStride(int num_fields) {
+  return (num_fields + kLobeStride - 1) / kLobeStride * kLobeStride;
+}
 
 // out[k * 3 + c] = sum_i fields[nodes[i] * stride + k] g[i * 4 + c],
 // k < stride, c < 3, summed over i in order. stride: multiple of kLobeStride.
