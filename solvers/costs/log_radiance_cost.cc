@@ -37,7 +37,7 @@ template <typename Render>
 bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
                   const double* parameters, std::vector<double>* L_o,
                   std::vector<double>* dL_o) {
-  const int lobe_size = lobes.lobe_size(), codes = lobes.code_size();
+  const int codes = lobes.code_size();
   const int stride = dL_o != nullptr ? 1 + codes : 1;
   const int num_fields = stride * lobes.num_lobes();
   const int columns = lobes.num_parameters();
@@ -50,26 +50,26 @@ bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
   render(pointers.data(), num_fields, out.data());
   L_o->assign(static_cast<size_t>(points) * 3, 0.0);
   if (dL_o != nullptr) dL_o->assign(L_o->size() * columns, 0.0);
+  const LobeMixture mixture = lobes.Mixture(parameters);
+  const Eigen::Array3Xd colours = mixture.Colours();
+  const Eigen::Array3Xd slopes = mixture.ColourSlopes();
   bool finite = true;
   for (int i = 0; i < points; ++i) {
     for (int k = 0; k < lobes.num_lobes(); ++k) {
-      const double* lobe = parameters + static_cast<size_t>(k) * lobe_size;
       for (int c = 0; c < 3; ++c) {
-        const double colour =
-            std::exp(std::min(lobe[codes + c], LobeModel::kMaxLogColour)) *
-            kMerlScale[c];
         const auto field = [&](int f) {
           return static_cast<double>(
               out[(static_cast<size_t>(i) * num_fields + k * stride + f) * 3 +
                   c]);
         };
         const size_t row = static_cast<size_t>(i) * 3 + c;
-        const double term = colour * field(0);
-        (*L_o)[row] += term;
+        (*L_o)[row] += colours(c, k) * field(0);
         if (dL_o == nullptr) continue;
-        double* d = dL_o->data() + row * columns + k * lobe_size;
-        for (int z = 0; z < codes; ++z) d[z] = colour * field(1 + z);
-        d[codes + c] = lobe[codes + c] < LobeModel::kMaxLogColour ? term : 0.0;
+        const MutableLobeMixture d = lobes.Mixture(&(*dL_o)[row * columns]);
+        for (int z = 0; z < codes; ++z) {
+          d.code(k)[z] = colours(c, k) * field(1 + z);
+        }
+        d.log_colour(k)[c] = slopes(c, k) * field(0);
       }
     }
     for (int c = 0; c < 3; ++c) finite &= std::isfinite((*L_o)[3 * i + c]);

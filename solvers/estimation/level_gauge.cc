@@ -27,8 +27,7 @@ LevelGauge::LevelGauge(const NeuralBrdfModel& model, const MaterialPrior& prior,
 
 double LevelGauge::Fix(double* parameters) const {
   const double level = mean_ - MeanLog(parameters);
-  const double shift[3] = {level, level, level};
-  lobes_.ShiftColours(shift, parameters);
+  lobes_.Mixture(parameters).ShiftColours(Eigen::Array3d::Constant(level));
   return level;
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/light/environment_map.h"
 
@@ -23,11 +24,9 @@ void SetGauge(SolverGauge gauge, int num_lobes, Solution* estimate) {
     map[i] = static_cast<float>(map[i] / scale[i % 3]);
   }
   std::vector<double>& lobes = estimate->lobe_parameters;
-  const size_t size = lobes.size() / num_lobes;  // the last three are colours
-  for (size_t i = 0; i < lobes.size(); ++i) {
-    const size_t at = i % size;
-    if (at + 3 >= size) lobes[i] += shift[at + 3 - size];
-  }
+  const int lobe_size = static_cast<int>(lobes.size()) / num_lobes;
+  MutableLobeMixture({num_lobes, lobe_size - 3}, lobes.data())
+      .ShiftColours(shift);
   std::vector<double>& raw = estimate->brdf.raw;
   for (size_t i = 0; i < raw.size(); ++i) {
     // Negative values mark invalid bins.

@@ -44,8 +44,7 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
       options.materials != nullptr
           ? static_cast<ceres::CostFunction*>(
                 new MaterialPriorCost(options.materials))
-          : new LobePriorCost(lobes.num_lobes(), lobes.code_size(),
-                              options.prior);
+          : new LobePriorCost(lobes.layout(), options.prior);
   problem.AddResidualBlock(prior, nullptr, parameters->data());
   ceres::Solver::Options o;
   o.linear_solver_type = ceres::DENSE_QR;
@@ -68,12 +67,11 @@ std::vector<double> GaugeShift(const LobeModel& lobes, const LobePrior& prior,
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   const double w = 1.0 / (prior.colour_sigma * prior.colour_sigma);
+  const LobeMixture mixture = lobes.Mixture(parameters.data());
   for (int k = 0; k < lobes.num_lobes(); ++k) {
     for (int c = 0; c < 3; ++c) {
-      const double a =
-          parameters[k * lobes.lobe_size() + lobes.code_size() + c];
       A(c, c) += w;
-      b[c] += w * (prior.colour_mean[c] - a);
+      b[c] += w * (prior.colour_mean[c] - mixture.log_colour(k)[c]);
     }
   }
   const double v = 1.0 / (light_std * light_std);

@@ -49,9 +49,8 @@ double CeresCost(const JointScene& scene, const JointTerms& terms, bool unet,
         nullptr, lobes.data());
   }
   problem.AddResidualBlock(
-      new LobePriorCost(scene.lobes.num_lobes(), scene.lobes.code_size(),
-                        terms.lobe_prior),
-      nullptr, lobes.data());
+      new LobePriorCost(scene.lobes.layout(), terms.lobe_prior), nullptr,
+      lobes.data());
   problem.AddResidualBlock(
       new WeightPriorCost(terms.light_mean, scene.light->PriorStd(),
                           terms.light_sigma),

@@ -113,7 +113,7 @@ void StudyPriors(int count, std::mt19937_64* rng, ErrorTable* table) {
   const MaterialPrior joint = JointMaterialPrior(model, lobes, 0.5);
   LobePrior ball;
   for (double& m : ball.colour_mean) m = 4.0;
-  const LobePriorCost ball_cost(lobes, size, ball);
+  const LobePriorCost ball_cost({lobes, size}, ball);
   const MaterialPriorCost joint_cost(&joint);
   using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
   const RealMatrix precision_root =
