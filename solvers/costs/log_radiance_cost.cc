@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ibrdf/solvers/illumination/illumination_model.h"
+#include "ibrdf/light/log_map.h"
 
 namespace ibrdf {
 namespace {
@@ -175,12 +175,11 @@ bool LogRadianceCost::Evaluate(double const* const* parameters,
                                double* residuals, double** jacobians) const {
   const int weights = unet_->num_weights();
   const std::vector<float> phi(parameters[1], parameters[1] + weights);
-  const int texels = unet_->num_outputs() / 3;
-  std::vector<float> planar(unet_->num_outputs());
+  LogMap log_map({unet_->options().width, unet_->options().height});
   IlluminationUnet::Workspace workspace, scratch;
-  unet_->Forward(phi.data(), &workspace, planar.data());
+  unet_->Forward(phi.data(), &workspace, log_map.data());
   std::vector<float> map, slopes;
-  ToRadianceMap(planar, &map, &slopes);
+  log_map.Exp(&map, &slopes);
   const bool want_lobes = jacobians != nullptr && jacobians[0] != nullptr;
   const bool want_weights = jacobians != nullptr && jacobians[1] != nullptr;
   std::vector<double> L_o, dL_o, dr_dE;
@@ -198,17 +197,13 @@ bool LogRadianceCost::Evaluate(double const* const* parameters,
     const LightOperator light =
         transport_->ByLight(lobes_->Grid(parameters[0]));
     std::vector<double> adjoint(L_o.size(), 0.0);
-    std::vector<float> by_map(map.size()), by_output(map.size()),
-        by_weight(weights);
+    std::vector<float> by_map(map.size()), by_weight(weights);
     for (size_t row = 0; row < L_o.size(); ++row) {
       adjoint[row] = dr_dE[row];
       light.ApplyTranspose(adjoint.data(), by_map.data());
       adjoint[row] = 0.0;
-      for (int t = 0; t < texels; ++t) {
-        for (int c = 0; c < 3; ++c) {
-          by_output[c * texels + t] = by_map[3 * t + c] * slopes[3 * t + c];
-        }
-      }
+      LogMap by_output(log_map.size());
+      AddExpVjp(slopes, by_map, &by_output);
       unet_->Vjp(by_output.data(), workspace, &scratch, by_weight.data());
       std::copy(by_weight.begin(), by_weight.end(),
                 jacobians[1] + row * weights);

@@ -160,7 +160,7 @@ Status Estimator::EstimateDraw(MapSize size, JointMethod method, double share,
   if (!mode_.empty()) {
     LogMapFitOptions o;
     o.should_stop = StopAfter(kProcessShare / 2);
-    FitLogMap(ResamplePlanes(mode_, mode_size_, size), o, light_.get(),
+    FitLogMap(LogMap(mode_size_, mode_).Resized(size), o, light_.get(),
               &state->light);
   }
   return MapRounds(method, share, state);
@@ -198,17 +198,15 @@ Status Estimator::EstimateNetwork(JointState* state) {
   const double draw_misfit = Evaluate("map", cells_.get(), *state).misfit;
   const std::vector<float> draw = state->light;
   std::unique_ptr<IlluminationModel> process = std::move(light_);
-  std::vector<float> log_map(process->num_outputs());
-  process->Forward(draw.data(), log_map.data());
+  LogMap log_map;
+  process->Forward(draw.data(), &log_map);
   SetLight(MakeLight(), true);
   StartAtLevel(state);
   StartFirstLight();
   LogMapFitOptions o;
   o.should_stop = StopAfter(kMapShare / 2);
-  const MapSize size = {light_->width(), light_->height()};
-  const MapSize drawn = {process->width(), process->height()};
-  FitLogMap(ResamplePlanes(log_map, drawn, size), o, light_.get(),
-            &state->light);
+  const MapSize size = light_->size(), drawn = process->size();
+  FitLogMap(log_map.Resized(size), o, light_.get(), &state->light);
   Report("network", cells_.get(), *state);
   // A draw of another size is no map to fall back on.
   const double most_misfit = drawn == size ? kWorseMisfit * draw_misfit : 0.0;

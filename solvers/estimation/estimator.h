@@ -11,10 +11,10 @@
 
 #include "ibrdf/base/stopwatch.h"
 #include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/estimation/inverse_rendering.h"
 #include "ibrdf/solvers/estimation/reflectance_spread.h"
 #include "ibrdf/solvers/illumination/illumination_model.h"
-#include "ibrdf/solvers/illumination/resample_planes.h"
 #include "ibrdf/solvers/joint/joint_method.h"
 #include "ibrdf/solvers/joint/joint_objective.h"
 #include "ibrdf/solvers/marginal/reflectance_search.h"
@@ -23,17 +23,6 @@
 #include "ibrdf/solvers/priors/material_prior.h"
 
 namespace ibrdf {
-
-// The image [H, W, 3] of planes [3][H][W].
-template <typename Real>
-Image FromPlanes(const std::vector<Real>& planes, int width, int height) {
-  Image image(width, height);
-  const size_t texels = image.num_pixels();
-  for (size_t i = 0; i < 3 * texels; ++i) {
-    image.rgb[i] = static_cast<float>(planes[i % 3 * texels + i / 3]);
-  }
-  return image;
-}
 
 // To be run once. What it is given must outlive it; `stop` may be null.
 class Estimator {

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <string>
 
-#include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/estimation/estimator.h"
 #include "ibrdf/solvers/joint/reflectance_solver.h"
 
@@ -23,20 +22,11 @@ constexpr double kLightChromaStd = 0.35;
 
 void Estimator::FixGauge(JointState* state) {
   if (!lobes_unknown() || !light_unknown()) return;
-  std::vector<float> log_map(light_->num_outputs());
-  light_->Forward(state->light.data(), log_map.data());
-  double mean[3] = {0, 0, 0};
-  const int W = light_->width(), H = light_->height();
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < H; ++r) {
-      const double w = TexelSolidAngle(r, H, W) / (4 * M_PI);
-      for (int x = 0; x < W; ++x) {
-        mean[c] += w * log_map[(static_cast<size_t>(c) * H + r) * W + x];
-      }
-    }
-  }
+  LogMap log_map;
+  light_->Forward(state->light.data(), &log_map);
   const std::vector<double> d =
-      GaugeShift(*lobes_, lobe_prior_, state->lobes, mean, kLightChromaStd);
+      GaugeShift(*lobes_, lobe_prior_, state->lobes, log_map.Mean().data(),
+                 kLightChromaStd);
   lobes_->ShiftColours(d.data(), state->lobes.data());
   const double back[3] = {-d[0], -d[1], -d[2]};
   light_->ShiftChannels(back, state->light.data());

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/light/log_map.h"
 
 namespace ibrdf {
 namespace {
@@ -17,7 +18,6 @@ constexpr double kSmallestStep = 1e-4;
 constexpr double kLongestStep = 6.0;
 // Of the gain that a step's quadratic model promises, what it must bring.
 constexpr double kSufficientGain = 0.1;
-constexpr double kMaxLogRadiance = 80.0;
 constexpr double kSmallestRadiance = 1e-200;
 // Conjugate gradients with the Hessian: steps, and the square of the error,
 // relative, in the Hessian's norm, for Newton's steps and for the motion of the
@@ -153,7 +153,7 @@ MarginalLikelihood::Point MarginalLikelihood::At(
     const Eigen::VectorXd& l) const {
   const Eigen::Index n = num_sources(), P = num_points_;
   Point point;
-  point.L = (l.array() + level).min(kMaxLogRadiance).exp();
+  point.L = (l.array() + level).min(kMaxLogRadianceInDouble).exp();
   point.L_o.resize(3 * P);
   for (int c = 0; c < 3; ++c) {
     point.L_o.segment(c * P, P) =

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/priors/directional_lights.h"
 
 namespace ibrdf {
@@ -39,19 +40,6 @@ std::vector<bool> LitCells(const NormalBins& bins, const Transport& transport) {
 }
 
 }  // namespace
-
-std::vector<float> RelativeMap(const double* log_radiance, int num_texels) {
-  const size_t t = num_texels;
-  const double highest = *std::max_element(log_radiance, log_radiance + 3 * t);
-  std::vector<float> map(3 * t);
-  for (size_t i = 0; i < t; ++i) {
-    for (size_t c = 0; c < 3; ++c) {
-      map[3 * i + c] =
-          static_cast<float>(std::exp(log_radiance[c * t + i] - highest));
-    }
-  }
-  return map;
-}
 
 MarginalReflectance::MarginalReflectance(
     const LobeFactory& lobes, const std::vector<ShadingPoint>& points,
