@@ -20,11 +20,11 @@ BrdfGrid LobeBlock::Grid(const double* parameters) const {
   return lobes_->Grid(parameters);
 }
 
-RowMajorMatrix LobeBlock::RadianceJacobian(const double* parameters,
-                                           const float* map) const {
+RowMatrix LobeBlock::RadianceJacobian(const double* parameters,
+                                      const float* map) const {
   std::vector<double> L_o, dL_o;
   RenderLobeModel(*transport_, *lobes_, parameters, map, &L_o, &dL_o);
-  return Eigen::Map<const RowMajorMatrix>(
+  return Eigen::Map<const RowMatrix>(
       dL_o.data(), static_cast<Eigen::Index>(L_o.size()), num_parameters());
 }
 
@@ -71,7 +71,7 @@ double LobeBlock::Prior(const double* parameters, double* gradient,
     cost.Evaluate(&parameters, residuals.data(), nullptr);
     return residuals.squaredNorm() / 2;
   }
-  RowMajorMatrix jacobian(cost.num_residuals(), num_parameters());
+  RowMatrix jacobian(cost.num_residuals(), num_parameters());
   double* jacobians[] = {jacobian.data()};
   cost.Evaluate(&parameters, residuals.data(), jacobians);
   if (gradient != nullptr) {
