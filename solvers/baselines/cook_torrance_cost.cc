@@ -37,8 +37,7 @@ CookTorranceCost::CookTorranceCost(const Transport& transport, const Image& map,
 std::vector<float> CookTorranceCost::RenderFields(double log_roughness,
                                                   double logit_f0) const {
   std::vector<double> parameters(lobes_.num_parameters(), 0.0);
-  parameters[lobes_.lobe_size()] = log_roughness;
-  parameters[lobes_.lobe_size() + 1] = logit_f0;
+  lobes_.Mixture(parameters.data()).code(1) << log_roughness, logit_f0;
   std::vector<float> fields;
   lobes_.Tabulate(parameters.data(), true, &fields);
   // The first lobe's derivatives, which are 0, are left out.

@@ -39,10 +39,10 @@ StatusOr<MaterialPrior> CookTorrancePrior(const NeuralBrdfModel& model,
           return;
         }
         parameters = ToEigen(CookTorranceLobes::ToParameters(*fit));
-        for (Eigen::Index k = 0; k < parameters.size(); ++k) {
-          const bool colour =
-              k % (CookTorranceLobes::kCode + 3) >= CookTorranceLobes::kCode;
-          if (colour) parameters[k] = std::max(parameters[k], kFaintest);
+        const MutableLobeMixture mixture(CookTorranceLobes::kLayout,
+                                         parameters.data());
+        for (int k = 0; k < mixture.num_lobes(); ++k) {
+          for (double& a : mixture.log_colour(k)) a = std::max(a, kFaintest);
         }
       });
   for (const Status& status : failed) {

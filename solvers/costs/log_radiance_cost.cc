@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ibrdf/solvers/illumination/illumination_model.h"
+#include "ibrdf/light/log_map.h"
 
 namespace ibrdf {
 namespace {
@@ -39,7 +39,7 @@ template <typename Render>
 bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
                   const double* parameters, std::vector<double>* L_o,
                   std::vector<double>* dL_o) {
-  const int lobe_size = lobes.lobe_size(), codes = lobes.code_size();
+  const int codes = lobes.code_size();
   const int stride = dL_o != nullptr ? 1 + codes : 1;
   const int num_fields = stride * lobes.num_lobes();
   const int columns = lobes.num_parameters();
@@ -52,26 +52,26 @@ bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
   render(pointers.data(), num_fields, out.data());
   L_o->assign(static_cast<size_t>(points) * 3, 0.0);
   if (dL_o != nullptr) dL_o->assign(L_o->size() * columns, 0.0);
+  const LobeMixture mixture = lobes.Mixture(parameters);
+  const Eigen::Array3Xd colours = mixture.Colours();
+  const Eigen::Array3Xd slopes = mixture.ColourSlopes();
   bool finite = true;
   for (int i = 0; i < points; ++i) {
     for (int k = 0; k < lobes.num_lobes(); ++k) {
-      const double* lobe = parameters + static_cast<size_t>(k) * lobe_size;
       for (int c = 0; c < 3; ++c) {
-        const double colour =
-            std::exp(std::min(lobe[codes + c], LobeModel::kMaxLogColour)) *
-            kMerlScale[c];
         const auto field = [&](int f) {
           return static_cast<double>(
               out[(static_cast<size_t>(i) * num_fields + k * stride + f) * 3 +
                   c]);
         };
         const size_t row = static_cast<size_t>(i) * 3 + c;
-        const double term = colour * field(0);
-        (*L_o)[row] += term;
+        (*L_o)[row] += colours(c, k) * field(0);
         if (dL_o == nullptr) continue;
-        double* d = dL_o->data() + row * columns + k * lobe_size;
-        for (int z = 0; z < codes; ++z) d[z] = colour * field(1 + z);
-        d[codes + c] = lobe[codes + c] < LobeModel::kMaxLogColour ? term : 0.0;
+        const MutableLobeMixture d = lobes.Mixture(&(*dL_o)[row * columns]);
+        for (int z = 0; z < codes; ++z) {
+          d.code(k)[z] = colours(c, k) * field(1 + z);
+        }
+        d.log_colour(k)[c] = slopes(c, k) * field(0);
       }
     }
     for (int c = 0; c < 3; ++c) finite &= std::isfinite((*L_o)[3 * i + c]);
@@ -180,12 +180,11 @@ bool LogRadianceCost::Evaluate(double const* const* parameters,
                                double* residuals, double** jacobians) const {
   const int weights = unet_->num_weights();
   const std::vector<float> phi(parameters[1], parameters[1] + weights);
-  const int texels = unet_->num_outputs() / 3;
-  std::vector<float> planar(unet_->num_outputs());
+  LogMap log_map({unet_->options().width, unet_->options().height});
   IlluminationUnet::Workspace workspace, scratch;
-  unet_->Forward(phi.data(), &workspace, planar.data());
+  unet_->Forward(phi.data(), &workspace, log_map.data());
   std::vector<float> map, slopes;
-  ToRadianceMap(planar, &map, &slopes);
+  log_map.Exp(&map, &slopes);
   const bool want_lobes = jacobians != nullptr && jacobians[0] != nullptr;
   const bool want_weights = jacobians != nullptr && jacobians[1] != nullptr;
   std::vector<double> L_o, dL_o, dr_dE;
@@ -203,17 +202,13 @@ bool LogRadianceCost::Evaluate(double const* const* parameters,
     const LightOperator light =
         transport_->ByLight(lobes_->Grid(parameters[0]));
     std::vector<double> adjoint(L_o.size(), 0.0);
-    std::vector<float> by_map(map.size()), by_output(map.size()),
-        by_weight(weights);
+    std::vector<float> by_map(map.size()), by_weight(weights);
     for (size_t row = 0; row < L_o.size(); ++row) {
       adjoint[row] = dr_dE[row];
       light.ApplyTranspose(adjoint.data(), by_map.data());
       adjoint[row] = 0.0;
-      for (int t = 0; t < texels; ++t) {
-        for (int c = 0; c < 3; ++c) {
-          by_output[c * texels + t] = by_map[3 * t + c] * slopes[3 * t + c];
-        }
-      }
+      LogMap by_output(log_map.size());
+      AddExpVjp(slopes, by_map, &by_output);
       unet_->Vjp(by_output.data(), workspace, &scratch, by_weight.data());
       std::copy(by_weight.begin(), by_weight.end(),
                 jacobians[1] + row * weights);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/flow/brdf_flow.h"
 
 namespace ibrdf {
@@ -17,10 +18,10 @@ struct TableColumns {
   std::vector<float> log_raw;
 };
 
-// Parameters as LobeModel's, K lobes of code_size + 3. Residuals per channel
-// and point: log(sum_k exp(a_kc) q(x | z_k)^exponent + floor) - log raw, raw
-// units, times sqrt(weight). Where another lobe dominates, a lobe's derivative
-// vanishes smoothly; where all are below the floor, all do.
+// Parameters as LobeModel's. Residuals per channel and point:
+// log(sum_k exp(a_kc) q(x | z_k)^exponent + floor) - log raw, raw units, times
+// sqrt(weight). Where another lobe dominates, a lobe's derivative vanishes
+// smoothly; where all are below the floor, all do.
 class LogTableCost final : public ceres::CostFunction {
  public:
   // flow and table must outlive *this.
@@ -33,7 +34,7 @@ class LogTableCost final : public ceres::CostFunction {
 
  private:
   const BrdfFlow& flow_;
-  const int code_size_, num_lobes_;
+  const LobeLayout layout_;
   const double exponent_;
   const TableColumns& table_;
   const double floor_, scale_;

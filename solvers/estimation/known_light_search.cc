@@ -12,7 +12,7 @@ std::vector<RankedMaterial> RankUnderKnownLight(
     const Transport& transport, const LobeModel& lobes,
     const MaterialPrior& prior, const std::vector<float>& map,
     const Observations& observed, const RobustLogLikelihood& likelihood) {
-  const int num_lobes = lobes.num_lobes(), code_size = lobes.code_size();
+  const int num_lobes = lobes.num_lobes();
   const size_t nodes = lobes.grid_shape().num_nodes();
   const size_t points = observed.valid.size();
   std::vector<std::vector<float>> shapes(prior.materials.size());
@@ -31,18 +31,15 @@ std::vector<RankedMaterial> RankUnderKnownLight(
   std::vector<double> L_o(3 * points);
   for (size_t m = 0; m < prior.materials.size(); ++m) {
     Eigen::VectorXd x = prior.materials[m].parameters;
-    double shift[3] = {0.0, 0.0, 0.0};
+    Eigen::Array3d shift = Eigen::Array3d::Zero();
     int lit[3] = {0, 0, 0};
-    const auto colour = [&](int k, int c) {
-      return x[static_cast<Eigen::Index>(k) * lobes.lobe_size() + code_size +
-               c];
-    };
+    const MutableLobeMixture mixture = lobes.Mixture(x.data());
+    const Eigen::Array3Xd colours = mixture.Colours();
     for (size_t i = 0; i < L_o.size(); ++i) {
       const int c = static_cast<int>(i % 3);
       L_o[i] = 0.0;
       for (int k = 0; k < num_lobes; ++k) {
-        L_o[i] += std::exp(std::min(colour(k, c), LobeModel::kMaxLogColour)) *
-                  kMerlScale[c] *
+        L_o[i] += colours(c, k) *
                   rendered[i / 3 * stride + 3 * (m * num_lobes + k) + c];
       }
       // A black point, of which no level is right, tells nothing of it.
@@ -54,7 +51,7 @@ std::vector<RankedMaterial> RankUnderKnownLight(
     }
     for (int c = 0; c < 3; ++c) shift[c] /= std::max(lit[c], 1);
     for (size_t i = 0; i < L_o.size(); ++i) L_o[i] *= std::exp(shift[i % 3]);
-    lobes.ShiftColours(shift, x.data());
+    mixture.ShiftColours(shift);
     double cost = EvaluateLikelihood(L_o, observed, likelihood, nullptr).cost +
                   prior.Cost(x, nullptr);
     if (!std::isfinite(cost)) cost = std::numeric_limits<double>::infinity();

@@ -7,7 +7,6 @@
 #include "ibrdf/solvers/estimation/outer_iterations.h"
 #include "ibrdf/solvers/illumination/log_map_fit.h"
 #include "ibrdf/solvers/illumination/process_illumination.h"
-#include "ibrdf/solvers/illumination/resample_planes.h"
 
 namespace ibrdf {
 namespace {
@@ -109,20 +108,19 @@ Status EstimateProcessMap(const SolveSetup& setup, MapSize size,
              setup, estimate);
   SetReference(setup, estimate);
   Report("constant map", setup, *estimate, context);
-  if (!posterior.mode.empty()) {
+  if (posterior.mode.num_texels() > 0) {
     LogMapFitOptions o;
     o.should_stop = context->StopAfter(kProcessShare / 2);
-    FitLogMap(ResamplePlanes(posterior.mode, posterior.mode_size, size), o,
+    FitLogMap(posterior.mode.Resized(size), o,
               estimate->iterate.light.map.get(),
               &estimate->iterate.state.light);
   }
   return IterateMap(setup, method, share, context, estimate);
 }
 
-// Log radiance of the iterate's map, planes [3][H][W].
-std::vector<float> LogMapOf(const Iterate& iterate) {
-  std::vector<float> log_map(iterate.light.map->num_outputs());
-  iterate.light.map->Forward(iterate.state.light.data(), log_map.data());
+LogMap LogMapOf(const Iterate& iterate) {
+  LogMap log_map;
+  iterate.light.map->Forward(iterate.state.light.data(), &log_map);
   return log_map;
 }
 
@@ -134,9 +132,8 @@ Status EstimateNetworkMap(const SolveSetup& setup, SolveContext* context,
   ObservedPixels* const pixels = estimate->pixels.get();
   const double process_misfit =
       Evaluate("map", setup, *context, *iterate, pixels).misfit;
-  const std::vector<float> log_map = LogMapOf(*iterate);
+  const LogMap log_map = LogMapOf(*iterate);
   const std::vector<float> process_parameters = iterate->state.light;
-  const MapSize process_size = SizeOf(iterate->light, setup);
   std::unique_ptr<IlluminationModel> process = std::move(iterate->light.map);
 
   BeginLightAtLevel(MakeLightModel(MakeIllumination(*setup.problem), true),
@@ -145,8 +142,8 @@ Status EstimateNetworkMap(const SolveSetup& setup, SolveContext* context,
   const MapSize size = SizeOf(iterate->light, setup);
   LogMapFitOptions o;
   o.should_stop = context->StopAfter(kMapShare / 2);
-  FitLogMap(ResamplePlanes(log_map, process_size, size), o,
-            iterate->light.map.get(), &iterate->state.light);
+  FitLogMap(log_map.Resized(size), o, iterate->light.map.get(),
+            &iterate->state.light);
   Report("network", setup, *estimate, context);
   OuterIterationOptions options;
   options.stage = "network";
@@ -154,7 +151,7 @@ Status EstimateNetworkMap(const SolveSetup& setup, SolveContext* context,
   options.share = kMapShare;
   // A MAP estimate of another size is no map to fall back on.
   options.most_misfit =
-      process_size == size ? kWorseMisfit * process_misfit : 0.0;
+      log_map.size() == size ? kWorseMisfit * process_misfit : 0.0;
   IBRDF_RETURN_IF_ERROR(
       RunOuterIterations(options, setup, pixels, context, iterate));
   const double misfit =

@@ -160,12 +160,13 @@ LightPosterior LightOf(const ReflectanceSearchResult& found, double level) {
   LightPosterior light;
   light.hyperparameters = found.hyperparameters;
   light.directional_lights = found.directional_lights;
+  std::vector<float> mode;
   for (const double v : found.log_radiance) {
-    light.mode.push_back(static_cast<float>(v - level));
+    mode.push_back(static_cast<float>(v - level));
   }
-  light.mode_size = {found.map_width, found.map_height};
+  light.mode = LogMap({found.map_width, found.map_height}, std::move(mode));
   light.log_std =
-      ImageOfPlanes(found.log_radiance_std, found.map_width, found.map_height);
+      FromPlanes(found.log_radiance_std, found.map_width, found.map_height);
   return light;
 }
 
@@ -186,9 +187,9 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
   out.light = LightOf(*found, gauge.Fix(out.lobes.data()));
   out.initial_guess = found->initial_guess;
   const auto& materials = setup.materials.materials;
-  const auto initial =
-      std::find_if(materials.begin(), materials.end(),
-                   [&](const auto& m) { return m.name == found->initial_guess; });
+  const auto initial = std::find_if(
+      materials.begin(), materials.end(),
+      [&](const auto& m) { return m.name == found->initial_guess; });
   out.initial_lobes = ToVector(initial->parameters);
   gauge.Fix(out.initial_lobes.data());
   out.covariance = found->covariance;

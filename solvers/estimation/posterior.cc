@@ -30,7 +30,7 @@ void CentreLight(Estimate* estimate) {
 
 MapSize SizeOf(const LightModel& light, const SolveSetup& setup) {
   if (light.map == nullptr) return setup.map_size();
-  return {light.map->width(), light.map->height()};
+  return light.map->size();
 }
 
 LightModel MakeLightModel(std::unique_ptr<IlluminationModel> map,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/estimation/solve_context.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
@@ -21,11 +22,10 @@ namespace ibrdf {
 struct LightPosterior {
   LightHyperparameters hyperparameters = LightHyperparameters::Average();
   std::vector<Eigen::Vector3d> directional_lights;  // unit, towards the light
-  // MAP estimate of log radiance [3][height][width] and its standard deviation
-  // given the reflectance, both at the resolution of the search; empty where
-  // there was none.
-  std::vector<float> mode;
-  MapSize mode_size;
+  // MAP estimate of log radiance and its standard deviation given the
+  // reflectance, both at the resolution of the search; empty where there was
+  // none.
+  LogMap mode;
   Image log_std;
 };
 
@@ -59,7 +59,7 @@ struct ReflectanceEstimate {
   // The material whose candidate became the estimate, and its lobes.
   std::string initial_guess;
   std::vector<double> initial_lobes;
-  Eigen::MatrixXd covariance;             // of the lobes; empty: not known
+  Eigen::MatrixXd covariance;                 // of the lobes; empty: not known
   std::vector<MaterialCandidate> candidates;  // by cost
   LightPosterior light;
 };

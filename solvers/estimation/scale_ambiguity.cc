@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/light/log_map.h"
 
 namespace ibrdf {
 namespace {
@@ -18,24 +20,6 @@ constexpr double kFloor = 1e-9;  // 1/sr
 // Standard deviation of log (red / green) and log (blue / green) of a map's
 // mean log radiance (experiments/light_statistics).
 constexpr double kLightChromaStd = 0.35;
-
-// Mean log radiance by channel, weighted by solid angle, of planes [3][H][W].
-Eigen::Array3d MeanLogRadiance(const std::vector<float>& log_map,
-                               MapSize size) {
-  Eigen::Array3d mean = Eigen::Array3d::Zero();
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < size.height; ++r) {
-      const double w = TexelSolidAngle(r, size.height, size.width) / (4 * M_PI);
-      for (int x = 0; x < size.width; ++x) {
-        mean[c] +=
-            w *
-            log_map[(static_cast<size_t>(c) * size.height + r) * size.width +
-                    x];
-      }
-    }
-  }
-  return mean;
-}
 
 }  // namespace
 
@@ -51,8 +35,7 @@ LevelGauge::LevelGauge(const NeuralBrdfModel& model, const MaterialPrior& prior,
 
 double LevelGauge::Fix(double* parameters) const {
   const double level = mean_ - MeanLog(parameters);
-  const double shift[3] = {level, level, level};
-  lobes_.ShiftColours(shift, parameters);
+  lobes_.Mixture(parameters).ShiftColours(Eigen::Array3d::Constant(level));
   return level;
 }
 
@@ -72,12 +55,11 @@ std::vector<double> GaugeShift(const LobeModel& lobes, const LobePrior& prior,
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   const double w = 1.0 / (prior.colour_sigma * prior.colour_sigma);
+  const LobeMixture mixture = lobes.Mixture(parameters.data());
   for (int k = 0; k < lobes.num_lobes(); ++k) {
     for (int c = 0; c < 3; ++c) {
-      const double a =
-          parameters[k * lobes.lobe_size() + lobes.code_size() + c];
       A(c, c) += w;
-      b[c] += w * (prior.colour_mean[c] - a);
+      b[c] += w * (prior.colour_mean[c] - mixture.log_colour(k)[c]);
     }
   }
   const double v = 1.0 / (light_std * light_std);
@@ -96,14 +78,13 @@ void SettleScale(const SolveSetup& setup, Iterate* iterate) {
   if (!setup.lobes_unknown() || !setup.light_unknown()) return;
   IlluminationModel* const map = iterate->light.map.get();
   JointState* const state = &iterate->state;
-  std::vector<float> log_map(map->num_outputs());
-  map->Forward(state->light.data(), log_map.data());
-  const Eigen::Array3d mean =
-      MeanLogRadiance(log_map, {map->width(), map->height()});
+  LogMap log_map;
+  map->Forward(state->light.data(), &log_map);
   const std::vector<double> d =
-      GaugeShift(*setup.lobes, setup.lobe_prior, state->lobes, mean.data(),
-                 kLightChromaStd);
-  setup.lobes->ShiftColours(d.data(), state->lobes.data());
+      GaugeShift(*setup.lobes, setup.lobe_prior, state->lobes,
+                 log_map.Mean().data(), kLightChromaStd);
+  setup.lobes->Mixture(state->lobes.data())
+      .ShiftColours(Eigen::Array3d(d[0], d[1], d[2]));
   const double back[3] = {-d[0], -d[1], -d[2]};
   map->ShiftChannels(back, state->light.data());
   map->ShiftChannels(back, iterate->light.priors.mean.data());
@@ -125,11 +106,9 @@ void SetGauge(SolverGauge gauge, int num_lobes, Solution* solution) {
     map[i] = static_cast<float>(map[i] / scale[i % 3]);
   }
   std::vector<double>& lobes = solution->lobe_parameters;
-  const size_t size = lobes.size() / num_lobes;  // the last three are colours
-  for (size_t i = 0; i < lobes.size(); ++i) {
-    const size_t at = i % size;
-    if (at + 3 >= size) lobes[i] += shift[at + 3 - size];
-  }
+  const int lobe_size = static_cast<int>(lobes.size()) / num_lobes;
+  MutableLobeMixture({num_lobes, lobe_size - 3}, lobes.data())
+      .ShiftColours(shift);
   std::vector<double>& raw = solution->brdf.raw;
   for (size_t i = 0; i < raw.size(); ++i) {
     // Negative values mark invalid bins.

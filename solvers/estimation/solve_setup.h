@@ -6,8 +6,8 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/illumination/illumination_model.h"
-#include "ibrdf/solvers/illumination/resample_planes.h"
 #include "ibrdf/solvers/joint/joint_method.h"
 #include "ibrdf/solvers/observation/observation.h"
 #include "ibrdf/solvers/priors/material_prior.h"

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <random>
 #include <string>
 #include <utility>
 
 #include "ibrdf/approximation/reflectance_map.h"
+#include "ibrdf/base/normal_source.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/scene/pixel_samples.h"
@@ -38,24 +38,6 @@ double MapError(RenderQuality quality) {
   return quality == RenderQuality::kReference ? kReferenceMapError
                                               : kPreviewMapError;
 }
-
-// Box-Muller on bits of the generator, which the standard fixes (unlike
-// std::normal_distribution): the same seed gives the same noise anywhere.
-class NormalNumbers {
- public:
-  explicit NormalNumbers(uint64_t seed) : rng_(seed) {}
-  double Next() {
-    constexpr double kTwoPi = 6.28318530717958647693;
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - Uniform()));
-    return radius * std::cos(kTwoPi * Uniform());
-  }
-
- private:
-  double Uniform() {
-    return std::ldexp(static_cast<double>(rng_() >> 11), -53);
-  }
-  std::mt19937_64 rng_;
-};
 
 // Those of one view angle share work.
 void SortByAngle(std::vector<ShadingPoint>* points) {
@@ -183,7 +165,7 @@ class PixelRenderer {
 
 void AddNoise(double sigma, uint64_t seed, Image* image) {
   if (sigma <= 0.0) return;
-  NormalNumbers normal(seed);
+  DoubleNormalSource normal(seed);
   for (float& v : image->rgb) {
     v = static_cast<float>(v * std::exp(sigma * normal.Next()));
   }

@@ -1,7 +1,6 @@
 #include "ibrdf/solvers/illumination/illumination_model.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ibrdf/solvers/illumination/natural_noise.h"
 
@@ -13,12 +12,11 @@ namespace {
 constexpr float kBiasStd = 10.0f;
 // Free texels: log radiance of natural light spreads over a few units.
 constexpr float kTexelStd = 3.0f;
-constexpr float kMaxLogRadiance = 60.0f;
 
 class UnetIllumination final : public IlluminationModel {
  public:
   explicit UnetIllumination(const IlluminationUnetOptions& options)
-      : IlluminationModel(options.width, options.height),
+      : IlluminationModel({options.width, options.height}),
         unet_(options, NaturalNoise(options)) {}
 
   int num_parameters() const override { return unet_.num_weights(); }
@@ -35,17 +33,20 @@ class UnetIllumination final : public IlluminationModel {
     return std;
   }
 
-  void Forward(const float* parameters, float* log_radiance) override {
-    unet_.Forward(parameters, &scratch_, log_radiance);
+  void Forward(const float* parameters, LogMap* log_map) override {
+    log_map->Reshape(size());
+    unet_.Forward(parameters, &scratch_, log_map->data());
   }
-  void Linearise(const float* parameters, float* log_radiance) override {
-    unet_.Forward(parameters, &workspace_, log_radiance);
+  void Linearise(const float* parameters, LogMap* log_map) override {
+    log_map->Reshape(size());
+    unet_.Forward(parameters, &workspace_, log_map->data());
   }
-  void Jvp(const float* tangent, float* d_log_radiance) override {
-    unet_.Jvp(tangent, workspace_, &scratch_, d_log_radiance);
+  void Jvp(const float* tangent, LogMap* d_log_map) override {
+    d_log_map->Reshape(size());
+    unet_.Jvp(tangent, workspace_, &scratch_, d_log_map->data());
   }
-  void Vjp(const float* adjoint, float* gradient) override {
-    unet_.Vjp(adjoint, workspace_, &scratch_, gradient);
+  void Vjp(const LogMap& adjoint, float* gradient) override {
+    unet_.Vjp(adjoint.data(), workspace_, &scratch_, gradient);
   }
   void ShiftChannels(const double* shift, float* parameters) const override {
     for (int c = 0; c < 3; ++c) {
@@ -61,7 +62,7 @@ class UnetIllumination final : public IlluminationModel {
 
 class FreeIllumination final : public IlluminationModel {
  public:
-  FreeIllumination(int width, int height) : IlluminationModel(width, height) {}
+  explicit FreeIllumination(MapSize size) : IlluminationModel(size) {}
 
   int num_parameters() const override { return num_outputs(); }
 
@@ -73,17 +74,18 @@ class FreeIllumination final : public IlluminationModel {
   std::vector<float> PriorStd() const override {
     return std::vector<float>(num_outputs(), kTexelStd);
   }
-  void Forward(const float* parameters, float* log_radiance) override {
-    std::copy(parameters, parameters + num_outputs(), log_radiance);
+  void Forward(const float* parameters, LogMap* log_map) override {
+    log_map->Reshape(size());
+    std::copy(parameters, parameters + num_outputs(), log_map->data());
   }
-  void Linearise(const float* parameters, float* log_radiance) override {
-    Forward(parameters, log_radiance);
+  void Linearise(const float* parameters, LogMap* log_map) override {
+    Forward(parameters, log_map);
   }
-  void Jvp(const float* tangent, float* d_log_radiance) override {
-    std::copy(tangent, tangent + num_outputs(), d_log_radiance);
+  void Jvp(const float* tangent, LogMap* d_log_map) override {
+    Forward(tangent, d_log_map);
   }
-  void Vjp(const float* adjoint, float* gradient) override {
-    std::copy(adjoint, adjoint + num_outputs(), gradient);
+  void Vjp(const LogMap& adjoint, float* gradient) override {
+    std::copy(adjoint.values().begin(), adjoint.values().end(), gradient);
   }
   void ShiftChannels(const double* shift, float* parameters) const override {
     const int texels = num_outputs() / 3;
@@ -95,31 +97,13 @@ class FreeIllumination final : public IlluminationModel {
 
 }  // namespace
 
-void ToRadianceMap(const std::vector<float>& log_radiance,
-                   std::vector<float>* map, std::vector<float>* slopes) {
-  map->resize(log_radiance.size());
-  if (slopes != nullptr) slopes->resize(log_radiance.size());
-  const size_t texels = log_radiance.size() / 3;
-  for (size_t t = 0; t < texels; ++t) {
-    for (size_t c = 0; c < 3; ++c) {
-      const float l = log_radiance[c * texels + t];
-      const float L =
-          std::exp(std::clamp(l, -kMaxLogRadiance, kMaxLogRadiance));
-      (*map)[3 * t + c] = L;
-      if (slopes != nullptr) {
-        (*slopes)[3 * t + c] = std::abs(l) < kMaxLogRadiance ? L : 0.0f;
-      }
-    }
-  }
-}
-
 std::unique_ptr<IlluminationModel> MakeUnetIllumination(
     const IlluminationUnetOptions& options) {
   return std::make_unique<UnetIllumination>(options);
 }
 
 std::unique_ptr<IlluminationModel> MakeFreeIllumination(int width, int height) {
-  return std::make_unique<FreeIllumination>(width, height);
+  return std::make_unique<FreeIllumination>(MapSize{width, height});
 }
 
 }  // namespace ibrdf

@@ -5,44 +5,40 @@
 #include <vector>
 
 #include "ibrdf/light/illumination_unet.h"
+#include "ibrdf/light/log_map.h"
 
 namespace ibrdf {
 
-// Log radiance [3][H][W] as a function of parameters, with derivative products.
-// Linearise() fixes the point at which the products are taken.
+// Log radiance as a function of parameters, with derivative products.
+// Linearise() fixes the point at which the products are taken. Maps that are
+// written take this size.
 class IlluminationModel {
  public:
   virtual ~IlluminationModel() = default;
   virtual int num_parameters() const = 0;
-  int width() const { return width_; }
-  int height() const { return height_; }
-  int num_outputs() const { return 3 * width_ * height_; }
+  MapSize size() const { return size_; }
+  int width() const { return size_.width; }
+  int height() const { return size_.height; }
+  int num_outputs() const { return 3 * static_cast<int>(size_.num_texels()); }
 
   // A constant map of the given log radiance per channel.
   virtual std::vector<float> ConstantMap(const double* log_radiance) const = 0;
   // Standard deviation of each parameter under its prior, about its mean.
   virtual std::vector<float> PriorStd() const = 0;
 
-  virtual void Forward(const float* parameters, float* log_radiance) = 0;
-  virtual void Linearise(const float* parameters, float* log_radiance) = 0;
-  virtual void Jvp(const float* tangent, float* d_log_radiance) = 0;
-  virtual void Vjp(const float* adjoint, float* gradient) = 0;
+  virtual void Forward(const float* parameters, LogMap* log_map) = 0;
+  virtual void Linearise(const float* parameters, LogMap* log_map) = 0;
+  virtual void Jvp(const float* tangent, LogMap* d_log_map) = 0;
+  virtual void Vjp(const LogMap& adjoint, float* gradient) = 0;
   // Adds shift [3] to the log radiance of each channel, exactly.
   virtual void ShiftChannels(const double* shift, float* parameters) const = 0;
 
  protected:
-  IlluminationModel(int width, int height) : width_(width), height_(height) {}
+  explicit IlluminationModel(MapSize size) : size_(size) {}
 
  private:
-  const int width_, height_;
+  const MapSize size_;
 };
-
-// exp of planar log radiance [3][H][W] as a map [H, W, 3]; clamped so that
-// nothing overflows. slopes, where not null: its derivatives by log radiance
-// [H, W, 3], the map's values but 0 where it is clamped.
-void ToRadianceMap(const std::vector<float>& log_radiance,
-                   std::vector<float>* map,
-                   std::vector<float>* slopes = nullptr);
 
 std::unique_ptr<IlluminationModel> MakeUnetIllumination(
     const IlluminationUnetOptions& options);

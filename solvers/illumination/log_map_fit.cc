@@ -20,21 +20,24 @@ constexpr int kIdleSteps = 2;
 
 class LogMapFit {
  public:
-  LogMapFit(const std::vector<float>& target, double sigma,
-            IlluminationModel* model, const std::vector<float>& mean)
+  LogMapFit(const LogMap& target, double sigma, IlluminationModel* model,
+            const std::vector<float>& mean)
       : model_(model),
         target_(target),
         mean_(mean),
         log_map_(target.size()),
+        by_map_(target.size()),
         by_parameter_(mean.size()),
         tangent_(mean.size()) {
-    CHECK_EQ(static_cast<int>(target.size()), model->num_outputs());
+    CHECK(target.size() == model->size());
     CHECK_EQ(static_cast<int>(mean.size()), model->num_parameters());
     const int H = model->height(), W = model->width();
     const double equator = TexelSolidAngle(H / 2, H, W);
-    for (int i = 0; i < model->num_outputs(); ++i) {
-      weight_.push_back(TexelSolidAngle(i / W % H, H, W) / equator /
-                        (sigma * sigma));
+    for (int c = 0; c < 3; ++c) {
+      for (int r = 0; r < H; ++r) {
+        weight_.insert(weight_.end(), W,
+                       TexelSolidAngle(r, H, W) / equator / (sigma * sigma));
+      }
     }
     const std::vector<float> std = model->PriorStd();
     precision_.resize(static_cast<Eigen::Index>(std.size()));
@@ -44,19 +47,19 @@ class LogMapFit {
   }
 
   double Cost(const std::vector<float>& parameters) {
-    model_->Forward(parameters.data(), log_map_.data());
+    model_->Forward(parameters.data(), &log_map_);
     return CostAtMap(parameters);
   }
 
   // -step . gradient > 0; damping: of the prior's precision.
   Eigen::VectorXd Step(const std::vector<float>& parameters, double damping,
                        int max_iterations) {
-    model_->Linearise(parameters.data(), log_map_.data());
-    std::vector<float> by_map(log_map_.size());
-    for (size_t i = 0; i < by_map.size(); ++i) {
-      by_map[i] = static_cast<float>(weight_[i] * (log_map_[i] - target_[i]));
+    model_->Linearise(parameters.data(), &log_map_);
+    for (size_t i = 0; i < weight_.size(); ++i) {
+      by_map_.data()[i] = static_cast<float>(
+          weight_[i] * (log_map_.data()[i] - target_.data()[i]));
     }
-    Eigen::VectorXd residual = -Vjp(by_map);
+    Eigen::VectorXd residual = -Vjp();
     for (Eigen::Index i = 0; i < residual.size(); ++i) {
       residual[i] -= precision_[i] * (parameters[i] - mean_[i]);
     }
@@ -65,11 +68,12 @@ class LogMapFit {
       for (size_t i = 0; i < tangent_.size(); ++i) {
         tangent_[i] = static_cast<float>(v[static_cast<Eigen::Index>(i)]);
       }
-      model_->Jvp(tangent_.data(), by_map.data());
-      for (size_t i = 0; i < by_map.size(); ++i) {
-        by_map[i] = static_cast<float>(weight_[i] * by_map[i]);
+      model_->Jvp(tangent_.data(), &by_map_);
+      for (size_t i = 0; i < weight_.size(); ++i) {
+        float& value = by_map_.data()[i];
+        value = static_cast<float>(weight_[i] * value);
       }
-      return Vjp(by_map) + diagonal.cwiseProduct(v);
+      return Vjp() + diagonal.cwiseProduct(v);
     };
     const auto precondition = [&](const Eigen::VectorXd& r) -> Eigen::VectorXd {
       return r.cwiseQuotient(diagonal);
@@ -81,8 +85,9 @@ class LogMapFit {
  private:
   double CostAtMap(const std::vector<float>& parameters) const {
     double cost = 0.0;
-    for (size_t i = 0; i < log_map_.size(); ++i) {
-      const double d = static_cast<double>(log_map_[i]) - target_[i];
+    for (size_t i = 0; i < weight_.size(); ++i) {
+      const double d =
+          static_cast<double>(log_map_.data()[i]) - target_.data()[i];
       cost += 0.5 * weight_[i] * d * d;
     }
     for (size_t i = 0; i < mean_.size(); ++i) {
@@ -91,8 +96,9 @@ class LogMapFit {
     }
     return cost;
   }
-  Eigen::VectorXd Vjp(const std::vector<float>& by_map) {
-    model_->Vjp(by_map.data(), by_parameter_.data());
+  // Of by_map_.
+  Eigen::VectorXd Vjp() {
+    model_->Vjp(by_map_, by_parameter_.data());
     return Eigen::Map<const Eigen::VectorXf>(
                by_parameter_.data(),
                static_cast<Eigen::Index>(by_parameter_.size()))
@@ -100,18 +106,18 @@ class LogMapFit {
   }
 
   IlluminationModel* model_;
-  const std::vector<float>& target_;
+  const LogMap& target_;
   const std::vector<float> mean_;
-  std::vector<float> log_map_, by_parameter_, tangent_;
+  LogMap log_map_, by_map_;
+  std::vector<float> by_parameter_, tangent_;
   std::vector<double> weight_;
   Eigen::VectorXd precision_;
 };
 
 }  // namespace
 
-double FitLogMap(const std::vector<float>& target,
-                 const LogMapFitOptions& options, IlluminationModel* model,
-                 std::vector<float>* parameters) {
+double FitLogMap(const LogMap& target, const LogMapFitOptions& options,
+                 IlluminationModel* model, std::vector<float>* parameters) {
   LogMapFit fit(target, options.sigma, model, *parameters);
   double cost = fit.Cost(*parameters), damping = 1.0;
   int idle = 0;

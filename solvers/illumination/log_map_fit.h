@@ -20,10 +20,9 @@ struct LogMapFitOptions {
 // Minimises, from `parameters` in place, which are the mean of the model's
 // Gaussian prior,
 //   1/2 sum solid angle share (log map - target)^2 / sigma^2 + prior
-// by matrix-free Gauss-Newton; target [3][H][W]. It never rises. Returns the
-// cost at the end.
-double FitLogMap(const std::vector<float>& target,
-                 const LogMapFitOptions& options, IlluminationModel* model,
-                 std::vector<float>* parameters);
+// by matrix-free Gauss-Newton; target of the model's size. It never rises.
+// Returns the cost at the end.
+double FitLogMap(const LogMap& target, const LogMapFitOptions& options,
+                 IlluminationModel* model, std::vector<float>* parameters);
 
 }  // namespace ibrdf

@@ -23,7 +23,7 @@ class ProcessIllumination final : public IlluminationModel {
   ProcessIllumination(int width, int height, const LightProcess& process,
                       const LightHyperparameters& hyperparameters,
                       const std::vector<Eigen::Vector3d>& directional_lights)
-      : IlluminationModel(width, height),
+      : IlluminationModel({width, height}),
         spectrum_(ProcessSpectrum(height, width, process).At(hyperparameters)),
         axes_(ColourAxes()),
         directional_light_texels_(
@@ -57,7 +57,7 @@ class ProcessIllumination final : public IlluminationModel {
   std::vector<float> PriorStd() const override {
     return std::vector<float>(num_parameters(), 1.0f);
   }
-  void Forward(const float* parameters, float* log_radiance) override {
+  void Forward(const float* parameters, LogMap* log_map) override {
     const int H = height(), W = width();
     RowMatrix coefficients(3 * H, W), axes;
     for (int a = 0; a < 3; ++a) {
@@ -72,30 +72,28 @@ class ProcessIllumination final : public IlluminationModel {
     ForDirectionalLightTexels([&](int a, int texel, double std, int parameter) {
       axes(a * H + texel / W, texel % W) += std * parameters[parameter];
     });
+    log_map->Reshape(size());
     for (int c = 0; c < 3; ++c) {
-      FloatMap(log_radiance + static_cast<size_t>(c) * H * W, H, W) =
-          (axes_(0, c) * axes.middleRows(0, H) +
-           axes_(1, c) * axes.middleRows(H, H) +
-           axes_(2, c) * axes.middleRows(2 * H, H))
-              .cast<float>();
+      log_map->Plane(c) = (axes_(0, c) * axes.middleRows(0, H) +
+                           axes_(1, c) * axes.middleRows(H, H) +
+                           axes_(2, c) * axes.middleRows(2 * H, H))
+                              .cast<float>();
     }
   }
   // Linear: the products are the same everywhere.
-  void Linearise(const float* parameters, float* log_radiance) override {
-    Forward(parameters, log_radiance);
+  void Linearise(const float* parameters, LogMap* log_map) override {
+    Forward(parameters, log_map);
   }
-  void Jvp(const float* tangent, float* d_log_radiance) override {
-    Forward(tangent, d_log_radiance);
+  void Jvp(const float* tangent, LogMap* d_log_map) override {
+    Forward(tangent, d_log_map);
   }
-  void Vjp(const float* adjoint, float* gradient) override {
+  void Vjp(const LogMap& adjoint, float* gradient) override {
     const int H = height(), W = width();
     RowMatrix axes = RowMatrix::Zero(3 * H, W), coefficients;
     for (int a = 0; a < 3; ++a) {
       for (int c = 0; c < 3; ++c) {
         axes.middleRows(a * H, H) +=
-            axes_(a, c) *
-            ConstFloatMap(adjoint + static_cast<size_t>(c) * H * W, H, W)
-                .cast<double>();
+            axes_(a, c) * adjoint.Plane(c).cast<double>();
       }
     }
     ForDirectionalLightTexels([&](int a, int texel, double std, int parameter) {
@@ -126,11 +124,6 @@ class ProcessIllumination final : public IlluminationModel {
   }
 
  private:
-  using FloatMatrix =
-      Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  using FloatMap = Eigen::Map<FloatMatrix>;
-  using ConstFloatMap = Eigen::Map<const FloatMatrix>;
-
   // of(axis, texel, standard deviation, parameter) of what the directional
   // lights add.
   template <typename Of>

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "ibrdf/solvers/illumination/illumination_model.h"
-#include "ibrdf/solvers/illumination/resample_planes.h"
 #include "ibrdf/solvers/priors/light_process.h"
 
 namespace ibrdf {

@@ -70,7 +70,7 @@ bool CompressedCost::Compress(const JointCost& cost, double* residuals,
   for (size_t b = 0; b < parameter_block_sizes().size(); ++b) {
     const Eigen::Index size = parameter_block_sizes()[b];
     if (jacobians[b] != nullptr) {
-      Eigen::Map<RowMajorMatrix> block(jacobians[b], n + 1, size);
+      Eigen::Map<RowMatrix> block(jacobians[b], n + 1, size);
       block.setZero();
       for (Eigen::Index i = 0; i < size; ++i) {
         const Eigen::Index column = first + i;

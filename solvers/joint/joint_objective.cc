@@ -202,7 +202,8 @@ Eigen::VectorXd JointObjective::RadianceJvp(const Eigen::VectorXd& v) {
   const int nl = num_lobe_parameters(), np = num_light_parameters();
   Eigen::VectorXd dL_o = Eigen::VectorXd::Zero(num_residuals());
   if (np > 0) {
-    std::vector<float> d_log, d_map;
+    LogMap d_log;
+    std::vector<float> d_map;
     light_->Jvp(v.data() + nl, &d_log, &d_map);
     Operator().ApplyLinear(d_map.data(), dL_o.data());
   }
@@ -233,7 +234,8 @@ Eigen::VectorXd JointObjective::Product(const Eigen::VectorXd& v) {
   CheckPoint();
   const int nl = num_lobe_parameters(), np = num_light_parameters();
   Eigen::VectorXd dL_o = Eigen::VectorXd::Zero(num_residuals());
-  std::vector<float> d_log, d_map;
+  LogMap d_log;
+  std::vector<float> d_map;
   if (np > 0) {
     light_->Jvp(v.data() + nl, &d_log, &d_map);
     Operator().ApplyLinear(d_map.data(), dL_o.data());
@@ -279,7 +281,8 @@ Eigen::VectorXd JointObjective::PriorProduct(const Eigen::VectorXd& v) {
   Eigen::VectorXd product(size());
   if (nl > 0) product.head(nl).noalias() = lobe_prior_hessian_ * v.head(nl);
   if (np > 0) {
-    std::vector<float> d_log, d_map;
+    LogMap d_log;
+    std::vector<float> d_map;
     light_->Jvp(v.data() + nl, &d_log, &d_map);
     light_->Product(v.data() + nl, d_log, std::vector<float>(map_.size(), 0.0f),
                     product.data() + nl);

@@ -141,7 +141,7 @@ class JointObjective {
   // The point of products.
   bool has_point_ = false;
   LikelihoodDerivatives derivatives_;
-  RowMajorMatrix lobe_jacobian_;  // [points * 3, lobe parameters]
+  RowMatrix lobe_jacobian_;  // [points * 3, lobe parameters]
   Eigen::VectorXd lobe_prior_gradient_;
   Eigen::MatrixXd lobe_prior_hessian_;
   Eigen::VectorXd gradient_;

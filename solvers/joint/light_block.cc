@@ -8,7 +8,6 @@ LightBlock::LightBlock(IlluminationModel* model, std::vector<float> mean,
                        double sigma, std::vector<LightPrior*> priors)
     : model_(model),
       priors_(std::move(priors)),
-      log_map_(model->num_outputs()),
       tangent_(model->num_parameters()),
       by_parameter_(model->num_parameters()) {
   set_mean(std::move(mean));
@@ -22,10 +21,10 @@ void LightBlock::set_mean(std::vector<float> mean) {
   mean_ = std::move(mean);
 }
 
-double LightBlock::PriorCost(const float* parameters, float* by_log) {
+double LightBlock::PriorCost(const float* parameters, LogMap* by_log) {
   double cost = 0.0;
   for (LightPrior* prior : priors_) {
-    cost += prior->Evaluate(log_map_.data(), by_log);
+    cost += prior->Evaluate(log_map_, by_log);
   }
   for (size_t i = 0; i < mean_.size(); ++i) {
     const double d = static_cast<double>(parameters[i]) - mean_[i];
@@ -35,49 +34,37 @@ double LightBlock::PriorCost(const float* parameters, float* by_log) {
 }
 
 double LightBlock::Evaluate(const float* parameters, std::vector<float>* map) {
-  model_->Forward(parameters, log_map_.data());
-  ToRadianceMap(log_map_, map);
+  model_->Forward(parameters, &log_map_);
+  log_map_.Exp(map);
   return PriorCost(parameters, nullptr);
 }
 
 double LightBlock::Linearise(const float* parameters, std::vector<float>* map) {
   parameters_.assign(parameters, parameters + num_parameters());
-  model_->Linearise(parameters, log_map_.data());
-  ToRadianceMap(log_map_, map, &map_slopes_);
-  prior_by_log_.assign(log_map_.size(), 0.0f);
-  return PriorCost(parameters, prior_by_log_.data());
+  model_->Linearise(parameters, &log_map_);
+  log_map_.Exp(map, &map_slopes_);
+  prior_by_log_ = LogMap(log_map_.size());
+  return PriorCost(parameters, &prior_by_log_);
 }
 
-void LightBlock::Jvp(const double* v, std::vector<float>* d_log,
+void LightBlock::Jvp(const double* v, LogMap* d_log,
                      std::vector<float>* d_map) {
   for (size_t i = 0; i < tangent_.size(); ++i) {
     tangent_[i] = static_cast<float>(v[i]);
   }
-  d_log->resize(map_slopes_.size());
-  d_map->resize(map_slopes_.size());
-  model_->Jvp(tangent_.data(), d_log->data());
-  const size_t texels = map_slopes_.size() / 3;
-  for (size_t t = 0; t < texels; ++t) {
-    for (size_t c = 0; c < 3; ++c) {
-      (*d_map)[3 * t + c] = map_slopes_[3 * t + c] * (*d_log)[c * texels + t];
-    }
-  }
+  model_->Jvp(tangent_.data(), d_log);
+  ExpJvp(map_slopes_, *d_log, d_map);
 }
 
-void LightBlock::Vjp(const std::vector<float>& by_map,
-                     std::vector<float> by_log, double* out) {
-  const size_t texels = map_slopes_.size() / 3;
-  for (size_t t = 0; t < texels; ++t) {
-    for (size_t c = 0; c < 3; ++c) {
-      by_log[c * texels + t] += by_map[3 * t + c] * map_slopes_[3 * t + c];
-    }
-  }
-  model_->Vjp(by_log.data(), by_parameter_.data());
+void LightBlock::Vjp(const std::vector<float>& by_map, LogMap by_log,
+                     double* out) {
+  AddExpVjp(map_slopes_, by_map, &by_log);
+  model_->Vjp(by_log, by_parameter_.data());
   for (size_t i = 0; i < by_parameter_.size(); ++i) out[i] = by_parameter_[i];
 }
 
 void LightBlock::Vjp(const std::vector<float>& by_map, double* gradient) {
-  Vjp(by_map, std::vector<float>(by_map.size(), 0.0f), gradient);
+  Vjp(by_map, LogMap(model_->size()), gradient);
 }
 
 void LightBlock::Gradient(const std::vector<float>& by_map, double* gradient) {
@@ -88,12 +75,10 @@ void LightBlock::Gradient(const std::vector<float>& by_map, double* gradient) {
   }
 }
 
-void LightBlock::Product(const double* v, const std::vector<float>& d_log,
+void LightBlock::Product(const double* v, const LogMap& d_log,
                          const std::vector<float>& by_map, double* product) {
-  std::vector<float> by_log(by_map.size(), 0.0f);
-  for (const LightPrior* prior : priors_) {
-    prior->AddProduct(d_log.data(), by_log.data());
-  }
+  LogMap by_log(model_->size());
+  for (const LightPrior* prior : priors_) prior->AddProduct(d_log, &by_log);
   Vjp(by_map, std::move(by_log), product);
   for (size_t i = 0; i < mean_.size(); ++i) {
     product[i] += inverse_variance_[i] * v[i];

@@ -28,31 +28,30 @@ class LightBlock {
   // And the point of what follows.
   double Linearise(const float* parameters, std::vector<float>* map);
 
-  // d map [H, W, 3] and d log map [3][H][W] along v [parameters].
-  void Jvp(const double* v, std::vector<float>* d_log,
-           std::vector<float>* d_map);
+  // d log map and d map [H, W, 3] along v [parameters].
+  void Jvp(const double* v, LogMap* d_log, std::vector<float>* d_map);
   // gradient [parameters] of sum by_map . map.
   void Vjp(const std::vector<float>& by_map, double* gradient);
   // The same plus the prior's gradient.
   void Gradient(const std::vector<float>& by_map, double* gradient);
   // Vjp(by_map) plus the prior's Gauss-Newton product with the v of d_log.
-  void Product(const double* v, const std::vector<float>& d_log,
+  void Product(const double* v, const LogMap& d_log,
                const std::vector<float>& by_map, double* product);
 
  private:
-  double PriorCost(const float* parameters, float* by_log);
+  double PriorCost(const float* parameters, LogMap* by_log);
   // out = J^T (by_log + slopes of the map * by_map)
-  void Vjp(const std::vector<float>& by_map, std::vector<float> by_log,
-           double* out);
+  void Vjp(const std::vector<float>& by_map, LogMap by_log, double* out);
 
   IlluminationModel* model_;
   std::vector<float> mean_;
   const std::vector<LightPrior*> priors_;
   std::vector<double> inverse_variance_;
-  std::vector<float> log_map_;
+  LogMap log_map_;
   // The point of the last Linearise.
-  std::vector<float> parameters_, prior_by_log_;
-  std::vector<float> map_slopes_;  // of ToRadianceMap
+  std::vector<float> parameters_;
+  LogMap prior_by_log_;
+  std::vector<float> map_slopes_;  // of LogMap::Exp
   std::vector<float> tangent_, by_parameter_;
 };
 

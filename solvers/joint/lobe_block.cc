@@ -1,8 +1,5 @@
 #include "ibrdf/solvers/joint/lobe_block.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "ibrdf/solvers/costs/log_radiance_cost.h"
 
 namespace ibrdf {
@@ -10,10 +7,12 @@ namespace ibrdf {
 LobeBlock::LobeBlock(const Transport* transport, const LobeModel* lobes,
                      const LobePrior& prior)
     : transport_(transport), lobes_(lobes), prior_(prior) {
-  for (int i = 0; i < lobes->num_parameters(); ++i) {
-    const bool code = i % lobes->lobe_size() < lobes->code_size();
-    const double sigma = code ? prior.sigma : prior.colour_sigma;
-    inverse_variance_.push_back(1.0 / (sigma * sigma));
+  inverse_variance_.resize(lobes->num_parameters());
+  const MutableLobeMixture of_lobes = lobes->Mixture(inverse_variance_.data());
+  for (int k = 0; k < lobes->num_lobes(); ++k) {
+    of_lobes.code(k).setConstant(1.0 / (prior.sigma * prior.sigma));
+    of_lobes.log_colour(k).setConstant(
+        1.0 / (prior.colour_sigma * prior.colour_sigma));
   }
 }
 
@@ -21,11 +20,11 @@ BrdfGrid LobeBlock::Grid(const double* parameters) const {
   return lobes_->Grid(parameters);
 }
 
-RowMajorMatrix LobeBlock::RadianceJacobian(const double* parameters,
-                                           const float* map) const {
+RowMatrix LobeBlock::RadianceJacobian(const double* parameters,
+                                      const float* map) const {
   std::vector<double> L_o, dL_o;
   RenderLobeModel(*transport_, *lobes_, parameters, map, &L_o, &dL_o);
-  return Eigen::Map<const RowMajorMatrix>(
+  return Eigen::Map<const RowMatrix>(
       dL_o.data(), static_cast<Eigen::Index>(L_o.size()), num_parameters());
 }
 
@@ -38,47 +37,41 @@ void LobeBlock::ReverseGradient(const double* parameters, const float* map,
   lobes_->Tabulate(parameters, true, &fields);
   const BrdfGrid grid = lobes_->Combine(parameters, fields, stride);
   transport_->GridGradient(grid, map, adjoint.data(), by_grid.data());
+  const LobeMixture mixture = lobes_->Mixture(parameters);
+  const Eigen::Array3Xd colours = mixture.Colours();
+  const Eigen::Array3Xd slopes = mixture.ColourSlopes();
+  const MutableLobeMixture by_lobe = lobes_->Mixture(gradient);
   for (int k = 0; k < lobes_->num_lobes(); ++k) {
-    const size_t first = static_cast<size_t>(k) * lobes_->lobe_size();
-    const double* lobe = parameters + first;
-    double colour[3];
-    for (int c = 0; c < 3; ++c) {
-      colour[c] =
-          std::exp(std::min(lobe[codes + c], LobeModel::kMaxLogColour)) *
-          kMerlScale[c];
-    }
     // by_shape: the gradient in the lobe's shape s_k, which all channels share.
     std::vector<double> by_shape(nodes);
     const float* shape = fields.data() + nodes * stride * k;
-    double* g = gradient + first;
     for (int c = 0; c < 3; ++c) {
       const float* by_channel = by_grid.data() + c * nodes;
       double sum = 0.0;
       for (size_t i = 0; i < nodes; ++i) {
         sum += static_cast<double>(by_channel[i]) * shape[i];
-        by_shape[i] += colour[c] * by_channel[i];
+        by_shape[i] += colours(c, k) * by_channel[i];
       }
-      g[codes + c] =
-          lobe[codes + c] < LobeModel::kMaxLogColour ? colour[c] * sum : 0.0;
+      by_lobe.log_colour(k)[c] = slopes(c, k) * sum;
     }
     for (int d = 0; d < codes; ++d) {
       const float* derivative = shape + (1 + d) * nodes;
       double sum = 0.0;
       for (size_t i = 0; i < nodes; ++i) sum += by_shape[i] * derivative[i];
-      g[d] = sum;
+      by_lobe.code(k)[d] = sum;
     }
   }
 }
 
 double LobeBlock::Prior(const double* parameters, double* gradient,
                         Eigen::MatrixXd* hessian) const {
-  const LobePriorCost cost(lobes_->num_lobes(), lobes_->code_size(), prior_);
+  const LobePriorCost cost(lobes_->layout(), prior_);
   Eigen::VectorXd residuals(cost.num_residuals());
   if (gradient == nullptr && hessian == nullptr) {
     cost.Evaluate(&parameters, residuals.data(), nullptr);
     return residuals.squaredNorm() / 2;
   }
-  RowMajorMatrix jacobian(cost.num_residuals(), num_parameters());
+  RowMatrix jacobian(cost.num_residuals(), num_parameters());
   double* jacobians[] = {jacobian.data()};
   cost.Evaluate(&parameters, residuals.data(), jacobians);
   if (gradient != nullptr) {

@@ -4,13 +4,11 @@
 #include <vector>
 
 #include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/solvers/optim/dense_algebra.h"
 #include "ibrdf/solvers/priors/prior_costs.h"
 #include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
-
-using RowMajorMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Parameters as LobeModel's. Immutable.
 class LobeBlock {
@@ -29,8 +27,7 @@ class LobeBlock {
 
   // dL_o [points * 3, parameters] under a map [H, W, 3]: one scalar field per
   // lobe and code entry, rendered together.
-  RowMajorMatrix RadianceJacobian(const double* parameters,
-                                  const float* map) const;
+  RowMatrix RadianceJacobian(const double* parameters, const float* map) const;
   // Gradient [parameters] of sum adjoint . L_o in one reverse pass, which costs
   // two renders whatever the number of parameters.
   void ReverseGradient(const double* parameters, const float* map,

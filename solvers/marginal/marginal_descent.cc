@@ -2,8 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <utility>
+
+#include "ibrdf/solvers/optim/line_search.h"
 
 namespace ibrdf {
 namespace {
@@ -11,6 +13,7 @@ namespace {
 // Of the gain that the slope promises, what a step must bring.
 constexpr double kSufficientGain = 1e-3;
 constexpr double kSmallestStep = 1e-3;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Newton's direction by the information, or downhill where there is none.
 Eigen::VectorXd Direction(const MarginalObjective& objective,
@@ -39,24 +42,22 @@ MarginalDescent Descend(const MarginalObjective& objective,
   while (descent.iterations < options.max_iterations && small_gains < 2) {
     if (options.should_stop && options.should_stop()) break;
     const Eigen::VectorXd direction = Direction(objective, *y, gradient);
-    const double slope = gradient.dot(direction);
-    if (!(slope < 0.0)) break;
+    const double slope = -gradient.dot(direction);
+    if (!(slope > 0.0)) break;
     std::vector<double> next(n);
-    double cost = 0.0, step = longest;
-    bool lower = false;
-    while (step > kSmallestStep) {
-      Eigen::Map<Eigen::VectorXd>(next.data(), n) =
-          Eigen::Map<const Eigen::VectorXd>(y->data(), n) + step * direction;
-      const bool ok = objective.Evaluate(next.data(), &cost, nullptr);
-      const double gain = descent.cost - cost;
-      lower = ok && gain >= -kSufficientGain * step * slope;
-      if (lower) break;
-      // The lowest point of the parabola through both ends.
-      const double lowest =
-          ok ? 0.5 * step * step * slope / (step * slope + gain) : 0.0;
-      step = std::clamp(lowest, 0.1 * step, 0.5 * step);
-    }
-    if (!lower) break;
+    double cost = 0.0;
+    const double step =
+        LineSearch(longest, kSmallestStep, slope, [&](double length) {
+          Eigen::Map<Eigen::VectorXd>(next.data(), n) =
+              Eigen::Map<const Eigen::VectorXd>(y->data(), n) +
+              length * direction;
+          LineSearchTrial trial;
+          const bool ok = objective.Evaluate(next.data(), &cost, nullptr);
+          trial.gain = ok ? descent.cost - cost : -kInfinity;
+          trial.accepted = trial.gain >= kSufficientGain * length * slope;
+          return trial;
+        });
+    if (step == 0.0) break;
     const double before = descent.cost;
     Eigen::VectorXd at_next(n);
     if (!objective.Evaluate(next.data(), &cost, at_next.data())) break;

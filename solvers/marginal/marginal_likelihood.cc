@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/light/log_map.h"
+#include "ibrdf/solvers/optim/line_search.h"
 
 namespace ibrdf {
 namespace {
@@ -17,7 +19,6 @@ constexpr double kSmallestStep = 1e-4;
 constexpr double kLongestStep = 6.0;
 // Of the gain that a step's quadratic model promises, what it must bring.
 constexpr double kSufficientGain = 0.1;
-constexpr double kMaxLogRadiance = 80.0;
 constexpr double kSmallestRadiance = 1e-200;
 // Conjugate gradients with the Hessian: steps, and the square of the error,
 // relative, in the Hessian's norm, for Newton's steps and for the motion of the
@@ -153,7 +154,7 @@ MarginalLikelihood::Point MarginalLikelihood::At(
     const Eigen::VectorXd& l) const {
   const Eigen::Index n = num_sources(), P = num_points_;
   Point point;
-  point.L = (l.array() + level).min(kMaxLogRadiance).exp();
+  point.L = (l.array() + level).min(kMaxLogRadianceInDouble).exp();
   point.L_o.resize(3 * P);
   for (int c = 0; c < 3; ++c) {
     point.L_o.segment(c * P, P) =
@@ -355,30 +356,29 @@ MarginalValue MarginalLikelihood::Evaluate(
     const double promise = -slope.dot(dl);  // twice the model's gain
     const double cross = mode->representers.dot(dl),
                  square = d_representers.dot(dl);
-    double taken = 0.0;
-    // From a wide start the whole step may leave the range of exp.
-    double s = std::min(1.0, kLongestStep / dl.lpNorm<Eigen::Infinity>());
-    while (promise > 0.0 && s > kSmallestStep) {
+    const auto try_step = [&](double s) {
       const Eigen::VectorXd l = mode->l + s * dl;
       Point trial = At(matrices, mode->level, l);
       const double trial_likelihood = likelihood_of(trial);
       const double gain =
           likelihood - trial_likelihood - s * cross - 0.5 * s * s * square;
-      if (trial.L_o.minCoeff() > kSmallestRadiance &&
-          gain >= kSufficientGain * s * (1.0 - 0.5 * s) * promise) {
-        taken = s;
+      const bool accepted =
+          trial.L_o.minCoeff() > kSmallestRadiance &&
+          gain >= kSufficientGain * s * (1.0 - 0.5 * s) * promise;
+      if (accepted) {
         mode->representers += s * d_representers;
         mode->l = l;
         point = std::move(trial);
         likelihood = trial_likelihood;
-        break;
       }
-      // The lowest point of the parabola through both ends.
-      const double lowest = std::isfinite(gain)
-                                ? 0.5 * s * s * promise / (s * promise - gain)
-                                : 0.0;
-      s = std::clamp(lowest, 0.1 * s, 0.5 * s);
-    }
+      return LineSearchTrial{gain, accepted};
+    };
+    // From a wide start the whole step may leave the range of exp.
+    const double longest =
+        std::min(1.0, kLongestStep / dl.lpNorm<Eigen::Infinity>());
+    const double taken =
+        promise > 0.0 ? LineSearch(longest, kSmallestStep, promise, try_step)
+                      : 0.0;
     if (0.5 * promise < tolerance || taken == 0.0) break;
     // Far from where it was made a linearisation is a poor preconditioner.
     if (taken * dl.lpNorm<Eigen::Infinity>() > 1.0) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/priors/directional_lights.h"
 
 namespace ibrdf {
@@ -19,11 +20,6 @@ constexpr double kDirectionalLightStep = 1e-3;
 // Of a map of 1, on white: a point whose whole sky is hidden has 1e-4 left at
 // the horizon, which the steps of VisibilityGrid cut.
 constexpr double kLeastSeen = 1e-3;
-
-double Colour(double log_colour, int channel) {
-  return std::exp(std::min(log_colour, LobeModel::kMaxLogColour)) *
-         kMerlScale[channel];
-}
 
 // Bins that a map of constant radiance lights.
 std::vector<bool> LitCells(const NormalBins& bins, const Transport& transport) {
@@ -44,19 +40,6 @@ std::vector<bool> LitCells(const NormalBins& bins, const Transport& transport) {
 }
 
 }  // namespace
-
-std::vector<float> RelativeMap(const double* log_radiance, int num_texels) {
-  const size_t t = num_texels;
-  const double highest = *std::max_element(log_radiance, log_radiance + 3 * t);
-  std::vector<float> map(3 * t);
-  for (size_t i = 0; i < t; ++i) {
-    for (size_t c = 0; c < 3; ++c) {
-      map[3 * i + c] =
-          static_cast<float>(std::exp(log_radiance[c * t + i] - highest));
-    }
-  }
-  return map;
-}
 
 MarginalReflectance::MarginalReflectance(
     const LobeFactory& lobes, const std::vector<ShadingPoint>& points,
@@ -221,13 +204,12 @@ MarginalReflectance::ShapeMatrices(
 
 std::array<RowMatrix, 3> MarginalReflectance::Coloured(
     const double* parameters, const std::vector<FloatMatrix>& shapes) const {
+  const Eigen::Array3Xd colours = lobes_->Mixture(parameters).Colours();
   std::array<RowMatrix, 3> matrices;
   for (int c = 0; c < 3; ++c) {
     matrices[c].setZero(shapes[0].rows(), shapes[0].cols());
-    for (size_t k = 0; k < shapes.size(); ++k) {
-      const double* lobe = parameters + k * lobes_->lobe_size();
-      matrices[c] +=
-          Colour(lobe[lobes_->code_size() + c], c) * shapes[k].cast<double>();
+    for (int k = 0; k < colours.cols(); ++k) {
+      matrices[c] += colours(c, k) * shapes[k].cast<double>();
     }
   }
   return matrices;
@@ -264,16 +246,16 @@ MarginalValue MarginalReflectance::Evaluate(
       DirectionalLightSlopes(parameters, fields, stride);
   const Eigen::Index t = likelihood_->num_texels();
   std::vector<float> by_node(nodes);
+  const LobeMixture lobes = lobes_->Mixture(parameters);
+  const Eigen::Array3Xd colours = lobes.Colours();
+  const Eigen::Array3Xd colour_slopes = lobes.ColourSlopes();
+  const MutableLobeMixture by_lobe = lobes_->Mixture(gradient->data());
   for (int k = 0; k < num_lobes; ++k) {
-    const double* lobe = parameters + k * lobes_->lobe_size();
-    double* out = gradient->data() + k * lobes_->lobe_size();
     FloatMatrix adjoint = FloatMatrix::Zero(shapes[k].rows(), shapes[k].cols());
     for (int c = 0; c < 3; ++c) {
-      const double colour = Colour(lobe[size + c], c);
-      adjoint += (colour * by_matrix.matrices[c]).cast<float>();
-      if (!(lobe[size + c] < LobeModel::kMaxLogColour)) continue;  // clamped
-      out[size + c] =
-          colour *
+      adjoint += (colours(c, k) * by_matrix.matrices[c]).cast<float>();
+      by_lobe.log_colour(k)[c] =
+          colour_slopes(c, k) *
           by_matrix.matrices[c].cwiseProduct(shapes[k].cast<double>()).sum();
     }
     CellMatrixGradient(directional_lights, adjoint, by_node.data());
@@ -287,7 +269,7 @@ MarginalValue MarginalReflectance::Evaluate(
       for (size_t i = 0; i < nodes; ++i) {
         sum += static_cast<double>(by_node[i]) * derivative[i];
       }
-      out[d] = sum;
+      by_lobe.code(k)[d] = sum;
     }
   }
   std::copy(by_matrix.hyperparameters.begin(), by_matrix.hyperparameters.end(),
@@ -329,6 +311,9 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
   }
   const std::vector<RowMatrix> slopes =
       DirectionalLightSlopes(parameters, fields, 1 + size);
+  const LobeMixture lobes = lobes_->Mixture(parameters);
+  const Eigen::Array3Xd colours = lobes.Colours();
+  const Eigen::Array3Xd colour_slopes = lobes.ColourSlopes();
   RowMatrix jacobian = RowMatrix::Zero(3 * P, num_parameters());
   std::vector<double> sum(size_t{3} * num_fields);
   for (Eigen::Index i = 0; i < P; ++i) {
@@ -344,27 +329,24 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
     for (int c = 0; c < 3; ++c) {
       double radiance = 0.0;
       for (int k = 0; k < num_lobes; ++k) {
-        const double* lobe = parameters + k * lobes_->lobe_size();
-        radiance += Colour(lobe[size + c], c) * sum[3 * k * (1 + size) + c];
+        radiance += colours(c, k) * sum[3 * k * (1 + size) + c];
       }
       for (Eigen::Index j = 0; j < slopes[0].cols(); ++j) {
         double& slope = jacobian(c * P + i, lobes_->num_parameters() + j);
         for (int k = 0; k < num_lobes; ++k) {
-          const double* lobe = parameters + k * lobes_->lobe_size();
-          slope += Colour(lobe[size + c], c) * slopes[k](i, j);
+          slope += colours(c, k) * slopes[k](i, j);
         }
         slope *= of_directional_lights(c, j / 2) / radiance;
       }
       for (int k = 0; k < num_lobes; ++k) {
-        const double log_colour =
-            parameters[k * lobes_->lobe_size() + size + c];
-        const double share = Colour(log_colour, c) / radiance;
+        const double share = colours(c, k) / radiance;
         const double* of_lobe = &sum[3 * k * (1 + size) + c];
-        double* row = &jacobian(c * P + i, k * lobes_->lobe_size());
-        for (int d = 0; d < size; ++d) row[d] = share * of_lobe[3 * (1 + d)];
-        if (log_colour < LobeModel::kMaxLogColour) {
-          row[size + c] = share * of_lobe[0];
+        const MutableLobeMixture row =
+            lobes_->Mixture(jacobian.row(c * P + i).data());
+        for (int d = 0; d < size; ++d) {
+          row.code(k)[d] = share * of_lobe[3 * (1 + d)];
         }
+        row.log_colour(k)[c] = colour_slopes(c, k) / radiance * of_lobe[0];
       }
     }
   }

@@ -22,9 +22,6 @@ struct MarginalResolution {
   std::shared_ptr<const Visibility> visibility = nullptr;  // of the points
 };
 
-// The map [H W, 3] of log radiance [3][H W], its largest value 1.
-std::vector<float> RelativeMap(const double* log_radiance, int num_texels);
-
 // Parameters: the lobes' as LobeModel's, then of each directional light where
 // it is (MovedDirectionalLight's offsets). Immutable but for what its callers
 // keep; may be used from several threads.

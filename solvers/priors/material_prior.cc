@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/solvers/priors/embedding_prior.h"
 
 namespace ibrdf {
@@ -24,25 +25,24 @@ constexpr double kExtraDeviations = 2.0;
 // Lobes of every material: those of its fit, or one of its mean code.
 std::vector<MaterialPrior::Material> FittedMaterials(
     const NeuralBrdfModel& model, int lobes) {
-  const int lobe_size = model.shape.code_size() + 3;
   std::vector<MaterialPrior::Material> materials;
   if (model.fit_lobes == 0 || lobes < model.fit_lobes) {
-    const int size = model.shape.code_size();
+    const LobeLayout one = {1, model.shape.code_size()};
     const std::vector<MaterialCode> codes = MaterialCodes(model);
     for (size_t m = 0; m < codes.size(); ++m) {
       MaterialPrior::Material material{codes[m].name,
-                                       Eigen::VectorXd(lobe_size)};
-      std::copy(codes[m].code.begin(), codes[m].code.end(),
-                material.parameters.data());
+                                       Eigen::VectorXd(one.num_parameters())};
+      const MutableLobeMixture lobe(one, material.parameters.data());
+      lobe.code(0) = ToEigen(codes[m].code);
       for (int c = 0; c < 3; ++c) {
-        material.parameters[size + c] = model.log_colours[3 * m + c];
+        lobe.log_colour(0)[c] = model.log_colours[3 * m + c];
       }
       materials.push_back(std::move(material));
     }
     return materials;
   }
-  const Eigen::Index size =
-      static_cast<Eigen::Index>(model.fit_lobes) * lobe_size;
+  const LobeLayout fitted = {model.fit_lobes, model.shape.code_size()};
+  const Eigen::Index size = fitted.num_parameters();
   for (int m = 0; m < model.num_materials(); ++m) {
     const std::string& name = model.names[static_cast<size_t>(3) * m];
     materials.push_back(
@@ -53,6 +53,19 @@ std::vector<MaterialPrior::Material> FittedMaterials(
   return materials;
 }
 
+// Appends a lobe like the last but fainter, its code no longer than `longest`.
+void AddLobe(int code_size, double longest, Eigen::VectorXd* parameters) {
+  LobeLayout layout = {0, code_size};
+  const int last = static_cast<int>(parameters->size()) / layout.lobe_size();
+  layout.num_lobes = last + 1;
+  parameters->conservativeResize(layout.num_parameters());
+  const MutableLobeMixture lobes(layout, parameters->data());
+  lobes.lobe(last) = lobes.lobe(last - 1);
+  const double norm = lobes.code(last).norm();
+  if (norm > longest) lobes.code(last) *= longest / norm;
+  lobes.log_colour(last) += kExtraLobe;
+}
+
 // Of a known material's parameters: no step or derivative tells it from 0.
 constexpr double kKnownStd = 1e-9;
 
@@ -61,14 +74,14 @@ constexpr double kKnownStd = 1e-9;
 double MaterialPrior::WallCost(const Eigen::VectorXd& x,
                                Eigen::VectorXd* gradient) const {
   double cost = 0.0;
+  const LobeMixture lobes(layout(), x.data());
   for (int k = 0; k < num_lobes(); ++k) {
-    const Eigen::Index first = static_cast<Eigen::Index>(k) * (code_size + 3);
-    const double norm = x.segment(first, code_size).norm();
+    const double norm = lobes.code(k).norm();
     if (norm <= 1.0) continue;
     cost += 0.5 * wall * wall * (norm - 1.0) * (norm - 1.0);
     if (gradient != nullptr) {
-      gradient->segment(first, code_size) +=
-          wall * wall * (norm - 1.0) / norm * x.segment(first, code_size);
+      MutableLobeMixture(layout(), gradient->data()).code(k) +=
+          wall * wall * (norm - 1.0) / norm * lobes.code(k);
     }
   }
   return cost;
@@ -76,10 +89,11 @@ double MaterialPrior::WallCost(const Eigen::VectorXd& x,
 
 void MaterialPrior::AddWallInformation(const Eigen::VectorXd& x,
                                        Eigen::MatrixXd* information) const {
+  const LobeMixture lobes(layout(), x.data());
   for (int k = 0; k < num_lobes(); ++k) {
-    const Eigen::Index first = static_cast<Eigen::Index>(k) * (code_size + 3);
-    const Eigen::VectorXd z = x.segment(first, code_size);
+    const Eigen::VectorXd z = lobes.code(k);
     if (z.norm() <= 1.0) continue;
+    const int first = layout().code(k);
     const Eigen::VectorXd outward = wall * z.normalized();
     information->block(first, first, code_size, code_size) +=
         outward * outward.transpose();
@@ -98,10 +112,8 @@ double MaterialPrior::CostAtBestLevel(const Eigen::VectorXd& x) const {
   const auto lower = factor.triangularView<Eigen::Lower>();
   const Eigen::VectorXd y = lower.solve(x - mean);
   Eigen::VectorXd level = Eigen::VectorXd::Zero(x.size());
-  for (int k = 0; k < num_lobes(); ++k) {
-    level.segment<3>(static_cast<Eigen::Index>(k) * (code_size + 3) + code_size)
-        .setOnes();
-  }
+  MutableLobeMixture(layout(), level.data())
+      .ShiftColours(Eigen::Array3d::Ones());
   const Eigen::VectorXd along = lower.solve(level).normalized();
   return 0.5 * (y - y.dot(along) * along).squaredNorm() + WallCost(x, nullptr);
 }
@@ -118,32 +130,27 @@ MaterialPrior KnownMaterial(const Eigen::VectorXd& parameters) {
 MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,
                         double code_sigma) {
   const LobePrior embedding = EmbeddingPrior(model, code_sigma);
-  const int size = model.shape.code_size(), lobe_size = size + 3;
+  const int size = model.shape.code_size();
+  const LobeLayout layout = {lobes, size};
   MaterialPrior prior;
   prior.code_size = size;
-  prior.mean =
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(lobes) * lobe_size);
+  prior.mean = Eigen::VectorXd::Zero(layout.num_parameters());
   Eigen::VectorXd std =
       Eigen::VectorXd::Constant(prior.mean.size(), code_sigma);
+  const MutableLobeMixture of_mean(layout, prior.mean.data());
+  const MutableLobeMixture of_std(layout, std.data());
   for (int k = 0; k < lobes; ++k) {
-    for (int c = 0; c < 3; ++c) {
-      prior.mean[k * lobe_size + size + c] = embedding.colour_mean[c];
-      std[k * lobe_size + size + c] = embedding.colour_sigma;
-    }
+    of_mean.log_colour(k) =
+        Eigen::Map<const Eigen::Array3d>(embedding.colour_mean);
+    of_std.log_colour(k).setConstant(embedding.colour_sigma);
   }
   prior.factor = std.asDiagonal();
   prior.materials = FittedMaterials(model, lobes);
+  const double longest =
+      kExtraDeviations * code_sigma * std::sqrt(static_cast<double>(size));
   for (MaterialPrior::Material& m : prior.materials) {
     while (m.parameters.size() < prior.mean.size()) {
-      const Eigen::Index n = m.parameters.size();
-      m.parameters.conservativeResize(n + lobe_size);
-      m.parameters.tail(lobe_size) =
-          m.parameters.segment(n - lobe_size, lobe_size);
-      auto code = m.parameters.segment(n, size);
-      const double most =
-          kExtraDeviations * code_sigma * std::sqrt(static_cast<double>(size));
-      if (code.norm() > most) code *= most / code.norm();
-      m.parameters.tail(3).array() += kExtraLobe;
+      AddLobe(size, longest, &m.parameters);
     }
   }
   return prior;

@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/flow/neural_brdf_model.h"
 
 namespace ibrdf {
 
-// Gaussian over lobe parameters (as LobeModel's), with materials to start from.
+// Gaussian over the parameters of a LobeMixture, with materials to start from.
 struct MaterialPrior {
   struct Material {
     std::string name;
@@ -24,6 +25,7 @@ struct MaterialPrior {
 
   int num_parameters() const { return static_cast<int>(mean.size()); }
   int num_lobes() const { return num_parameters() / (code_size + 3); }
+  LobeLayout layout() const { return {num_lobes(), code_size}; }
 
   // 1/2 |factor^-1 (x - mean)|^2 + 1/2 wall^2 sum_k max(0, |z_k| - 1)^2;
   // gradient (may be null) is added to.

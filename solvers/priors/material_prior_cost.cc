@@ -1,6 +1,9 @@
 #include "ibrdf/solvers/priors/material_prior_cost.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
+
+#include "ibrdf/solvers/optim/dense_algebra.h"
 
 namespace ibrdf {
 
@@ -17,24 +20,20 @@ bool MaterialPriorCost::Evaluate(double const* const* parameters,
   Eigen::Map<Eigen::VectorXd> r(residuals, n + lobes);
   const auto lower = prior_->factor.triangularView<Eigen::Lower>();
   r.head(n) = lower.solve(x - prior_->mean);
-  using RowMajor =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   double* const jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
   if (jacobian != nullptr) {
-    Eigen::Map<RowMajor> J(jacobian, n + lobes, n);
+    Eigen::Map<RowMatrix> J(jacobian, n + lobes, n);
     J.setZero();
     J.topRows(n) = lower.solve(Eigen::MatrixXd::Identity(n, n));
   }
-  for (Eigen::Index k = 0; k < lobes; ++k) {
-    const Eigen::Index first = k * (prior_->code_size + 3);
-    const auto z = x.segment(first, prior_->code_size);
+  const LobeLayout layout = prior_->layout();
+  for (int k = 0; k < layout.num_lobes; ++k) {
+    const auto z = LobeMixture(layout, parameters[0]).code(k);
     const double norm = z.norm();
     r[n + k] = prior_->wall * std::max(0.0, norm - 1.0);
     if (jacobian != nullptr && norm > 1.0) {
-      Eigen::Map<RowMajor>(jacobian, n + lobes, n)
-          .row(n + k)
-          .segment(first, prior_->code_size) =
-          prior_->wall / norm * z.transpose();
+      MutableLobeMixture(layout, jacobian + (n + k) * n).code(k) =
+          prior_->wall / norm * z;
     }
   }
   return true;

@@ -7,41 +7,42 @@
 
 namespace ibrdf {
 
-LobePriorCost::LobePriorCost(int num_lobes, int code_size,
-                             const LobePrior& prior)
-    : num_lobes_(num_lobes), code_size_(code_size), prior_(prior) {
-  mutable_parameter_block_sizes()->push_back(num_lobes * (code_size + 3));
-  set_num_residuals(num_lobes * (code_size + 4));
+LobePriorCost::LobePriorCost(const LobeLayout& layout, const LobePrior& prior)
+    : layout_(layout), prior_(prior) {
+  mutable_parameter_block_sizes()->push_back(layout.num_parameters());
+  set_num_residuals(layout.num_parameters() + layout.num_lobes);
 }
 
 bool LobePriorCost::Evaluate(double const* const* parameters, double* residuals,
                              double** jacobians) const {
-  const int columns = num_lobes_ * (code_size_ + 3);
+  const int columns = layout_.num_parameters();
+  const LobeMixture lobes(layout_, parameters[0]);
   double* J = jacobians != nullptr ? jacobians[0] : nullptr;
   if (J != nullptr) std::fill(J, J + num_residuals() * columns, 0.0);
-  for (int k = 0; k < num_lobes_; ++k) {
-    const int first = k * (code_size_ + 3), row = k * (code_size_ + 4);
-    const double* z = parameters[0] + first;
+  const auto jacobian_row = [&](int row) {
+    return MutableLobeMixture(layout_, J + row * columns);
+  };
+  for (int k = 0; k < layout_.num_lobes; ++k) {
+    const auto z = lobes.code(k);
+    const int row = k * (layout_.lobe_size() + 1);
     double square = 0.0;
-    for (int d = 0; d < code_size_; ++d) {
+    for (int d = 0; d < layout_.code_size; ++d) {
       residuals[row + d] = z[d] / prior_.sigma;
       square += z[d] * z[d];
-      if (J != nullptr) J[(row + d) * columns + first + d] = 1 / prior_.sigma;
+      if (J != nullptr) jacobian_row(row + d).code(k)[d] = 1 / prior_.sigma;
     }
     const double norm = std::sqrt(square);
-    const int wall = row + code_size_;
+    const int wall = row + layout_.code_size;
     residuals[wall] = prior_.wall * std::max(0.0, norm - 1.0);
     if (J != nullptr && norm > 1.0) {
-      for (int d = 0; d < code_size_; ++d) {
-        J[wall * columns + first + d] = prior_.wall * z[d] / norm;
-      }
+      jacobian_row(wall).code(k) = prior_.wall * z / norm;
     }
     for (int c = 0; c < 3; ++c) {
       residuals[wall + 1 + c] =
-          (z[code_size_ + c] - prior_.colour_mean[c]) / prior_.colour_sigma;
+          (lobes.log_colour(k)[c] - prior_.colour_mean[c]) /
+          prior_.colour_sigma;
       if (J != nullptr) {
-        J[(wall + 1 + c) * columns + first + code_size_ + c] =
-            1 / prior_.colour_sigma;
+        jacobian_row(wall + 1 + c).log_colour(k)[c] = 1 / prior_.colour_sigma;
       }
     }
   }

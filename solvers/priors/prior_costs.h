@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "ibrdf/brdf/lobe_mixture.h"
+
 namespace ibrdf {
 
 // p(z) = N(0, sigma^2 I) for the code of every lobe (Chen et al. 2020,
@@ -20,14 +22,14 @@ struct LobePrior {
 
 class LobePriorCost final : public ceres::CostFunction {
  public:
-  LobePriorCost(int num_lobes, int code_size, const LobePrior& prior);
+  LobePriorCost(const LobeLayout& layout, const LobePrior& prior);
 
-  // parameters[0] as LobeModel. Residuals per lobe: codes, wall, colours.
+  // parameters[0] as LobeMixture. Residuals per lobe: codes, wall, colours.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
  private:
-  const int num_lobes_, code_size_;
+  const LobeLayout layout_;
   const LobePrior prior_;
 };
 

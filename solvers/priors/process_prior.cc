@@ -76,14 +76,13 @@ ProcessPrior::ProcessPrior(
       process.directional_light_chroma_variance * directional_light_share);
 }
 
-Eigen::MatrixXd ProcessPrior::Means(const float* log_map) const {
+Eigen::MatrixXd ProcessPrior::Means(const LogMap& log_map) const {
   Eigen::MatrixXd means = Eigen::MatrixXd::Zero(grey_.rows(), 3);
   for (int c = 0; c < 3; ++c) {
+    const auto plane = log_map.Plane(c);
     for (int r = 0; r < height_; ++r) {
       for (int x = 0; x < width_; ++x) {
-        means(BlockOf(r, x), c) +=
-            WeightOf(r, x) *
-            log_map[(static_cast<size_t>(c) * height_ + r) * width_ + x];
+        means(BlockOf(r, x), c) += WeightOf(r, x) * plane(r, x);
       }
     }
   }
@@ -97,19 +96,20 @@ Eigen::MatrixXd ProcessPrior::Weighted(const Eigen::MatrixXd& means) const {
   return out;
 }
 
-void ProcessPrior::Spread(const Eigen::MatrixXd& by_mean, float* out) const {
+void ProcessPrior::Spread(const Eigen::MatrixXd& by_mean, LogMap* out) const {
   const Eigen::MatrixXd by_channel = by_mean * ColourAxes();
   for (int c = 0; c < 3; ++c) {
+    auto plane = out->Plane(c);
     for (int r = 0; r < height_; ++r) {
       for (int x = 0; x < width_; ++x) {
-        out[(static_cast<size_t>(c) * height_ + r) * width_ + x] +=
+        plane(r, x) +=
             static_cast<float>(WeightOf(r, x) * by_channel(BlockOf(r, x), c));
       }
     }
   }
 }
 
-double ProcessPrior::Evaluate(const float* log_map, float* gradient) {
+double ProcessPrior::Evaluate(const LogMap& log_map, LogMap* gradient) {
   Eigen::MatrixXd means = Means(log_map);
   means.col(0).array() -= std::sqrt(3.0) * level_;
   const Eigen::MatrixXd weighted = Weighted(means);
@@ -117,7 +117,7 @@ double ProcessPrior::Evaluate(const float* log_map, float* gradient) {
   return 0.5 * means.cwiseProduct(weighted).sum();
 }
 
-void ProcessPrior::AddProduct(const float* v, float* out) const {
+void ProcessPrior::AddProduct(const LogMap& v, LogMap* out) const {
   Spread(Weighted(Means(v)), out);
 }
 

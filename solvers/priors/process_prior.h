@@ -20,8 +20,8 @@ class ProcessPrior final : public LightPrior {
                const LightHyperparameters& hyperparameters, double level,
                const std::vector<Eigen::Vector3d>& directional_lights = {});
 
-  double Evaluate(const float* log_map, float* gradient) override;
-  void AddProduct(const float* v, float* out) const override;
+  double Evaluate(const LogMap& log_map, LogMap* gradient) override;
+  void AddProduct(const LogMap& v, LogMap* out) const override;
 
  private:
   int BlockRow(int row) const { return row * block_rows_ / height_; }
@@ -34,11 +34,11 @@ class ProcessPrior final : public LightPrior {
     return row_weight_[row] * column_weight_[column];
   }
   // Means over blocks as [blocks][3], in axes of grey and two of chroma.
-  Eigen::MatrixXd Means(const float* log_map) const;
+  Eigen::MatrixXd Means(const LogMap& log_map) const;
   // Precision times those.
   Eigen::MatrixXd Weighted(const Eigen::MatrixXd& means) const;
   // out += D^T of them.
-  void Spread(const Eigen::MatrixXd& by_mean, float* out) const;
+  void Spread(const Eigen::MatrixXd& by_mean, LogMap* out) const;
 
   int height_, width_, block_rows_, block_columns_;
   std::vector<double> row_weight_, column_weight_;

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/base/format.h"
 #include "ibrdf/base/version.h"
+#include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/io/atomic_file.h"
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/merl.h"
@@ -122,14 +124,15 @@ Json TraceJson(const Solution& estimate) {
 }
 
 Json LobesJson(const InverseProblem& inverse, const Solution& estimate) {
-  const int codes = inverse.model.shape.code_size(), size = codes + 3;
+  const LobeMixture mixture({inverse.lobes, inverse.model.shape.code_size()},
+                            estimate.lobe_parameters.data());
   Json lobes = Json::array();
   for (int k = 0; k < inverse.lobes; ++k) {
-    const double* p = estimate.lobe_parameters.data() + k * size;
+    // Not RawColours: the scale of solver.gauge is not clamped.
     Json colour = Json::array();
-    for (int c = 0; c < 3; ++c) colour.push_back(std::exp(p[codes + c]));
-    lobes.push_back({{"code", std::vector<double>(p, p + codes)},
-                     {"colour_raw_merl", colour}});
+    for (const double a : mixture.log_colour(k)) colour.push_back(std::exp(a));
+    lobes.push_back(
+        {{"code", ToVector(mixture.code(k))}, {"colour_raw_merl", colour}});
   }
   return lobes;
 }
@@ -139,19 +142,17 @@ Json LobesJson(const InverseProblem& inverse, const Solution& estimate) {
 Json PosteriorJson(const InverseProblem& inverse, const Solution& estimate) {
   Json out = Json::object();
   if (!estimate.lobe_covariance.empty()) {
-    const int codes = inverse.model.shape.code_size(), size = codes + 3;
     const size_t n = estimate.lobe_parameters.size();
+    std::vector<double> std;
+    for (size_t i = 0; i < n; ++i) {
+      std.push_back(std::sqrt(estimate.lobe_covariance[i * n + i]));
+    }
+    const LobeMixture of_lobes({inverse.lobes, inverse.model.shape.code_size()},
+                               std.data());
     Json lobes = Json::array();
     for (int k = 0; k < inverse.lobes; ++k) {
-      std::vector<double> std;
-      for (int i = 0; i < size; ++i) {
-        const size_t at = static_cast<size_t>(k) * size + i;
-        std.push_back(std::sqrt(estimate.lobe_covariance[at * n + at]));
-      }
-      lobes.push_back(
-          {{"code_std", std::vector<double>(std.begin(), std.begin() + codes)},
-           {"log_colour_std",
-            std::vector<double>(std.begin() + codes, std.end())}});
+      lobes.push_back({{"code_std", ToVector(of_lobes.code(k))},
+                       {"log_colour_std", ToVector(of_lobes.log_colour(k))}});
     }
     out["lobes"] = lobes;
     out["covariance"] = estimate.lobe_covariance;

@@ -20,14 +20,6 @@ constexpr double kFloor = 1e-6;  // raw units, as of CompareBrdfs
 constexpr double kMedianRatio = 2.1;
 constexpr double kMostRatio = 3.8;
 
-// Into the unit ball where they are outside.
-void ClampCodes(const LobeModel& lobes, Eigen::VectorXd* parameters) {
-  for (int k = 0; k < lobes.num_lobes(); ++k) {
-    auto code = parameters->segment(k * lobes.lobe_size(), lobes.code_size());
-    code /= std::max(code.norm(), 1.0);
-  }
-}
-
 }  // namespace
 
 LobeDistance::LobeDistance(const LobeFactory& lobes)
@@ -99,7 +91,7 @@ double ReflectanceSpread(const LobeDistance& distance,
     for (Eigen::Index i = 0; i < n; ++i) z[i] = normal.Next();
     Eigen::VectorXd drawn = ToEigen(parameters) +
                             solver.eigenvectors() * deviations.cwiseProduct(z);
-    ClampCodes(distance.lobes(), &drawn);
+    distance.lobes().Mixture(drawn.data()).ClampCodes();
     const double d = distance.Aligned(distance.LogValues(ToVector(drawn)), at);
     squares += d * d;
   }

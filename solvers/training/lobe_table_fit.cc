@@ -4,7 +4,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -102,7 +101,7 @@ class LobeTableFitter::Search {
                                           int count) const {
     const std::vector<float> log_base = LogSum(base);
     std::vector<std::pair<double, int>> order;
-    std::vector<std::array<double, 3>> colours(codes_);
+    std::vector<Eigen::Array3d> colours(codes_);
     for (int m = 0; m < codes_; ++m) {
       double score = 0.0;
       for (int c = 0; c < 3; ++c) {
@@ -115,7 +114,6 @@ class LobeTableFitter::Search {
     std::sort(order.begin(), order.end());
     std::vector<std::vector<double>> starts;
     std::vector<std::string> taken;
-    const int size = fitter_.model_.shape.code_size();
     for (const auto& [score, m] : order) {
       const std::string& name = fitter_.model_.names[m];
       const std::string material = name.substr(0, name.rfind('.'));
@@ -124,9 +122,15 @@ class LobeTableFitter::Search {
       }
       taken.push_back(material);
       std::vector<double> start = base;
-      const float* code = fitter_.model_.codes.data() + m * size;
-      start.insert(start.end(), code, code + size);
-      start.insert(start.end(), colours[m].begin(), colours[m].end());
+      LobeLayout layout = LayoutOf(base);
+      const int last = layout.num_lobes++;
+      start.resize(layout.num_parameters());
+      const MutableLobeMixture lobes(layout, start.data());
+      lobes.code(last) = Eigen::Map<const Eigen::VectorXf>(
+                             fitter_.model_.codes.data() + m * layout.code_size,
+                             layout.code_size)
+                             .cast<double>();
+      lobes.log_colour(last) = colours[m];
       starts.push_back(start);
       if (static_cast<int>(starts.size()) == count) break;
     }
@@ -134,20 +138,26 @@ class LobeTableFitter::Search {
   }
 
  private:
+  // Of as many lobes as `parameters` has.
+  LobeLayout LayoutOf(const std::vector<double>& parameters) const {
+    LobeLayout layout = {0, fitter_.model_.shape.code_size()};
+    layout.num_lobes = static_cast<int>(parameters.size()) / layout.lobe_size();
+    return layout;
+  }
+
   // log of the sum of lobes [3][n]; -inf where there are none.
-  std::vector<float> LogSum(const std::vector<double>& lobes) const {
+  std::vector<float> LogSum(const std::vector<double>& parameters) const {
     std::vector<float> sum(3 * n_, -std::numeric_limits<float>::infinity());
-    const int size = fitter_.model_.shape.code_size();
+    const LobeMixture lobes(LayoutOf(parameters), parameters.data());
     std::vector<float> value(n_);
-    for (size_t k = 0; k < lobes.size(); k += size + 3) {
-      const std::vector<float> code(lobes.begin() + k,
-                                    lobes.begin() + k + size);
+    for (int k = 0; k < lobes.num_lobes(); ++k) {
+      const Eigen::VectorXf code = lobes.code(k).cast<float>();
       fitter_.flow_->LogDensityOnColumns(fitter_.search_points_, code.data(), 1,
                                          value.data(), nullptr);
       for (int c = 0; c < 3; ++c) {
         for (size_t i = 0; i < n_; ++i) {
           const double v =
-              lobes[k + size + c] + fitter_.model_.exponent * value[i];
+              lobes.log_colour(k)[c] + fitter_.model_.exponent * value[i];
           float& s = sum[c * n_ + i];
           const double top = std::max<double>(s, v);
           s = static_cast<float>(
@@ -239,10 +249,14 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
   Refine(columns, options.lobes, options.max_iterations, options, &best);
 
   const int size = model_.shape.code_size();
+  const MutableLobeMixture found({options.lobes, size}, best.data());
   for (int k = 0; k < options.lobes; ++k) {
-    double* z = best.data() + k * (size + 3);
-    const double norm = std::sqrt(std::inner_product(z, z + size, z, 0.0));
-    for (int d = 0; d < size && norm > 1.0; ++d) z[d] /= norm;
+    // As ClampCodes, but the squares are summed in their order: the bits of
+    // trained models.
+    const auto z = found.code(k);
+    const double norm =
+        std::sqrt(std::inner_product(z.begin(), z.end(), z.begin(), 0.0));
+    for (double& value : found.code(k)) value /= std::max(norm, 1.0);
   }
   const LogTableCost cost(*flow_, size, model_.exponent, options.lobes, columns,
                           kLogFloor, 1.0, options.num_threads);
@@ -271,7 +285,7 @@ double LobeTableFitter::Refine(const TableColumns& columns, int lobes,
                            static_cast<double>(columns.log_raw.size()),
                        options.num_threads),
       nullptr, parameters->data());
-  problem.AddResidualBlock(new LobePriorCost(lobes, size, prior), nullptr,
+  problem.AddResidualBlock(new LobePriorCost({lobes, size}, prior), nullptr,
                            parameters->data());
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;

@@ -13,8 +13,8 @@ namespace ibrdf {
 namespace {
 
 // log q at theta_h = 0 less log q at wide theta_h, theta_d = 18 degrees.
-float Peakedness(const BrdfFlow& flow, const double* code, int size) {
-  const std::vector<float> z(code, code + size);
+float Peakedness(const BrdfFlow& flow, const Eigen::VectorXd& code) {
+  const Eigen::VectorXf z = code.cast<float>();
   const float x[6] = {0.02f, 0.8f, 0.2f, 0.2f, 0.5f, 0.5f};  // [3][2]
   float value[2];
   flow.LogDensity(x, 2, z.data(), 1, value, nullptr, nullptr);
@@ -25,7 +25,7 @@ float Peakedness(const BrdfFlow& flow, const double* code, int size) {
 
 Status FitMaterialLobes(int lobes, int num_threads,
                         const std::atomic<bool>* stop, NeuralBrdfModel* model) {
-  const int size = model->shape.code_size(), lobe_size = size + 3;
+  const LobeLayout layout = {lobes, model->shape.code_size()};
   const int materials = model->num_materials();
   const LobeTableFitter fitter(*model);
   const std::unique_ptr<BrdfFlow> flow =
@@ -53,15 +53,14 @@ Status FitMaterialLobes(int lobes, int num_threads,
     }
     std::vector<int> order(lobes);
     std::iota(order.begin(), order.end(), 0);
-    const auto code = [&](int k) {
-      return fit->parameters.data() + static_cast<size_t>(k) * lobe_size;
-    };
+    const LobeMixture fitted(layout, fit->parameters.data());
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-      return Peakedness(*flow, code(a), size) >
-             Peakedness(*flow, code(b), size);
+      return Peakedness(*flow, fitted.code(a)) >
+             Peakedness(*flow, fitted.code(b));
     });
     for (const int k : order) {
-      fits[m].insert(fits[m].end(), code(k), code(k) + lobe_size);
+      const auto lobe = fitted.lobe(k);
+      fits[m].insert(fits[m].end(), lobe.begin(), lobe.end());
     }
   });
   for (int m = 0; m < materials; ++m) {

@@ -184,7 +184,7 @@ TEST_F(LobeModelTest, ColourIsAnExactFactor) {
 TEST_F(LobeModelTest, ColoursBeyondTheLargestAreClamped) {
   std::vector<double> large = parameters_, larger = parameters_;
   for (const int at : {4, 5, 6, 11, 12, 13}) {
-    large[at] = LobeModel::kMaxLogColour;
+    large[at] = kMaxLogColour;
     larger[at] = 1000.0;
   }
   EXPECT_EQ(Combined(large).values, Combined(larger).values);

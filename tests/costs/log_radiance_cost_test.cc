@@ -140,7 +140,7 @@ TEST(LobePriorCost, ResidualsAndJacobianInsideAndOutsideTheBall) {
   LobePrior prior;
   prior.sigma = 0.7;
   prior.colour_mean[1] = 2.0;
-  const LobePriorCost cost(2, 3, prior);
+  const LobePriorCost cost({2, 3}, prior);
   const std::vector<double> inside = {0.1, -0.2, 0.3, 1, 2, 3,
                                       0.5, 0.5,  0.5, 4, 5, 6};
   const Evaluation e = Evaluate(cost, {inside});
@@ -158,7 +158,7 @@ TEST(LobePriorCost, ResidualsAndJacobianInsideAndOutsideTheBall) {
 }
 
 TEST(LobePriorCost, IsFiniteAtZeroAndOnTheSphere) {
-  const LobePriorCost cost(1, 2, {});
+  const LobePriorCost cost({1, 2}, {});
   for (const std::vector<double>& p : {std::vector<double>{0, 0, 0, 0, 0},
                                        {1, 0, 0, 0, 0},
                                        {0, -1, 0, 0, 0}}) {

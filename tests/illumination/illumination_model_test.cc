@@ -18,9 +18,9 @@ constexpr int kTexels = 8 * 16;
 class IlluminationModelTest : public ::testing::TestWithParam<bool> {
  protected:
   std::vector<float> Forward(const std::vector<float>& parameters) {
-    std::vector<float> map(model_->num_outputs());
-    model_->Forward(parameters.data(), map.data());
-    return map;
+    LogMap map;
+    model_->Forward(parameters.data(), &map);
+    return map.values();
   }
   const std::unique_ptr<IlluminationModel> model_ =
       GetParam() ? MakeUnetIllumination(TinyUnetOptions())
@@ -60,26 +60,6 @@ INSTANTIATE_TEST_SUITE_P(Models, IlluminationModelTest, ::testing::Bool(),
                          [](const ::testing::TestParamInfo<bool>& p) {
                            return p.param ? "Unet" : "Free";
                          });
-
-TEST(ToRadianceMap, PlanesBecomePixelsWithoutOverflow) {
-  std::vector<float> map;
-  ToRadianceMap({0, 1, -1000, 2, 1000, 3}, &map);  // two texels
-  ASSERT_EQ(6u, map.size());
-  EXPECT_FLOAT_EQ(1.0f, map[0]);
-  EXPECT_GT(map[1], 0.0f);
-  EXPECT_LT(map[1], 1e-20f);
-  EXPECT_GT(map[2], 1e20f);
-  EXPECT_TRUE(std::isfinite(map[2]));
-  EXPECT_FLOAT_EQ(std::exp(1.0f), map[3]);
-  EXPECT_FLOAT_EQ(std::exp(2.0f), map[4]);
-  EXPECT_FLOAT_EQ(std::exp(3.0f), map[5]);
-  // Slopes are the values but where those are clamped.
-  std::vector<float> again, slopes;
-  ToRadianceMap({0, 1, -1000, 2, 1000, 3}, &again, &slopes);
-  EXPECT_EQ(map, again);
-  map[1] = map[2] = 0.0f;
-  EXPECT_EQ(map, slopes);
-}
 
 }  // namespace
 }  // namespace ibrdf

@@ -17,13 +17,13 @@ using namespace testing;  // NOLINT
 constexpr int kHeight = 8, kWidth = 16, kTexels = kHeight * kWidth;
 const LightHyperparameters kScales = LightHyperparameters::Average();
 
-std::vector<float> SmoothLogMap() {
+LogMap SmoothLogMap() {
   const Image map = SmoothMap(kHeight, kWidth);
   std::vector<float> out(3 * kTexels);
   for (int i = 0; i < 3 * kTexels; ++i) {
     out[i] = std::log(map.rgb[3 * (i % kTexels) + i / kTexels]);
   }
-  return out;
+  return {{kWidth, kHeight}, out};
 }
 
 double Weight(int i, double sigma) {
@@ -32,15 +32,15 @@ double Weight(int i, double sigma) {
 }
 
 // The cost by its definition.
-double CostOf(const std::vector<float>& target, double sigma,
+double CostOf(const LogMap& target, double sigma,
               const std::vector<float>& mean, const std::vector<float>& p,
               IlluminationModel* model) {
-  std::vector<float> map(model->num_outputs());
-  model->Forward(p.data(), map.data());
+  LogMap map;
+  model->Forward(p.data(), &map);
   const std::vector<float> std = model->PriorStd();
   double cost = 0.0;
-  for (size_t i = 0; i < map.size(); ++i) {
-    const double d = double{map[i]} - target[i];
+  for (size_t i = 0; i < map.values().size(); ++i) {
+    const double d = double{map.values()[i]} - target.values()[i];
     cost += 0.5 * Weight(static_cast<int>(i), sigma) * d * d;
   }
   for (size_t i = 0; i < p.size(); ++i) {
@@ -50,16 +50,16 @@ double CostOf(const std::vector<float>& target, double sigma,
   return cost;
 }
 
-double RmsError(const std::vector<float>& target, const std::vector<float>& p,
+double RmsError(const LogMap& target, const std::vector<float>& p,
                 IlluminationModel* model) {
-  std::vector<float> map(model->num_outputs());
-  model->Forward(p.data(), map.data());
+  LogMap map;
+  model->Forward(p.data(), &map);
   double sum = 0.0;
-  for (size_t i = 0; i < map.size(); ++i) {
-    const double d = double{map[i]} - target[i];
+  for (size_t i = 0; i < map.values().size(); ++i) {
+    const double d = double{map.values()[i]} - target.values()[i];
     sum += d * d;
   }
-  return std::sqrt(sum / static_cast<double>(map.size()));
+  return std::sqrt(sum / static_cast<double>(map.values().size()));
 }
 
 class LogMapFitTest : public ::testing::TestWithParam<bool> {
@@ -72,7 +72,7 @@ class LogMapFitTest : public ::testing::TestWithParam<bool> {
     const double level[3] = {0.2, 0.1, -0.5};
     return model_->ConstantMap(level);
   }
-  const std::vector<float> target_ = SmoothLogMap();
+  const LogMap target_ = SmoothLogMap();
 };
 
 // Runs of more and more iterations go along one path.
@@ -101,8 +101,9 @@ TEST_P(LogMapFitTest, CostNeverRisesAndIsTheOneReturned) {
 
 TEST_P(LogMapFitTest, StartAtTheTargetStays) {
   const std::vector<float> start = Start();
-  std::vector<float> target(model_->num_outputs()), p = start;
-  model_->Forward(p.data(), target.data());
+  std::vector<float> p = start;
+  LogMap target;
+  model_->Forward(p.data(), &target);
   EXPECT_EQ(0.0, FitLogMap(target, {}, model_.get(), &p));
   EXPECT_EQ(start, p);
 }
@@ -139,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(Models, LogMapFitTest, ::testing::Bool(),
 TEST(LogMapFitOfTheProcess, ReachesTheMinimumInClosedForm) {
   const std::unique_ptr<IlluminationModel> model =
       MakeProcessIllumination(kWidth, kHeight, LightProcess(), kScales);
-  const std::vector<float> target = SmoothLogMap();
+  const LogMap target = SmoothLogMap();
   const double level[3] = {0.2, 0.1, -0.5};
   const std::vector<float> start = model->ConstantMap(level);
   const LightProcess process;
@@ -157,7 +158,7 @@ TEST(LogMapFitOfTheProcess, ReachesTheMinimumInClosedForm) {
     }
     for (int i = 0; i < 3 * kTexels; ++i) {
       covariance(i, i) += 1.0 / Weight(i, sigma);
-      r[i] = target[i] - level[i / kTexels];
+      r[i] = target.values()[i] - level[i / kTexels];
     }
     const double least = 0.5 * r.dot(covariance.llt().solve(r));
     LogMapFitOptions options;
@@ -178,7 +179,7 @@ TEST(LogMapFitOfTheProcess, ReachesTheMinimumInClosedForm) {
 TEST(LogMapFitOfTheProcess, FitsASmoothMapFarBelowSigma) {
   const std::unique_ptr<IlluminationModel> model =
       MakeProcessIllumination(kWidth, kHeight, LightProcess(), kScales);
-  const std::vector<float> target = SmoothLogMap();
+  const LogMap target = SmoothLogMap();
   const double level[3] = {0.2, 0.1, -0.5};
   double before = 1.0;
   for (const double sigma : {0.2, 0.02}) {

@@ -34,9 +34,10 @@ double CeresCost(const JointScene& scene, const JointTerms& terms, bool unet,
   ceres::Problem problem;
   const IlluminationUnet network(TiniestUnetOptions(),
                                  NaturalNoise(TiniestUnetOptions()));
-  std::vector<float> log_map(scene.light->num_outputs()), map;
-  scene.light->Forward(state.light.data(), log_map.data());
-  ToRadianceMap(log_map, &map);
+  LogMap log_map;
+  std::vector<float> map;
+  scene.light->Forward(state.light.data(), &log_map);
+  log_map.Exp(&map);
   if (unet) {
     problem.AddResidualBlock(
         new LogRadianceCost(&scene.transport, &scene.lobes, &network,
@@ -49,9 +50,8 @@ double CeresCost(const JointScene& scene, const JointTerms& terms, bool unet,
         nullptr, lobes.data());
   }
   problem.AddResidualBlock(
-      new LobePriorCost(scene.lobes.num_lobes(), scene.lobes.code_size(),
-                        terms.lobe_prior),
-      nullptr, lobes.data());
+      new LobePriorCost(scene.lobes.layout(), terms.lobe_prior), nullptr,
+      lobes.data());
   problem.AddResidualBlock(
       new WeightPriorCost(terms.light_mean, scene.light->PriorStd(),
                           terms.light_sigma),
@@ -60,7 +60,7 @@ double CeresCost(const JointScene& scene, const JointTerms& terms, bool unet,
   EXPECT_TRUE(problem.Evaluate({}, &cost, nullptr, nullptr, nullptr));
   ProcessPrior process(8, 16, LightProcess(), LightHyperparameters::Average(),
                        0.0);
-  return cost + process.Evaluate(log_map.data(), nullptr);
+  return cost + process.Evaluate(log_map, nullptr);
 }
 
 JointMethodOptions ShortOptions() {

@@ -157,7 +157,7 @@ TEST_P(JointObjectiveTest, CompressionKeepsCostGradientAndMatrix) {
   const CompressedCost cost(&objective_, state_, nullptr);
   const Eigen::VectorXd x = objective_.ToVector(state_);
   std::vector<const double*> blocks;
-  std::vector<RowMajorMatrix> J;
+  std::vector<RowMatrix> J;
   std::vector<double*> jacobians;
   Eigen::Index at = 0;
   for (const int size : cost.parameter_block_sizes()) {
@@ -165,7 +165,7 @@ TEST_P(JointObjectiveTest, CompressionKeepsCostGradientAndMatrix) {
     J.emplace_back(cost.num_residuals(), size);
     at += size;
   }
-  for (RowMajorMatrix& j : J) jacobians.push_back(j.data());
+  for (RowMatrix& j : J) jacobians.push_back(j.data());
   Eigen::VectorXd r(cost.num_residuals()), short_r = r;
   ASSERT_TRUE(cost.Evaluate(blocks.data(), r.data(), jacobians.data()));
   ASSERT_TRUE(cost.Evaluate(blocks.data(), short_r.data(), nullptr));

@@ -198,7 +198,7 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
     std::vector<double> x = truth_;
     x.insert(x.end(), {0.02, -0.03, 0.0, 0.04});
     if (extreme) {
-      x[4] = LobeModel::kMaxLogColour + 5.0;
+      x[4] = kMaxLogColour + 5.0;
       x[7] = -1.4;
       x[12] = -40.0;
     }

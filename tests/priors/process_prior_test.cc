@@ -15,12 +15,12 @@
 namespace ibrdf {
 namespace {
 
-std::vector<float> RandomLogMap(int height, int width, unsigned seed) {
+LogMap RandomLogMap(int height, int width, unsigned seed) {
   std::mt19937 rng(seed);
   std::normal_distribution<float> g;
   std::vector<float> map(static_cast<size_t>(3) * height * width);
   for (float& v : map) v = g(rng);
-  return map;
+  return {{width, height}, map};
 }
 
 TEST(ProcessPrior, GradientAndProductMatchDifferences) {
@@ -29,21 +29,21 @@ TEST(ProcessPrior, GradientAndProductMatchDifferences) {
     const int height = width / 2;
     ProcessPrior prior(height, width, LightProcess(), {0.4}, 0.3,
                        {MapDirection(0.4 * height, 5.3, height, width)});
-    const std::vector<float> map = RandomLogMap(height, width, 1);
-    const std::vector<float> v = RandomLogMap(height, width, 2);
-    std::vector<float> gradient(map.size(), 0.0f), product(map.size(), 0.0f);
-    const double cost = prior.Evaluate(map.data(), gradient.data());
-    prior.AddProduct(v.data(), product.data());
+    const LogMap map = RandomLogMap(height, width, 1);
+    const LogMap v = RandomLogMap(height, width, 2);
+    LogMap gradient(map.size()), product(map.size());
+    const double cost = prior.Evaluate(map, &gradient);
+    prior.AddProduct(v, &product);
     EXPECT_GT(cost, 0.0);
     const auto along = [&](float t) {
-      std::vector<float> at = map;
-      for (size_t i = 0; i < at.size(); ++i) at[i] += t * v[i];
-      return prior.Evaluate(at.data(), nullptr);
+      LogMap at = map;
+      for (int c = 0; c < 3; ++c) at.Plane(c) += t * v.Plane(c);
+      return prior.Evaluate(at, nullptr);
     };
     double slope = 0.0, curvature = 0.0;
-    for (size_t i = 0; i < map.size(); ++i) {
-      slope += static_cast<double>(gradient[i]) * v[i];
-      curvature += static_cast<double>(product[i]) * v[i];
+    for (size_t i = 0; i < v.values().size(); ++i) {
+      slope += static_cast<double>(gradient.values()[i]) * v.values()[i];
+      curvature += static_cast<double>(product.values()[i]) * v.values()[i];
     }
     // A quadratic: differences are exact but for the float map.
     EXPECT_NEAR((along(0.5f) - along(-0.5f)), slope,
@@ -69,12 +69,12 @@ TEST(ProcessPrior, PrecisionIsOfTheMapsThatAreDrawn) {
       width, height, LightProcess(), hyperparameters, directional_lights);
   const Eigen::MatrixXd S = testing::JacobianOf(drawn.get());
   Eigen::MatrixXd precision(n, n);
-  std::vector<float> unit(n, 0.0f), column(n);
+  LogMap unit({width, height});
   for (int i = 0; i < n; ++i) {
-    unit[i] = 1.0f;
-    std::fill(column.begin(), column.end(), 0.0f);
-    prior.AddProduct(unit.data(), column.data());
-    unit[i] = 0.0f;
+    unit.data()[i] = 1.0f;
+    LogMap column(unit.size());
+    prior.AddProduct(unit, &column);
+    unit.data()[i] = 0.0f;
     precision.col(i) =
         Eigen::Map<const Eigen::VectorXf>(column.data(), n).cast<double>();
   }
@@ -101,7 +101,7 @@ TEST(ProcessPrior, CostHardlyDependsOnTheMapsSize) {
       }
     }
     return ProcessPrior(height, width, LightProcess(), {}, 0.0)
-        .Evaluate(map.data(), nullptr);
+        .Evaluate(LogMap({width, height}, map), nullptr);
   };
   const double even = cost(128, 256);
   EXPECT_GT(even, 0.0);
@@ -110,16 +110,18 @@ TEST(ProcessPrior, CostHardlyDependsOnTheMapsSize) {
 
 TEST(ProcessPrior, ConstantMapAtTheLevelCostsNothing) {
   ProcessPrior prior(32, 64, LightProcess(), {}, -0.7);
+  const auto cost = [&](const std::vector<float>& values) {
+    return prior.Evaluate(LogMap({64, 32}, values), nullptr);
+  };
   std::vector<float> map(3 * 32 * 64, -0.7f);
-  EXPECT_NEAR(0.0, prior.Evaluate(map.data(), nullptr), 1e-6);
+  EXPECT_NEAR(0.0, cost(map), 1e-6);
   // Another grey level costs little, a colour cast of the same size more.
   std::vector<float> grey = map, red = map;
   for (float& v : grey) v += 1.0f;
   for (size_t i = 0; i < red.size(); ++i) {
     red[i] += i < red.size() / 3 ? 1.0f : -0.5f;
   }
-  EXPECT_LT(2 * prior.Evaluate(grey.data(), nullptr),
-            prior.Evaluate(red.data(), nullptr));
+  EXPECT_LT(2 * cost(grey), cost(red));
 }
 
 }  // namespace

@@ -66,10 +66,11 @@ inline std::vector<double> RenderTinyLobes(
 inline Eigen::MatrixXd JacobianOf(IlluminationModel* model) {
   const int n = model->num_parameters(), m = model->num_outputs();
   Eigen::MatrixXd jacobian(m, n);
-  std::vector<float> unit(n, 0.0f), column(m);
+  std::vector<float> unit(n, 0.0f);
+  LogMap column;
   for (int i = 0; i < n; ++i) {
     unit[i] = 1.0f;
-    model->Jvp(unit.data(), column.data());
+    model->Jvp(unit.data(), &column);
     unit[i] = 0.0f;
     jacobian.col(i) =
         Eigen::Map<const Eigen::VectorXf>(column.data(), m).cast<double>();

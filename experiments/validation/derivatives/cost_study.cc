@@ -113,7 +113,7 @@ void StudyPriors(int count, std::mt19937_64* rng, ErrorTable* table) {
   const MaterialPrior joint = JointMaterialPrior(model, lobes, 0.5);
   LobePrior ball;
   for (double& m : ball.colour_mean) m = 4.0;
-  const LobePriorCost ball_cost(lobes, size, ball);
+  const LobePriorCost ball_cost({lobes, size}, ball);
   const MaterialPriorCost joint_cost(&joint);
   using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
   const RealMatrix precision_root =
@@ -212,22 +212,26 @@ void StudyProcessPrior(std::mt19937_64* rng, ErrorTable* table) {
   ProcessPrior prior(kHeight, kWidth, LightProcess(), {0.25}, 0.4);
   std::normal_distribution<float> normal;
   for (const float scale : {1.0f, 1e-3f, 60.0f}) {
-    std::vector<float> map(3 * kHeight * kWidth), gradient(map.size(), 0.0f);
+    LogMap map({kWidth, kHeight}), gradient(map.size());
     // Steps of 1/1024, so that sums with kStep are exact.
-    for (float& v : map) v = std::round(1024 * scale * normal(*rng)) / 1024;
-    prior.Evaluate(map.data(), gradient.data());
+    const size_t values = map.values().size();
+    for (size_t i = 0; i < values; ++i) {
+      map.data()[i] = std::round(1024 * scale * normal(*rng)) / 1024;
+    }
+    prior.Evaluate(map, &gradient);
     std::vector<Real> exact;
-    for (float& v : map) {
+    for (size_t i = 0; i < values; ++i) {
+      float& v = map.data()[i];
       const float middle = v;
       v = middle + kStep;
-      const Real up = prior.Evaluate(map.data(), nullptr);
+      const Real up = prior.Evaluate(map, nullptr);
       v = middle - kStep;
-      exact.push_back((up - prior.Evaluate(map.data(), nullptr)) / (2 * kStep));
+      exact.push_back((up - prior.Evaluate(map, nullptr)) / (2 * kStep));
       v = middle;
     }
     table->Add("process prior by log radiance",
                "log radiance x " + Coordinates({scale}), "",
-               ToDoubles(gradient), exact);
+               ToDoubles(gradient.values()), exact);
   }
 }
 

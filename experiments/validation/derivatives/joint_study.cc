@@ -12,6 +12,7 @@
 #include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/illumination_unet_reference.h"
+#include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/illumination/natural_noise.h"
 #include "ibrdf/solvers/joint/joint_objective.h"
 #include "tests/support/render_testing.h"
@@ -22,7 +23,7 @@ namespace ibrdf {
 namespace derivatives {
 namespace {
 
-constexpr Real kMaxLogMap = 60;  // of ToRadianceMap
+constexpr Real kMaxLogMap = kMaxLogRadiance;
 
 class JointStudy {
  public:

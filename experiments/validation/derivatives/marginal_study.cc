@@ -247,7 +247,7 @@ class MarginalStudy {
     std::vector<Real> out;
     for (int i = 0; i < 2 * lobe_size; ++i) {
       const int k = i / lobe_size, d = i % lobe_size;
-      const bool clamped = d >= codes && at[i] >= LobeModel::kMaxLogColour;
+      const bool clamped = d >= codes && at[i] >= kMaxLogColour;
       out.push_back(clamped ? Real(0) : differentiate([&](Real h) {
         Matrices moved = T;
         for (int c = 0; c < 3; ++c) {

@@ -110,7 +110,7 @@ std::vector<Real> ReferenceFields(const NeuralBrdfModel& model, int num_lobes,
 }
 
 Real ReferenceColour(double log_colour, int channel) {
-  return std::exp(Real(std::min(log_colour, LobeModel::kMaxLogColour))) *
+  return std::exp(Real(std::min(log_colour, kMaxLogColour))) *
          Real(kMerlScale[channel]);
 }
 

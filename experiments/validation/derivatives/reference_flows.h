@@ -48,7 +48,7 @@ std::vector<Real> ReferenceFields(const NeuralBrdfModel& model, int num_lobes,
                                   const BrdfGridShape& grid,
                                   const std::vector<double>& parameters);
 
-// colour_kc = exp(min(a_kc, LobeModel::kMaxLogColour)) kMerlScale[c].
+// colour_kc = exp(min(a_kc, kMaxLogColour)) kMerlScale[c].
 Real ReferenceColour(double log_colour, int channel);
 
 }  // namespace derivatives

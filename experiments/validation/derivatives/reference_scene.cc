@@ -49,7 +49,7 @@ LobeRadiance ReferenceScene::Radiance(const std::vector<Real>& fields,
           if (f == 0) {
             out.L_o[3 * i + c] += colour * sum;
             // Constant beyond the clamp.
-            const bool moves = lobe[code_size + c] < LobeModel::kMaxLogColour;
+            const bool moves = lobe[code_size + c] < kMaxLogColour;
             d[code_size + c] = moves ? colour * sum : 0;
           } else {
             d[f - 1] = colour * sum;

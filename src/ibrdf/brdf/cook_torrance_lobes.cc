@@ -1,7 +1,6 @@
 #include "ibrdf/brdf/cook_torrance_lobes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "ibrdf/base/parallel_for.h"
@@ -15,7 +14,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kLogZero = -1000.0;
 // A shape beyond it, 1/sr, is no reflectance: products with it stay floats.
 constexpr double kLargest = 1e30;
-constexpr int kLobe = CookTorranceLobes::kCode + 3;  // parameters
+// The lobes by name.
+constexpr int kDiffuse = 0, kSpecular = 1;
 
 }  // namespace
 
@@ -39,8 +39,8 @@ void CookTorranceLobes::Tabulate(const double* parameters, bool derivatives,
   fields->assign(nodes * stride * kLobes, 0.0f);
   std::fill_n(fields->begin(), nodes, static_cast<float>(1.0 / kPi));
   float* const lobe = fields->data() + nodes * stride;
-  const CookTorranceLog at(kLogZero, 0.0, parameters[kLobe],
-                           parameters[kLobe + 1]);
+  const auto code = Mixture(parameters).code(kSpecular);
+  const CookTorranceLog at(kLogZero, 0.0, code[0], code[1]);
   const int rows = grid_shape().h;
   const size_t row = nodes / rows;
   ParallelFor(rows, num_threads_, [&](int64_t h, int) {
@@ -63,32 +63,29 @@ MerlTable CookTorranceLobes::ToMerl(const double* parameters) const {
 }
 
 CookTorrance CookTorranceLobes::FromParameters(const double* parameters) {
+  const LobeMixture lobes(kLayout, parameters);
+  const auto code = lobes.code(kSpecular);
   CookTorrance brdf;
   for (int c = 0; c < 3; ++c) {
-    const double* lobe = parameters + kLobe;
-    FromLogParameters(
-        {std::min(parameters[kCode + c], kMaxLogColour),
-         std::min(lobe[kCode + c], kMaxLogColour), lobe[0], lobe[1]},
-        c, &brdf);
-    brdf.diffuse[c] *= kMerlScale[c];
-    brdf.specular[c] *= kMerlScale[c];
+    FromLogParameters({kLogZero, kLogZero, code[0], code[1]}, c, &brdf);
   }
+  const Eigen::Array3Xd colours = lobes.Colours();
+  brdf.diffuse = colours.col(kDiffuse);
+  brdf.specular = colours.col(kSpecular);
   return brdf;
 }
 
 std::vector<double> CookTorranceLobes::ToParameters(const CookTorrance& brdf) {
-  std::vector<double> parameters(kLobes * kLobe, 0.0);
+  std::vector<double> parameters(kLayout.num_parameters(), 0.0);
+  const MutableLobeMixture lobes(kLayout, parameters.data());
   for (int c = 0; c < 3; ++c) {
     CookTorrance raw = brdf;
-    raw.diffuse[c] /= kMerlScale[c];
-    raw.specular[c] /= kMerlScale[c];
+    raw.diffuse[c] /= LobeColour(0.0, c);
+    raw.specular[c] /= LobeColour(0.0, c);
     const CookTorranceLog log = ToLogParameters(raw, c);
-    parameters[kCode + c] = log[0];
-    parameters[kLobe + kCode + c] = log[1];
-    if (c == 0) {
-      parameters[kLobe] = log[2];
-      parameters[kLobe + 1] = log[3];
-    }
+    lobes.log_colour(kDiffuse)[c] = log[0];
+    lobes.log_colour(kSpecular)[c] = log[1];
+    if (c == 0) lobes.code(kSpecular) << log[2], log[3];
   }
   return parameters;
 }

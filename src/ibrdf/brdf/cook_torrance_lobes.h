@@ -14,6 +14,7 @@ namespace ibrdf {
 class CookTorranceLobes final : public LobeModel {
  public:
   static constexpr int kLobes = 2, kCode = 2;
+  static constexpr LobeLayout kLayout = {kLobes, kCode};
 
   CookTorranceLobes(const BrdfGridShape& grid, int num_threads);
 
@@ -23,7 +24,7 @@ class CookTorranceLobes final : public LobeModel {
                 std::vector<float>* fields) const override;
   MerlTable ToMerl(const double* parameters) const override;
 
-  // Parameters [kLobes (kCode + 3)] and what they stand for. Of `brdf` the
+  // Parameters in kLayout, and what they stand for. Of `brdf` the
   // second lobe has the red channel's roughness and f0.
   static CookTorrance FromParameters(const double* parameters);
   static std::vector<double> ToParameters(const CookTorrance& brdf);

@@ -2,13 +2,11 @@
 
 #include <glog/logging.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "ibrdf/brdf/lobe_model.h"
-#include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/brdf/lobe_mixture.h"
 
 namespace ibrdf {
 
@@ -59,15 +57,15 @@ std::vector<double> MaterialLobes(const NeuralBrdfModel& model,
   CHECK_GE(first_code, 0);
   CHECK_LE(first_code + 3, model.num_codes());
   const int size = model.shape.code_size();
-  std::vector<double> parameters;
+  const LobeLayout layout = {3, size};
+  std::vector<double> parameters(layout.num_parameters());
+  const MutableLobeMixture lobes(layout, parameters.data());
   for (int c = 0; c < 3; ++c) {
     const int code = first_code + c;
     const float* z = model.codes.data() + static_cast<size_t>(code) * size;
-    parameters.insert(parameters.end(), z, z + size);
-    for (int k = 0; k < 3; ++k) {
-      parameters.push_back(k == c ? model.log_colours[code]
-                                  : -std::numeric_limits<double>::infinity());
-    }
+    lobes.code(c) = Eigen::Map<const Eigen::VectorXf>(z, size).cast<double>();
+    lobes.log_colour(c).setConstant(-std::numeric_limits<double>::infinity());
+    lobes.log_colour(c)[c] = model.log_colours[code];
   }
   return parameters;
 }
@@ -81,16 +79,12 @@ FlowBrdf::FlowBrdf(const NeuralBrdfModel& model, const double* parameters,
   state->num_lobes = num_lobes;
   state->code_size = model.shape.code_size();
   state->num_threads = num_threads;
+  const LobeMixture lobes({num_lobes, state->code_size}, parameters);
+  const Eigen::Array3Xd colours = lobes.Colours();
   for (int k = 0; k < num_lobes; ++k) {
-    const double* lobe =
-        parameters + static_cast<size_t>(k) * (state->code_size + 3);
-    state->codes.insert(state->codes.end(), lobe, lobe + state->code_size);
-    Eigen::Array3d colour;
-    for (int c = 0; c < 3; ++c) {
-      colour[c] = kMerlScale[c] * std::exp(std::min(lobe[state->code_size + c],
-                                                    LobeModel::kMaxLogColour));
-    }
-    state->colour.push_back(colour);
+    const auto code = lobes.code(k);
+    state->codes.insert(state->codes.end(), code.begin(), code.end());
+    state->colour.push_back(colours.col(k));
   }
   state_ = std::move(state);
 }

@@ -24,10 +24,6 @@ float ShapeSlope(double exponent, float shape) {
   return shape < kLargest ? static_cast<float>(exponent) * shape : 0.0f;
 }
 
-double Colour(double log_colour) {
-  return std::exp(std::min(log_colour, LobeModel::kMaxLogColour));
-}
-
 }  // namespace
 
 FlowLobes::FlowLobes(const NeuralBrdfModel& model, int num_lobes,
@@ -59,10 +55,9 @@ void FlowLobes::Tabulate(const double* parameters, bool derivatives,
   const size_t n = grid_shape().num_nodes();
   const int stride = derivatives ? 1 + code_size() : 1;
   fields->resize(n * stride * num_lobes());
-  std::vector<float> code(code_size());
+  const LobeMixture lobes = Mixture(parameters);
   for (int k = 0; k < num_lobes(); ++k) {
-    const double* z = parameters + static_cast<size_t>(k) * lobe_size();
-    std::copy(z, z + code_size(), code.begin());
+    const Eigen::VectorXf code = lobes.code(k).cast<float>();
     float* value = fields->data() + static_cast<size_t>(k) * stride * n;
     flow_->LogDensityOnColumns(nodes_, code.data(), num_threads_, value,
                                derivatives ? value + n : nullptr);
@@ -82,8 +77,9 @@ void FlowLobes::TabulateReference(const double* parameters, bool derivatives,
   const int stride = derivatives ? 1 + code_size() : 1;
   fields->resize(n * stride * num_lobes());
   const ReferenceFlow flow(model_);
+  const LobeMixture lobes = Mixture(parameters);
   for (int k = 0; k < num_lobes(); ++k) {
-    const double* z = parameters + static_cast<size_t>(k) * lobe_size();
+    const double* z = lobes.code(k).data();
     float* value = fields->data() + static_cast<size_t>(k) * stride * n;
     ParallelFor(static_cast<int64_t>(n), num_threads_, [&](int64_t i, int) {
       const int column = static_cast<int>(i) % nodes_.columns;
@@ -104,7 +100,7 @@ void FlowLobes::TabulateReference(const double* parameters, bool derivatives,
 MerlTable FlowLobes::ToMerl(const double* parameters) const {
   const FlowColumns columns = MerlColumns();
   const size_t n = columns.num_points();
-  std::vector<float> value(n), code(code_size());
+  std::vector<float> value(n);
   std::vector<int> bins;
   for (int bin = 0; bin < kMerlBins; ++bin) {
     if (MerlBinAboveHorizon(bin / (kMerlThetaD * kMerlPhiD),
@@ -117,16 +113,16 @@ MerlTable FlowLobes::ToMerl(const double* parameters) const {
   for (int c = 0; c < 3; ++c) {
     for (const int bin : bins) table.raw[size_t{kMerlBins} * c + bin] = 0.0;
   }
+  const LobeMixture lobes = Mixture(parameters);
+  const Eigen::Array3Xd colours = lobes.RawColours();
   for (int k = 0; k < num_lobes(); ++k) {
-    const double* lobe = parameters + static_cast<size_t>(k) * lobe_size();
-    std::copy(lobe, lobe + code_size(), code.begin());
+    const Eigen::VectorXf code = lobes.code(k).cast<float>();
     flow_->LogDensityOnColumns(columns, code.data(), num_threads_, value.data(),
                                nullptr);
     for (const int bin : bins) {
       const double shape = Shape(model_.exponent, value[bin]);
       for (int c = 0; c < 3; ++c) {
-        table.raw[size_t{kMerlBins} * c + bin] +=
-            Colour(lobe[code_size() + c]) * shape;
+        table.raw[size_t{kMerlBins} * c + bin] += colours(c, k) * shape;
       }
     }
   }

@@ -7,25 +7,33 @@
 #include <vector>
 
 #include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/brdf/merl_table.h"
 
 namespace ibrdf {
 
 // f_c = sum_k exp(a_kc) kMerlScale[c] s_k(x; z_k) in 1/sr (Chen et al. 2020,
 // Eq. 5, summed over lobes) of shapes s_k that a few numbers z_k, the lobe's
-// code, tell. Parameters of lobe k, one after the other: the code z_k
-// [code_size], then the log colours a_k [3] in raw MERL units.
+// code, tell. Parameters are the codes z_k and the log colours a_k, in raw MERL
+// units, of a LobeMixture.
 class LobeModel {
  public:
   virtual ~LobeModel() = default;
   LobeModel(const LobeModel&) = delete;
   LobeModel& operator=(const LobeModel&) = delete;
 
-  int num_lobes() const { return num_lobes_; }
-  int code_size() const { return code_size_; }
-  int lobe_size() const { return code_size() + 3; }
-  int num_parameters() const { return num_lobes_ * lobe_size(); }
-  int num_fields() const { return num_lobes_ * (1 + code_size()); }
+  const LobeLayout& layout() const { return layout_; }
+  int num_lobes() const { return layout_.num_lobes; }
+  int code_size() const { return layout_.code_size; }
+  int lobe_size() const { return layout_.lobe_size(); }
+  int num_parameters() const { return layout_.num_parameters(); }
+  int num_fields() const { return num_lobes() * (1 + code_size()); }
+  LobeMixture Mixture(const double* parameters) const {
+    return {layout_, parameters};
+  }
+  MutableLobeMixture Mixture(double* parameters) const {
+    return {layout_, parameters};
+  }
   const BrdfGridShape& grid_shape() const { return grid_; }
 
   // Adds shift [3] to the log colours of every lobe.
@@ -46,15 +54,11 @@ class LobeModel {
   // Tabulated and combined.
   BrdfGrid Grid(const double* parameters) const;
 
-  // Largest log colour that exp() is taken of; colours beyond are bugs of a
-  // caller's step and are clamped so that nothing overflows.
-  static constexpr double kMaxLogColour = 40.0;
-
  protected:
   LobeModel(int num_lobes, int code_size, const BrdfGridShape& grid);
 
  private:
-  int num_lobes_, code_size_;
+  LobeLayout layout_;
   BrdfGridShape grid_;
 };
 

@@ -21,7 +21,7 @@ TableLobes::TableLobes(const BrdfGrid& brdf, const BrdfGridShape& grid)
     const Eigen::Vector3d a = grid.NodeAngles(static_cast<int>(i));
     const Eigen::Array3d f = brdf.Evaluate(a[0], a[1], a[2]);
     for (int c = 0; c < kChannels; ++c) {
-      shapes_[c * nodes + i] = static_cast<float>(f[c] / kMerlScale[c]);
+      shapes_[c * nodes + i] = static_cast<float>(f[c] / LobeColour(0.0, c));
     }
   }
 }
@@ -45,8 +45,10 @@ MerlTable TableLobes::ToMerl(const double* parameters) const {
 }
 
 std::vector<double> TableLobes::KnownParameters() {
-  std::vector<double> parameters(size_t{kChannels} * kChannels, kBlack);
-  for (int c = 0; c < kChannels; ++c) parameters[c * kChannels + c] = 0.0;
+  constexpr LobeLayout kLayout = {kChannels, 0};
+  std::vector<double> parameters(kLayout.num_parameters(), kBlack);
+  const MutableLobeMixture lobes(kLayout, parameters.data());
+  for (int c = 0; c < kChannels; ++c) lobes.log_colour(c)[c] = 0.0;
   return parameters;
 }
 

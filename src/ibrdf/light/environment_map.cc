@@ -151,6 +151,29 @@ Image ResizeMap(const Image& map, int height, int width) {
   return out;
 }
 
+std::vector<float> ResamplePlanes(const std::vector<float>& planes,
+                                  MapSize from, MapSize to) {
+  const size_t before = from.num_texels(), texels = to.num_texels();
+  CHECK(before > 0 && planes.size() % before == 0);
+  const size_t channels = planes.size() / before;
+  std::vector<float> out(channels * texels);
+  for (size_t t = 0; t < texels; ++t) {
+    const MapTaps taps =
+        BilinearTaps(MapDirection(static_cast<double>(t / to.width) + 0.5,
+                                  static_cast<double>(t % to.width) + 0.5,
+                                  to.height, to.width),
+                     from.height, from.width);
+    for (size_t c = 0; c < channels; ++c) {
+      double sum = 0.0;
+      for (int k = 0; k < 4; ++k) {
+        sum += taps.weight[k] * planes[c * before + taps.texel[k]];
+      }
+      out[c * texels + t] = static_cast<float>(sum);
+    }
+  }
+  return out;
+}
+
 Eigen::Array3d MeanRadiance(const Image& map) {
   Eigen::Array3d sum = Eigen::Array3d::Zero();
   for (int r = 0; r < map.height; ++r) {

@@ -1,6 +1,8 @@
 // Distant illumination as an equirectangular radiance map.
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
+#include <vector>
 
 #include "ibrdf/image/image.h"
 
@@ -9,6 +11,17 @@ namespace ibrdf {
 // An equirectangular map is an Image of height H, width W (y up): row r is
 // theta = pi (r + 1/2) / H from +y, column c is phi = 2 pi (c + 1/2) / W, and
 // the direction is (sin theta sin phi, cos theta, sin theta cos phi).
+
+// Of a map, texels.
+struct MapSize {
+  int width = 0, height = 0;
+
+  size_t num_texels() const { return static_cast<size_t>(width) * height; }
+  bool operator==(const MapSize& o) const {
+    return width == o.width && height == o.height;
+  }
+  bool operator!=(const MapSize& o) const { return !(*this == o); }
+};
 
 // Unit direction of a continuous map position; row in [0, H], column in [0, W]
 // count from texel edges (texel centres at +1/2).
@@ -35,9 +48,16 @@ struct MapTaps {
 MapTaps BilinearTaps(const Eigen::Vector3d& direction, int height, int width);
 Eigen::Array3d LookUpMap(const Image& map, const Eigen::Vector3d& direction);
 
-// Area-weighted mean over blocks; width and height must divide the map's.
-// Any other size: solid-angle-exact resampling of the piecewise constant map.
+// A map at another size, in two ways.
+//
+// Radiance adds up: a texel of the new map is the mean over its solid angle of
+// the old one's texels, constant each, so that no light is lost.
 Image ResizeMap(const Image& map, int height, int width);
+// Log radiance does not, and what is fitted to it should see no edges of texels
+// where the map grows: planes [channels][to.height][to.width] of the old ones,
+// bilinear between their texels' centres.
+std::vector<float> ResamplePlanes(const std::vector<float>& planes,
+                                  MapSize from, MapSize to);
 
 // Solid-angle-weighted mean radiance per channel.
 Eigen::Array3d MeanRadiance(const Image& map);
