@@ -154,11 +154,11 @@ Status Estimator::SearchMarginal(JointState* state) {
   ReflectanceSearchOptions o = SearchOptions(kSearchShare);
   o.covariance = problem_.solver.max_iterations > 0;
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      FlowLobes::Factory(problem_.model, problem_.lobes, problem_.num_threads),
+      FlowLobes::Factory(*problem_.model, problem_.lobes, problem_.num_threads),
       materials_, problem_.points, SearchRadiance(), o);
   if (!found.ok()) return found.status();
   state->lobes = found->parameters;
-  const LevelGauge gauge(problem_.model, materials_, problem_.num_threads);
+  const LevelGauge gauge(*problem_.model, materials_, problem_.num_threads);
   KeepLight(*found, gauge.Fix(state->lobes.data()));
   start_name_ = found->start;
   const auto& materials = materials_.materials;
@@ -185,7 +185,7 @@ void Estimator::SearchLight() {
 }
 
 void Estimator::StartAtMeanMaterial(JointState* state) {
-  const std::string name = SpreadMaterials(problem_.model, 1).front().name;
+  const std::string name = SpreadMaterials(*problem_.model, 1).front().name;
   for (const MaterialPrior::Material& m : materials_.materials) {
     if (m.name != name) continue;
     state->lobes = ToVector(m.parameters);

@@ -96,11 +96,11 @@ Status Estimator::Prepare() {
                                  BrightSamplesPerSide(map.height));
   }
   if (lobes_unknown()) {
-    lobes_ = std::make_unique<FlowLobes>(problem_.model, problem_.lobes,
+    lobes_ = std::make_unique<FlowLobes>(*problem_.model, problem_.lobes,
                                          problem_.transport.grid,
                                          problem_.num_threads);
-    lobe_prior_ = EmbeddingPrior(problem_.model, problem_.prior_sigma);
-    materials_ = JointMaterialPrior(problem_.model, problem_.lobes,
+    lobe_prior_ = EmbeddingPrior(*problem_.model, problem_.prior_sigma);
+    materials_ = JointMaterialPrior(*problem_.model, problem_.lobes,
                                     problem_.prior_sigma);
   }
   IBRDF_RETURN_IF_ERROR(CheckMethod());

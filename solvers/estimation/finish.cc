@@ -93,7 +93,7 @@ StatusOr<Solution> Estimator::Finish(JointState best) {
     estimate.lobe_covariance.assign(covariance_.data(),
                                     covariance_.data() + covariance_.size());
     const LobeDistance distance(FlowLobes::Factory(
-        problem_.model, problem_.lobes, problem_.num_threads));
+        *problem_.model, problem_.lobes, problem_.num_threads));
     estimate.spread = SpreadOf(distance, best);
     AddAlternatives(distance, best, &estimate);
   }

@@ -143,7 +143,7 @@ Status Run(const std::string& scene, const std::vector<std::string>& overrides,
   if (!rendered.ok()) return rendered.status();
 
   if (explain || !flags.quiet) {
-    std::printf("effects: %s\n", rendered->effects.words.c_str());
+    std::printf("effects: %s\n", Describe(*rendered).c_str());
   }
   if (explain) return OkStatus();
   IBRDF_RETURN_IF_ERROR(WriteExr(rendered->image, out.image));

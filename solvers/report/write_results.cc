@@ -17,6 +17,7 @@
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/metrics/illumination_metrics.h"
 #include "ibrdf/metrics/image_metrics.h"
+#include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/estimation/reflectance_spread.h"
 #include "ibrdf/solvers/optim/conditioning.h"
 #include "ibrdf/solvers/report/report_page.h"
@@ -122,7 +123,7 @@ Json TraceJson(const Solution& estimate) {
 }
 
 Json LobesJson(const InverseProblem& inverse, const Solution& estimate) {
-  const int codes = inverse.model.shape.code_size(), size = codes + 3;
+  const int codes = inverse.model->shape.code_size(), size = codes + 3;
   Json lobes = Json::array();
   for (int k = 0; k < inverse.lobes; ++k) {
     const double* p = estimate.lobe_parameters.data() + k * size;
@@ -139,7 +140,7 @@ Json LobesJson(const InverseProblem& inverse, const Solution& estimate) {
 Json PosteriorJson(const InverseProblem& inverse, const Solution& estimate) {
   Json out = Json::object();
   if (!estimate.lobe_covariance.empty()) {
-    const int codes = inverse.model.shape.code_size(), size = codes + 3;
+    const int codes = inverse.model->shape.code_size(), size = codes + 3;
     const size_t n = estimate.lobe_parameters.size();
     Json lobes = Json::array();
     for (int k = 0; k < inverse.lobes; ++k) {
@@ -295,7 +296,7 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
                           : problem.reflectance.model},
             {"formula",
              "raw = sum over lobes of colour * density(code) ^ exponent"},
-            {"exponent", inverse.model.exponent},
+            {"exponent", inverse.model->exponent},
             {"lobes", LobesJson(inverse, estimate)}};
     IBRDF_RETURN_IF_ERROR(WriteFileAtomically(path("brdf.json"), Text(brdf)));
   }
@@ -327,7 +328,7 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
       {"ibrdf_version", kVersion},
       {"status", StatusName(estimate.status)},
       {"problem", ProblemToJson(problem)},
-      {"effects", inverse.effects.words},
+      {"effects", Describe(inverse.effects)},
       {"effects_plan", EffectsJson(inverse)},
       {"gauge", Gauge(inverse)},
       {"start", estimate.start},
