@@ -68,7 +68,7 @@ class EvidenceStudy {
         prior_(std::move(prior)),
         factory_(study.cook_torrance
                      ? CookTorranceLobes::Factory(problem.num_threads)
-                     : FlowLobes::Factory(problem.model, problem.lobes,
+                     : FlowLobes::Factory(*problem.model, problem.lobes,
                                           problem.num_threads)),
         lobes_(factory_(problem.transport.grid)),
         study_(study),
@@ -116,11 +116,11 @@ class EvidenceStudy {
     fit_options.lobes = problem_.lobes;
     fit_options.num_threads = problem_.num_threads;
     const StatusOr<LobeTableFit> fit =
-        LobeTableFitter(problem_.model).Fit(truth_.brdf, fit_options);
+        LobeTableFitter(*problem_.model).Fit(truth_.brdf, fit_options);
     if (!fit.ok()) return fit.status();
     // The prior tells lobes apart: the order that it prefers.
     std::vector<double> nearest = fit->parameters;
-    LevelGauge(problem_.model, prior_, problem_.num_threads)
+    LevelGauge(*problem_.model, prior_, problem_.num_threads)
         .Fix(nearest.data());
     std::vector<double> turned = nearest;
     std::rotate(turned.begin(), turned.end() - lobes_->lobe_size(),
@@ -248,13 +248,13 @@ Status Study(const std::string& path, const StudyOptions& options,
     return InvalidInput(path, "truth.brdf is needed here");
   }
   MaterialPrior prior = (options.ball_prior ? BallPrior : JointMaterialPrior)(
-      inverse->model, inverse->lobes, inverse->prior_sigma);
+      *inverse->model, inverse->lobes, inverse->prior_sigma);
   if (options.cook_torrance) {
     const auto [known, is_new] =
         cook_torrance->try_emplace(problem->reflectance.model, MaterialPrior());
     if (is_new) {
       StatusOr<MaterialPrior> fitted =
-          CookTorrancePrior(inverse->model, options.num_threads);
+          CookTorrancePrior(*inverse->model, options.num_threads);
       if (!fitted.ok()) return fitted.status();
       known->second = std::move(*fitted);
     }

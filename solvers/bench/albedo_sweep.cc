@@ -29,6 +29,10 @@ std::string ViewColumn(double degrees) {
   return "albedo_" + std::to_string(static_cast<int>(degrees));
 }
 
+std::string ResultsPath(const AlbedoSweepOptions& options) {
+  return options.out + "/results.csv";
+}
+
 NamedRow KeyOf(const AlbedoSweepOptions& options, const std::string& material,
                const std::string& source) {
   NamedRow row(AlbedoColumns());
@@ -127,10 +131,8 @@ std::string EnergyLine(const std::string& source,
          Format("%.3f", largest) + " (" + worst + ").\n";
 }
 
-std::string Summary(const std::vector<ResultsRow>& rows) {
-  std::string text =
-      "Views every 5 degrees from 0 to 85, three channels each.\n\n" +
-      EnergyLine("model", rows) + EnergyLine("table", rows);
+// How far the model's albedo is from its table's; empty where there are none.
+std::string DifferenceLine(const std::vector<ResultsRow>& rows) {
   std::map<std::string, const ResultsRow*> tables;
   for (const ResultsRow& row : rows) {
     if (row[1] == "table") tables[row[0]] = &row;
@@ -150,10 +152,13 @@ std::string Summary(const std::vector<ResultsRow>& rows) {
         Format(differences.empty() ? " %.0f deg %.1f %%" : ", %.0f deg %.1f %%",
                degrees, 100.0 * Median(ratios));
   }
-  if (!differences.empty()) {
-    text += "- Median difference of the model's albedo from the table's:" +
-            differences + ".\n";
-  }
+  if (differences.empty()) return "";
+  return "- Median difference of the model's albedo from the table's:" +
+         differences + ".\n";
+}
+
+// What importance sampling saves; empty where there is no model.
+std::string SamplingLine(const std::vector<ResultsRow>& rows) {
   std::vector<double> sampler, cosine, gain;
   for (const ResultsRow& row : rows) {
     if (row[1] != "model") continue;
@@ -161,14 +166,64 @@ std::string Summary(const std::vector<ResultsRow>& rows) {
     cosine.push_back(Number(row, "deviation_cosine"));
     gain.push_back(std::pow(cosine.back() / sampler.back(), 2));
   }
-  if (!gain.empty()) {
-    text += "- Relative deviation of one sample at 45 degrees, median: " +
-            Format("%.3f by importance, %.3f cosine-weighted; ",
-                   Median(sampler), Median(cosine)) +
-            Format("variance ratio %.3g (median), %.3g (least).\n",
-                   Median(gain), *std::min_element(gain.begin(), gain.end()));
+  if (gain.empty()) return "";
+  return "- Relative deviation of one sample at 45 degrees, median: " +
+         Format("%.3f by importance, %.3f cosine-weighted; ", Median(sampler),
+                Median(cosine)) +
+         Format("variance ratio %.3g (median), %.3g (least).\n", Median(gain),
+                *std::min_element(gain.begin(), gain.end()));
+}
+
+std::string Summary(const std::vector<ResultsRow>& rows) {
+  return "Views every 5 degrees from 0 to 85, three channels each.\n\n" +
+         EnergyLine("model", rows) + EnergyLine("table", rows) +
+         DifferenceLine(rows) + SamplingLine(rows);
+}
+
+// Appends the row of a model's material, where it is not there yet.
+Status AddModelRow(const AlbedoSweepOptions& options,
+                   const NeuralBrdfModel& model, const ModelMaterial& material,
+                   const FurnaceRules& rules,
+                   const std::vector<ResultsRow>& present) {
+  NamedRow row = KeyOf(options, material.name, "model");
+  if (HoldsCase(present, row.cells(), kAlbedoKeyColumns)) return OkStatus();
+  const BrdfBatch brdf =
+      FlowBrdf(model, MaterialLobes(model, material.first_code).data(), 3,
+               options.num_threads)
+          .Batch();
+  SetFigures(rules.Measure(brdf), &row);
+  SetDeviations(brdf, &row);
+  return AppendResult(ResultsPath(options), AlbedoColumns(), row.cells());
+}
+
+// Appends the row of a material's table, where there is one and it is not there
+// yet.
+Status AddTableRow(const AlbedoSweepOptions& options,
+                   const std::string& material, const FurnaceRules& rules,
+                   const std::vector<ResultsRow>& present) {
+  if (options.data.empty()) return OkStatus();
+  const std::string file = FindFile(options.data, material, {".binary"});
+  NamedRow row = KeyOf(options, material, "table");
+  if (file.empty() || HoldsCase(present, row.cells(), kAlbedoKeyColumns)) {
+    return OkStatus();
   }
-  return text;
+  const StatusOr<MerlTable> table = ReadMerl(file);
+  if (!table.ok()) return table.status();
+  SetFigures(rules.Measure(BatchOf([&](double h, double d, double p) {
+    return InterpolateMerl(*table, h, d, p);
+  })),
+             &row);
+  return AppendResult(ResultsPath(options), AlbedoColumns(), row.cells());
+}
+
+Status WriteTable(const AlbedoSweepOptions& options) {
+  const auto rows = ReadResults(ResultsPath(options), AlbedoColumns());
+  if (!rows.ok()) return rows.status();
+  return WriteFileAtomically(
+      options.out + "/results.md",
+      ResultsMarkdown("# Directional albedo\n\n    " + options.command +
+                          "\n\n" + Summary(*rows) + "\n## All materials\n",
+                      AlbedoColumns(), *rows));
 }
 
 }  // namespace
@@ -192,15 +247,13 @@ const std::vector<std::string>& AlbedoColumns() {
 Status RunAlbedoSweep(const AlbedoSweepOptions& options) {
   const StatusOr<OpenedModel> opened = OpenModel(options.model);
   if (!opened.ok()) return opened.status();
-  const NeuralBrdfModel& model = opened->model;
   const auto materials =
-      ListModelMaterials(model, opened->path, options.materials);
+      ListModelMaterials(opened->model, opened->path, options.materials);
   if (!materials.ok()) return materials.status();
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) return InvalidInput(options.out, error.message());
-  const std::string results = options.out + "/results.csv";
-  const auto present = ReadResults(results, AlbedoColumns());
+  const auto present = ReadResults(ResultsPath(options), AlbedoColumns());
   if (!present.ok()) return present.status();
 
   const FurnaceRules rules;
@@ -214,40 +267,11 @@ Status RunAlbedoSweep(const AlbedoSweepOptions& options) {
       options.report("material " + std::to_string(i + 1) + " / " +
                      std::to_string(materials->size()) + "  " + m.name);
     }
-    NamedRow row = KeyOf(options, m.name, "model");
-    if (!HoldsCase(*present, row.cells(), kAlbedoKeyColumns)) {
-      const BrdfBatch brdf =
-          FlowBrdf(model, MaterialLobes(model, m.first_code).data(), 3,
-                   options.num_threads)
-              .Batch();
-      SetFigures(rules.Measure(brdf), &row);
-      SetDeviations(brdf, &row);
-      IBRDF_RETURN_IF_ERROR(
-          AppendResult(results, AlbedoColumns(), row.cells()));
-    }
-    if (options.data.empty()) continue;
-    const std::string file = FindFile(options.data, m.name, {".binary"});
-    NamedRow measured = KeyOf(options, m.name, "table");
-    if (file.empty() ||
-        HoldsCase(*present, measured.cells(), kAlbedoKeyColumns)) {
-      continue;
-    }
-    const StatusOr<MerlTable> table = ReadMerl(file);
-    if (!table.ok()) return table.status();
-    SetFigures(rules.Measure(BatchOf([&](double h, double d, double p) {
-      return InterpolateMerl(*table, h, d, p);
-    })),
-               &measured);
     IBRDF_RETURN_IF_ERROR(
-        AppendResult(results, AlbedoColumns(), measured.cells()));
+        AddModelRow(options, opened->model, m, rules, *present));
+    IBRDF_RETURN_IF_ERROR(AddTableRow(options, m.name, rules, *present));
   }
-  const auto rows = ReadResults(results, AlbedoColumns());
-  if (!rows.ok()) return rows.status();
-  return WriteFileAtomically(
-      options.out + "/results.md",
-      ResultsMarkdown("# Directional albedo\n\n    " + options.command +
-                          "\n\n" + Summary(*rows) + "\n## All materials\n",
-                      AlbedoColumns(), *rows));
+  return WriteTable(options);
 }
 
 }  // namespace ibrdf

@@ -46,6 +46,55 @@ void DieWithParent(pid_t parent) {
 #endif
 }
 
+// Starts argv with stdout and stderr in the file `output`. Negative where there
+// is no process for it.
+pid_t StartChild(const std::vector<std::string>& argv, int output) {
+  std::vector<char*> arguments;
+  for (const std::string& a : argv) {
+    arguments.push_back(const_cast<char*>(a.c_str()));
+  }
+  arguments.push_back(nullptr);
+  const pid_t parent = ::getpid();
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  DieWithParent(parent);
+  ::dup2(output, STDOUT_FILENO);
+  ::dup2(output, STDERR_FILENO);
+  ::execv(arguments[0], arguments.data());
+  ::_exit(127);
+}
+
+struct EndOfChild {
+  int status = 0;  // of wait4
+  rusage usage{};
+  long sampled = 0;  // ResidentPeak while it ran
+};
+
+// Waits for the child, which SIGINT asks to end once `stop` is set. False where
+// it cannot wait.
+bool WaitForChild(pid_t child, const std::atomic<bool>* stop, EndOfChild* end) {
+  bool stopped = false;
+  for (;;) {
+    const pid_t ended = ::wait4(child, &end->status, WNOHANG, &end->usage);
+    if (ended == child) return true;
+    if (ended < 0 && errno != EINTR) return false;
+    end->sampled = std::max(end->sampled, ResidentPeak(child));
+    if (stop != nullptr && *stop && !stopped) {
+      ::kill(child, SIGINT);
+      stopped = true;
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+// KiB. ru_maxrss counts the copy of this process before exec too, and is the
+// child's own peak only above our size.
+long PeakOf(const EndOfChild& end, const rusage& own) {
+  return end.sampled == 0 || end.usage.ru_maxrss > own.ru_maxrss
+             ? end.usage.ru_maxrss
+             : end.sampled;
+}
+
 }  // namespace
 
 StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
@@ -54,58 +103,27 @@ StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
   const int output =
       ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (output < 0) return InvalidInput(log, std::strerror(errno));
-  std::vector<char*> arguments;
-  for (const std::string& a : argv) {
-    arguments.push_back(const_cast<char*>(a.c_str()));
-  }
-  arguments.push_back(nullptr);
   rusage own{};
   ::getrusage(RUSAGE_SELF, &own);
   const Stopwatch watch;
-  const pid_t parent = ::getpid();
-  const pid_t child = ::fork();
-  if (child == 0) {
-    DieWithParent(parent);
-    ::dup2(output, STDOUT_FILENO);
-    ::dup2(output, STDERR_FILENO);
-    ::execv(arguments[0], arguments.data());
-    ::_exit(127);
-  }
+  const pid_t child = StartChild(argv, output);
   ::close(output);
   if (child < 0) {
     return Status(StatusCode::kInternal,
                   argv[0] + ": fork: " + std::strerror(errno));
   }
-  int status = 0;
-  rusage usage{};
-  long sampled = 0;
-  bool stopped = false;
-  for (;;) {
-    const pid_t ended = ::wait4(child, &status, WNOHANG, &usage);
-    if (ended == child) break;
-    if (ended < 0 && errno != EINTR) {
-      return Status(StatusCode::kInternal,
-                    argv[0] + ": wait4: " + std::strerror(errno));
-    }
-    sampled = std::max(sampled, ResidentPeak(child));
-    if (stop != nullptr && *stop && !stopped) {
-      ::kill(child, SIGINT);
-      stopped = true;
-    }
-    std::this_thread::sleep_for(kPoll);
+  EndOfChild end;
+  if (!WaitForChild(child, stop, &end)) {
+    return Status(StatusCode::kInternal,
+                  argv[0] + ": wait4: " + std::strerror(errno));
   }
   ChildResult result;
   result.seconds = watch.Seconds();
-  // ru_maxrss counts the copy of this process before exec too, and is the
-  // child's own peak only above our size.
-  const long peak = sampled == 0 || usage.ru_maxrss > own.ru_maxrss
-                        ? usage.ru_maxrss
-                        : sampled;
-  result.peak_mb = static_cast<double>(peak) / 1024.0;
-  if (WIFSIGNALED(status)) {
-    result.signal = WTERMSIG(status);
+  result.peak_mb = static_cast<double>(PeakOf(end, own)) / 1024.0;
+  if (WIFSIGNALED(end.status)) {
+    result.signal = WTERMSIG(end.status);
   } else {
-    result.exit_code = WEXITSTATUS(status);
+    result.exit_code = WEXITSTATUS(end.status);
   }
   return result;
 }

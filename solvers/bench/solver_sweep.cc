@@ -140,50 +140,81 @@ Status CheckSettings(const SolverSweepOptions& options,
   return OkStatus();
 }
 
-Status RunOne(const SolverSweepOptions& options, const SolverSweep& sweep,
-              const SolverRun& run, const std::string& results) {
-  const fs::path folder = CaseFolder(options, run.of);
-  const fs::path estimate = folder / run.estimate;
-  std::error_code error;
-  fs::create_directories(estimate, error);
-  if (error) return InvalidInput(estimate.string(), error.message());
-  // A result left by a run that was cut off is not this run's.
-  fs::remove(estimate / "result.json", error);
-  const std::string problem = (folder / run.problem_name).string();
-  IBRDF_RETURN_IF_ERROR(WriteFileAtomically(problem, run.problem));
+// Where a run reads and writes.
+struct RunFiles {
+  fs::path folder, estimate;
+  std::string problem, log, result;
+};
 
-  const std::string log = (estimate / "solver.log").string();
-  const StatusOr<ChildResult> child = RunChild(
-      {options.solver_program, "--problem", problem, "--out", estimate.string(),
-       "--threads", std::to_string(options.num_threads), "--seed",
-       std::to_string(options.seed), "--quiet"},
-      log, options.stop);
+// Makes the folder and writes the problem file.
+StatusOr<RunFiles> PrepareRun(const SolverSweepOptions& options,
+                              const SolverRun& run) {
+  RunFiles files;
+  files.folder = CaseFolder(options, run.of);
+  files.estimate = files.folder / run.estimate;
+  files.problem = (files.folder / run.problem_name).string();
+  files.log = (files.estimate / "solver.log").string();
+  files.result = (files.estimate / "result.json").string();
+  std::error_code error;
+  fs::create_directories(files.estimate, error);
+  if (error) return InvalidInput(files.estimate.string(), error.message());
+  // A result left by a run that was cut off is not this run's.
+  fs::remove(files.result, error);
+  IBRDF_RETURN_IF_ERROR(WriteFileAtomically(files.problem, run.problem));
+  return files;
+}
+
+// Fails where the run is to have no row: it was interrupted, or what ended it
+// is no property of the case.
+StatusOr<ChildResult> RunSolver(const SolverSweepOptions& options,
+                                const SolverRun& run, const RunFiles& files) {
+  StatusOr<ChildResult> child =
+      RunChild({options.solver_program, "--problem", files.problem, "--out",
+                files.estimate.string(), "--threads",
+                std::to_string(options.num_threads), "--seed",
+                std::to_string(options.seed), "--quiet"},
+               files.log, options.stop);
   if (!child.ok()) return child.status();
   if (child->exit_code == 130 || options.stopped()) {
     return Status(StatusCode::kInterrupted, run.of.name + ": interrupted");
   }
   if (child->signal == 0 && child->exit_code == kBadInput) {
     // Who refuses says why: an empty log is one that had no room on the disk.
-    const std::string words = LastWords(log);
-    if (words.empty()) return WithoutRow(run, log + ": cannot be written");
-    if (FromOutside(words, estimate)) return WithoutRow(run, words);
+    const std::string words = LastWords(files.log);
+    if (words.empty()) {
+      return WithoutRow(run, files.log + ": cannot be written");
+    }
+    if (FromOutside(words, files.estimate)) return WithoutRow(run, words);
   }
+  return child;
+}
+
+// Sets what the solver's end and its result tell. Returns whether it left an
+// estimate.
+bool SetOutcome(const SolverSweep& sweep, const ChildResult& child,
+                const RunFiles& files, NamedRow* row) {
+  row->Set("seconds", NumberCell(child.seconds));
+  row->Set("peak_mb", NumberCell(child.peak_mb));
+  const bool ended =
+      child.signal == 0 && (child.exit_code == 0 || child.exit_code == 3);
+  const bool solved = ended && ReadMetrics(files.result, *sweep.columns, row);
+  row->Set("status", ended && !solved ? "no_result" : DescribeEnd(child));
+  return solved;
+}
+
+Status RunOne(const SolverSweepOptions& options, const SolverSweep& sweep,
+              const SolverRun& run, const std::string& results) {
+  const StatusOr<RunFiles> files = PrepareRun(options, run);
+  if (!files.ok()) return files.status();
+  const StatusOr<ChildResult> child = RunSolver(options, run, *files);
+  if (!child.ok()) return child.status();
   NamedRow row = run.row;
-  row.Set("seconds", NumberCell(child->seconds));
-  row.Set("peak_mb", NumberCell(child->peak_mb));
-  std::string status = DescribeEnd(*child);
-  bool solved =
-      child->signal == 0 && (child->exit_code == 0 || child->exit_code == 3);
-  if (solved &&
-      !ReadMetrics((estimate / "result.json").string(), *sweep.columns, &row)) {
-    status = "no_result";
-    solved = false;
-  }
-  row.Set("status", status);
+  const bool solved = SetOutcome(sweep, *child, *files, &row);
   if (sweep.finish) {
-    const Status finished = sweep.finish(run, folder.string(), solved, &row);
+    const std::string folder = files->folder.string();
+    const Status finished = sweep.finish(run, folder, solved, &row);
     if (!finished.ok()) {
-      if (FromOutside(finished.message(), folder)) {
+      if (FromOutside(finished.message(), files->folder)) {
         return WithoutRow(run, finished.message());
       }
       LOG(WARNING) << run.of.name << ": " << finished.message();
@@ -230,13 +261,15 @@ Status SetConstantMap(const Image& truth, NamedRow* row) {
   return OkStatus();
 }
 
+Status SolverSweepOptions::Check() const {
+  if (fs::is_regular_file(solver_program)) return OkStatus();
+  return InvalidInput(solver_program,
+                      "expected the program of the solver (--solver-program)");
+}
+
 Status RunSolverSweep(const SolverSweepOptions& options,
                       const SolverSweep& sweep) {
-  if (!fs::is_regular_file(options.solver_program)) {
-    return InvalidInput(options.solver_program,
-                        "expected the program of the "
-                        "solver (--solver-program)");
-  }
+  IBRDF_RETURN_IF_ERROR(options.Check());
   std::error_code error;
   fs::create_directories(options.out, error);
   if (error) return InvalidInput(options.out, error.message());

@@ -18,6 +18,9 @@ struct SolverSweepOptions : SweepOptions {
   std::string method = "auto";
   double solver_seconds = 120.0;  // budget of the solver
   std::string solver_program;
+
+  // Fails where there is no program of the solver.
+  Status Check() const;
 };
 
 struct SolverRun {

@@ -15,6 +15,37 @@ bool IsMesh(const SweepOptions& options) {
   return options.geometry != "sphere";
 }
 
+// These names, or all of the folder's.
+StatusOr<std::vector<std::string>> NamesOr(
+    const std::vector<std::string>& names, const std::string& folder,
+    const std::vector<std::string>& extensions) {
+  if (!names.empty()) return names;
+  return ListNames(folder, extensions);
+}
+
+StatusOr<SweepCase> FindCase(const SweepOptions& options,
+                             const std::string& material,
+                             const std::string& map) {
+  SweepCase c;
+  c.material = material;
+  c.map = map;
+  c.size = options.size;
+  c.name = material + "_" + map;
+  if (IsMesh(options)) c.name += "_" + GeometryName(options);
+  IBRDF_RETURN_IF_ERROR(CheckCaseName(c.name));
+  c.brdf_path = FindFile(options.data, material, {".binary"});
+  c.map_path = FindFile(options.maps, map, MapExtensions());
+  if (c.brdf_path.empty()) {
+    return InvalidInput(options.data,
+                        "expected a file " + material + ".binary");
+  }
+  if (c.map_path.empty()) {
+    return InvalidInput(options.maps,
+                        "expected a file " + map + ".hdr or .exr");
+  }
+  return c;
+}
+
 }  // namespace
 
 std::string GeometryName(const SweepOptions& options) {
@@ -62,50 +93,26 @@ std::string ImageYaml(const SweepOptions& options) {
 }
 
 StatusOr<std::vector<SweepCase>> ListSweepCases(const SweepOptions& options) {
-  const std::vector<std::string> map_extensions = MapExtensions();
-  std::vector<std::string> materials = options.materials;
-  std::vector<std::string> map_names = options.map_names;
-  if (materials.empty()) {
-    StatusOr<std::vector<std::string>> all =
-        ListNames(options.data, {".binary"});
-    if (!all.ok()) return all.status();
-    materials = *std::move(all);
-  }
-  if (map_names.empty()) {
-    StatusOr<std::vector<std::string>> all =
-        ListNames(options.maps, map_extensions);
-    if (!all.ok()) return all.status();
-    map_names = *std::move(all);
-  }
-  if (materials.empty()) {
+  const StatusOr<std::vector<std::string>> materials =
+      NamesOr(options.materials, options.data, {".binary"});
+  if (!materials.ok()) return materials.status();
+  const StatusOr<std::vector<std::string>> maps =
+      NamesOr(options.map_names, options.maps, MapExtensions());
+  if (!maps.ok()) return maps.status();
+  if (materials->empty()) {
     return InvalidInput(options.data, "expected .binary tables, found none");
   }
-  if (map_names.empty()) {
+  if (maps->empty()) {
     return InvalidInput(options.maps, "expected .hdr or .exr maps, found none");
   }
   std::vector<SweepCase> cases;
   int index = 0;
-  for (const std::string& material : materials) {
-    for (const std::string& map : map_names) {
-      SweepCase c;
-      c.material = material;
-      c.map = map;
-      c.size = options.size;
-      c.name = material + "_" + map;
-      if (IsMesh(options)) c.name += "_" + GeometryName(options);
-      IBRDF_RETURN_IF_ERROR(CheckCaseName(c.name));
-      c.brdf_path = FindFile(options.data, material, {".binary"});
-      c.map_path = FindFile(options.maps, map, map_extensions);
-      if (c.brdf_path.empty()) {
-        return InvalidInput(options.data,
-                            "expected a file " + material + ".binary");
-      }
-      if (c.map_path.empty()) {
-        return InvalidInput(options.maps,
-                            "expected a file " + map + ".hdr or .exr");
-      }
+  for (const std::string& material : *materials) {
+    for (const std::string& map : *maps) {
+      const StatusOr<SweepCase> found = FindCase(options, material, map);
+      if (!found.ok()) return found.status();
       if (index++ % options.only_count == options.only_index - 1) {
-        cases.push_back(c);
+        cases.push_back(*found);
       }
     }
   }

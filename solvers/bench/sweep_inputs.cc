@@ -13,7 +13,8 @@
 #include "ibrdf/io/png.h"
 #include "ibrdf/render/reference_batch.h"
 #include "ibrdf/render/reference_renderer.h"
-#include "ibrdf/solvers/forward/render_scene.h"
+#include "ibrdf/solvers/forward/forward_scene.h"
+#include "ibrdf/solvers/forward/image_noise.h"
 #include "ibrdf/solvers/problem/load_scene.h"
 
 namespace ibrdf {

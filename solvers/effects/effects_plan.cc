@@ -1,8 +1,8 @@
 #include "ibrdf/solvers/effects/effects_plan.h"
 
 #include <algorithm>
+#include <string>
 
-#include "ibrdf/base/format.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/light/procedural_sky.h"
@@ -14,83 +14,96 @@ namespace {
 constexpr int kProbeWidth = 128;
 constexpr BrdfGridShape kProbeGrid = {48, 20, 12};
 
-CookTorrance ProbeMaterial(double specular) {
+// Stands in for an unknown reflectance: matte, or glossy over a dark base.
+BrdfGrid StandInMaterial(double specular) {
   CookTorrance brdf;
   brdf.diffuse = Eigen::Array3d::Constant(specular > 0.0 ? 0.1 : 0.5);
   brdf.specular = Eigen::Array3d::Constant(specular);
   brdf.roughness = Eigen::Array3d::Constant(0.15);
-  return brdf;
+  return BrdfGrid::FromFunction(brdf.Function(), kProbeGrid);
 }
 
-OmissionErrors Predict(const Scene& scene,
-                       const std::vector<ShadingPoint>& points,
-                       const Image* known_map, const BrdfGrid* known_brdf,
-                       const SceneProbeOptions& options) {
+// Where light is bounced it is also blocked.
+bool AsksForShadows(const EffectsSpec& effects) {
+  return effects.Lists(Effect::kInterreflection) ||
+         effects.Lists(Effect::kVisibility);
+}
+
+ShapeKind ShapeOf(const Problem& problem, const Scene& scene) {
+  if (problem.geometry.kind == GeometryKind::kNormals) {
+    return ShapeKind::kNormalMap;
+  }
+  return scene.CastsShadows() ? ShapeKind::kMesh : ShapeKind::kConvex;
+}
+
+Status CheckShapeHasPositions(const Problem& problem, ShapeKind shape) {
+  if (shape != ShapeKind::kNormalMap || !AsksForShadows(problem.effects)) {
+    return OkStatus();
+  }
+  const bool bounces = problem.effects.Lists(Effect::kInterreflection);
+  return InvalidInput(problem.path + ": effects",
+                      std::string(bounces ? "interreflection" : "visibility") +
+                          " needs a shape: expected geometry sphere or mesh, "
+                          "found normals");
+}
+
+// Under the known light and reflectance. A sun in a clear sky stands in for an
+// unknown light, the worse of a matte and a glossy surface for an unknown
+// reflectance.
+OmissionErrors PredictOmissions(const Scene& scene,
+                                const std::vector<ShadingPoint>& points,
+                                const EffectsOptions& options,
+                                const SceneProbeOptions& probe) {
   const Image sky = RenderSky(SkyOptions(), kProbeWidth / 2, kProbeWidth);
-  const Image* map = known_map != nullptr ? known_map : &sky;
+  const Image* map = options.known_map != nullptr ? options.known_map : &sky;
   Image small;
   if (map->width > kProbeWidth || map->height > kProbeWidth) {
     small = ResizeMap(*map, kProbeWidth / 2, kProbeWidth);
     map = &small;
   }
-  if (known_brdf != nullptr) {
-    return PredictEffects(scene, points, {{map, known_brdf}}, options);
+  if (options.known_brdf != nullptr) {
+    return PredictEffects(scene, points, {{map, options.known_brdf}}, probe);
   }
-  const BrdfGrid matte =
-      BrdfGrid::FromFunction(ProbeMaterial(0.0).Function(), kProbeGrid);
-  const BrdfGrid glossy =
-      BrdfGrid::FromFunction(ProbeMaterial(1.0).Function(), kProbeGrid);
-  return PredictEffects(scene, points, {{map, &matte}, {map, &glossy}},
-                        options);
+  const BrdfGrid matte = StandInMaterial(0.0), glossy = StandInMaterial(1.0);
+  return PredictEffects(scene, points, {{map, &matte}, {map, &glossy}}, probe);
 }
 
-std::string Bounces(int count) {
-  return std::to_string(count) + (count == 1 ? " bounce" : " bounces");
+// The fewest bounces, at most `most`, that leave no more out than the
+// threshold; `most` where none do.
+int FewestBounces(const OmissionErrors& omission, double threshold, int most) {
+  int fewest = most;
+  for (int b = most; b >= 0; --b) {
+    if (omission.bounces[b] <= threshold) fewest = b;
+  }
+  return fewest;
 }
 
-std::string InWords(const EffectsPlan& plan, EffectsMode mode) {
-  const std::string seen = Format(
-      "the object hides %.1f %% of the light from itself, from %.0f %% of its "
-      "points some",
-      100 * plan.probe.hidden_mean, 100 * plan.probe.shadowed_share);
-  const std::string omission = Format(
-      "log radiance, mean over the image, would change by %.4f without "
-      "shadows and by %.4f without light from the object to itself (worth it "
-      "above %.3f)",
-      plan.omission.unshadowed, plan.omission.bounces[0], plan.threshold);
-  const std::string seconds =
-      Format("; rays take about %.1f s for shadows, %.1f s for bounces",
-             plan.omission.shadow_seconds, plan.omission.bounce_seconds);
-  const std::string asked = mode == EffectsMode::kAuto ? "" : ", as asked";
-  const std::string left =
-      mode != EffectsMode::kAuto && plan.error > plan.threshold
-          ? Format("; reflectance and light absorb the %.4f that is left out",
-                   plan.error)
-          : "";
-  std::string simulated = "none";
-  if (plan.visibility) simulated = "visibility";
-  if (plan.bounces > 0) {
-    simulated += ", interreflection (" + Bounces(plan.bounces) + ")";
-  }
-  return simulated + asked + ": " + seen + "; " + omission +
-         (plan.probe.shadowed_share > 0.0 ? seconds : "") + left;
-}
-
-// The cheapest that leaves no more out than the threshold, of what may be
-// chosen.
-void Choose(bool may_leave_shadows, bool may_bounce, EffectsPlan* plan) {
-  plan->visibility = true;
-  plan->bounces = may_bounce ? kMostBounces : 0;
-  for (int b = plan->bounces; b >= 0; --b) {
-    if (plan->omission.bounces[b] <= plan->threshold) plan->bounces = b;
-  }
-  if (may_leave_shadows && plan->omission.unshadowed <= plan->threshold) {
-    plan->visibility = false;
-    plan->bounces = 0;
+// Sets the decision from the omission errors and what the user asks for.
+void Choose(const EffectsSpec& effects, EffectsPlan* plan) {
+  const bool lists_bounces = effects.Lists(Effect::kInterreflection);
+  switch (effects.mode) {
+    case EffectsMode::kAuto:
+      if (plan->omission.unshadowed <= plan->threshold) break;
+      plan->visibility = true;
+      plan->bounces =
+          FewestBounces(plan->omission, plan->threshold, kMostBounces);
+      break;
+    case EffectsMode::kAll:
+      plan->visibility = true;
+      plan->bounces = kMostBounces;
+      break;
+    case EffectsMode::kNone:
+      break;
+    case EffectsMode::kList:
+      plan->visibility = AsksForShadows(effects);
+      if (lists_bounces) {
+        plan->bounces = std::max(
+            1, FewestBounces(plan->omission, plan->threshold, kMostBounces));
+      }
+      break;
   }
 }
 
-// Radiance depends on the normal alone.
 bool DependsOnNormal(const Problem& problem, bool visibility) {
   const EffectsSpec& effects = problem.effects;
   const bool allowed = effects.mode == EffectsMode::kAuto ||
@@ -104,63 +117,26 @@ bool DependsOnNormal(const Problem& problem, bool visibility) {
 
 StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
                                   const std::vector<ShadingPoint>& points,
-                                  const Image* known_map,
-                                  const BrdfGrid* known_brdf, double threshold,
-                                  int num_threads,
-                                  const EffectsMeasure& measure) {
+                                  const EffectsOptions& options) {
   EffectsPlan plan;
-  plan.threshold = threshold;
-  plan.reflectance_map = DependsOnNormal(problem, false);
-  const EffectsSpec& effects = problem.effects;
-  const bool interreflection = effects.Lists(Effect::kInterreflection);
-  // Where light is bounced it is also blocked.
-  const bool visibility = interreflection || effects.Lists(Effect::kVisibility);
-  if (problem.geometry.kind == GeometryKind::kNormals) {
-    if (visibility) {
-      return InvalidInput(
-          problem.path + ": effects",
-          std::string(interreflection ? "interreflection" : "visibility") +
-              " needs a shape: expected geometry sphere or mesh, found "
-              "normals");
+  plan.mode = problem.effects.mode;
+  plan.shape = ShapeOf(problem, scene);
+  plan.threshold = options.threshold;
+  IBRDF_RETURN_IF_ERROR(CheckShapeHasPositions(problem, plan.shape));
+  if (plan.shape == ShapeKind::kMesh) {
+    SceneProbeOptions probe;
+    probe.num_threads = options.num_threads;
+    plan.probe = ProbeScene(scene, points, probe);
+    if (plan.probe.shadowed_share > 0.0) {
+      plan.omission = options.measure
+                          ? options.measure()
+                          : PredictOmissions(scene, points, options, probe);
     }
-    plan.words =
-        "none: a normal map has no positions, so that shadows and "
-        "interreflection are not simulated; where the object is not convex, "
-        "reflectance and light absorb them";
-    return plan;
-  }
-  if (!scene.CastsShadows()) {
-    plan.words =
-        "none: the sphere is convex, no point shadows or lights another";
-    return plan;
-  }
-  SceneProbeOptions options;
-  options.num_threads = num_threads;
-  plan.probe = ProbeScene(scene, points, options);
-  if (plan.probe.shadowed_share > 0.0) {
-    plan.omission =
-        measure ? measure()
-                : Predict(scene, points, known_map, known_brdf, options);
-  }
-  switch (effects.mode) {
-    case EffectsMode::kAuto:
-      Choose(true, true, &plan);
-      break;
-    case EffectsMode::kAll:
-      plan.visibility = true;
-      plan.bounces = kMostBounces;
-      break;
-    case EffectsMode::kNone:
-      break;
-    case EffectsMode::kList:
-      if (visibility) Choose(false, interreflection, &plan);
-      if (interreflection) plan.bounces = std::max(plan.bounces, 1);
-      break;
+    Choose(problem.effects, &plan);
+    plan.error = plan.visibility ? plan.omission.bounces[plan.bounces]
+                                 : plan.omission.unshadowed;
   }
   plan.reflectance_map = DependsOnNormal(problem, plan.visibility);
-  plan.error = plan.visibility ? plan.omission.bounces[plan.bounces]
-                               : plan.omission.unshadowed;
-  plan.words = InWords(plan, effects.mode);
   return plan;
 }
 

@@ -1,78 +1,84 @@
-// Which effects a problem is solved or rendered with, and why.
+// Which effects a problem is solved or rendered with.
+//
+// Light that reaches the object straight is always simulated. Two effects come
+// on top where the object is not convex: shadows (`visibility`), and light
+// from the object to itself (`interreflection`, some bounces of it). They cost
+// rays, and many objects hardly show them. `effects: auto` decides in three
+// steps:
+//
+//   1. Probe. A few rays from a few points tell how much of the light the
+//      object hides from itself (ProbeScene). Where nothing is hidden, nothing
+//      is simulated.
+//   2. Predict omission errors. The omission error of an effect is the mean
+//      change of log radiance over the image when the effect is left out. The
+//      probed points are rendered with and without it, under the known light
+//      and reflectance, or under stand-ins where one of them is unknown.
+//   3. Choose. Of {nothing, shadows, shadows and b bounces} the cheapest is
+//      taken whose omission error is within the threshold.
+//
+// A user who lists effects overrules step 3 and is told what is left out.
 #pragma once
 #include <functional>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "ibrdf/base/status.h"
+#include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/image/image.h"
 #include "ibrdf/io/problem.h"
 #include "ibrdf/render/scene_probe.h"
-#include "ibrdf/visibility/visibility.h"
+#include "ibrdf/scene/scene.h"
 
 namespace ibrdf {
 
-// `auto` simulates an effect where leaving it out is predicted to change log
-// radiance by more than this, mean over the image: in a solve, in a preview,
-// and in a render at reference quality, which others measure themselves
-// against.
+// Thresholds on the omission error (natural log) in a solve, in a preview, and
+// in a render at reference quality, which others measure themselves against.
 inline constexpr double kSolveOmissionError = 0.01;
 inline constexpr double kPreviewOmissionError = 0.005;
 inline constexpr double kReferenceOmissionError = 0.001;
 
-// How points are rendered that nothing shadows.
-enum class Approximation {
-  kQuadrature,      // each by itself
-  kReflectanceMap,  // as many as it takes, the rest interpolated by normal
-  kHarmonics,       // the map in spherical harmonics
-  kGaussians,       // the map as a mixture of spherical Gaussians
-};
-
-struct ApproximationPlan {
-  Approximation approximation = Approximation::kQuadrature;
-  int order = 0;                 // of the harmonics
-  int gaussians = 0, spots = 0;  // in the mixture; bright spots among them
-  // Of harmonics and Gaussians, mean |log error|: predicted from the light that
-  // is left out, and found, with two standard errors, at `checked` points of
-  // the image that are rendered at reference quality; of the quadrature, found
-  // likewise.
-  double predicted_error = 0.0, found_error = 0.0, quadrature_error = 0.0;
-  int checked = 0;
-  // Predicted from counts, not from a clock: of this tier and of the
-  // quadrature, on one core.
-  double seconds = 0.0, quadrature_seconds = 0.0;
-  std::string words;  // for the user
+// What the shape leaves to decide.
+enum class ShapeKind {
+  kConvex,     // a sphere: no point shadows or lights another
+  kNormalMap,  // no positions: neither shadows nor bounces can be simulated
+  kMesh,       // probed
 };
 
 struct EffectsPlan {
-  bool visibility = false;
-  int bounces = 0;  // of light from the object to itself; with visibility alone
-  // Whether an image is rendered once for all points of like normals: without
-  // shadows, seen by an orthographic camera.
+  // The decision.
+  bool visibility = false;  // shadows
+  int bounces = 0;          // [0, kMostBounces]; > 0 only with visibility
+  // Whether radiance depends on the normal alone, and the user does not mind
+  // its being interpolated between normals: no shadows, and an orthographic
+  // camera.
   bool reflectance_map = false;
-  SceneProbe probe;
-  // Predicted under the known light and reflectance; where one is unknown,
-  // under a sun in a clear sky, and for a matte and a glossy surface.
-  OmissionErrors omission;
+
+  // What it was taken from.
+  EffectsMode mode = EffectsMode::kAuto;  // what the user asks for
+  ShapeKind shape = ShapeKind::kConvex;
+  SceneProbe probe;         // of a mesh
+  OmissionErrors omission;  // where the probe found shadows
   double threshold = kSolveOmissionError;
-  // The predicted error of what is simulated.
-  double error = 0.0;
-  std::string words;  // for the user
-  // Of ibrdf_render, where neither shadows nor bounces are simulated.
-  ApproximationPlan approximation;
+  double error = 0.0;  // omission error of the decision
 };
 
-// Worth of the effects, where they are not to be predicted by patches of the
-// object, as a solve simulates them.
+// Measures the omission errors of a scene, in place of their prediction.
 using EffectsMeasure = std::function<OmissionErrors()>;
 
-// known_map, known_brdf and `measure` may be null. Fails where the problem
-// lists an effect that its geometry cannot have.
+struct EffectsOptions {
+  double threshold = kSolveOmissionError;  // > 0
+  // What is known of the scene; null: unknown. Not owned.
+  const Image* known_map = nullptr;
+  const BrdfGrid* known_brdf = nullptr;
+  // Empty: PredictEffects, which sees the object as patches. Mirrors need
+  // another way (MeasureEffects).
+  EffectsMeasure measure;
+  int num_threads = 0;  // <= 0: all
+};
+
+// `points`: of the image. Fails where the problem lists an effect that its
+// geometry cannot have.
 StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
                                   const std::vector<ShadingPoint>& points,
-                                  const Image* known_map,
-                                  const BrdfGrid* known_brdf, double threshold,
-                                  int num_threads,
-                                  const EffectsMeasure& measure = nullptr);
+                                  const EffectsOptions& options);
 
 }  // namespace ibrdf

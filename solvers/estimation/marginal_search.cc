@@ -178,12 +178,12 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
   ReflectanceSearchOptions o = SearchOptions(kSearchShare, setup, context);
   o.covariance = problem.solver.max_iterations > 0;
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      FlowLobes::Factory(problem.model, problem.lobes, problem.num_threads),
+      FlowLobes::Factory(*problem.model, problem.lobes, problem.num_threads),
       setup.materials, problem.points, SearchRadiance(setup), o);
   if (!found.ok()) return found.status();
   ReflectanceEstimate out;
   out.lobes = found->parameters;
-  const LevelGauge gauge(problem.model, setup.materials, problem.num_threads);
+  const LevelGauge gauge(*problem.model, setup.materials, problem.num_threads);
   out.light = LightOf(*found, gauge.Fix(out.lobes.data()));
   out.initial_guess = found->initial_guess;
   const auto& materials = setup.materials.materials;
@@ -217,7 +217,7 @@ LightPosterior EstimateLightPosterior(const SolveSetup& setup,
 
 ReflectanceEstimate MeanMaterial(const SolveSetup& setup) {
   ReflectanceEstimate out;
-  out.initial_guess = SpreadMaterials(setup.problem->model, 1).front().name;
+  out.initial_guess = SpreadMaterials(*setup.problem->model, 1).front().name;
   for (const MaterialPrior::Material& m : setup.materials.materials) {
     if (m.name == out.initial_guess) out.lobes = ToVector(m.parameters);
   }

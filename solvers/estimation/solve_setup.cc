@@ -37,11 +37,11 @@ void SetKnownLight(const Image& map, SolveSetup* setup) {
 
 void SetUnknownLobes(const InverseProblem& problem, SolveSetup* setup) {
   setup->lobes =
-      std::make_unique<FlowLobes>(problem.model, problem.lobes,
+      std::make_unique<FlowLobes>(*problem.model, problem.lobes,
                                   problem.transport.grid, problem.num_threads);
-  setup->lobe_prior = EmbeddingPrior(problem.model, problem.prior_sigma);
+  setup->lobe_prior = EmbeddingPrior(*problem.model, problem.prior_sigma);
   setup->materials =
-      JointMaterialPrior(problem.model, problem.lobes, problem.prior_sigma);
+      JointMaterialPrior(*problem.model, problem.lobes, problem.prior_sigma);
 }
 
 }  // namespace

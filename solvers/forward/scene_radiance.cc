@@ -14,80 +14,70 @@ namespace {
 // Points between two calls of progress: well below a second at reference
 // quality, enough to keep the threads busy.
 constexpr size_t kPointsPerStep = 2048;
-constexpr int kPreviewShadowRows = 128;
-// Whose sight decides where patches are.
-constexpr size_t kPatchPoints = 2048;
 constexpr size_t kReferencePatchPoints = 8192;
-constexpr int kPreviewLobeRays = 8;
-// A small image of an intricate object shows as much of it as a large one.
-constexpr size_t kLeastPatches = 2048;
-// Of maps whose sides do not halve and which no transport takes as they are.
+// Width of maps whose sides do not halve and which no transport takes as they
+// are.
 constexpr int kObjectLightWidth = 1024;
 
 }  // namespace
 
-BrdfGrid KnownBrdf::Grid() const {
-  return function ? BrdfGrid::FromFunction(function, {})
-                  : BrdfGrid::FromMerl(table, {});
+SceneRadianceOptions SceneRadianceOptions::Of(RenderQuality quality,
+                                              int num_threads) {
+  SceneRadianceOptions options;
+  options.num_threads = num_threads;
+  if (quality == RenderQuality::kPreview) return options;
+  options.coarse_quadrature = false;
+  options.shadow_rows = kReferenceShadowRows;
+  options.patch_points = kReferencePatchPoints;
+  options.fine_patches = true;
+  options.lobe_rays = SceneRadiance::kMostLobeRays;
+  return options;
 }
 
-BrdfFunction KnownBrdf::Lookup() const {
-  if (function) return function;
-  return [this](double theta_h, double theta_d, double phi_d) {
-    return InterpolateMerl(table, theta_h, theta_d, phi_d);
-  };
-}
-
-SceneRadiance::SceneRadiance(const Scene& scene,
+SceneRadiance::SceneRadiance(const ForwardScene& scene,
                              const std::vector<ShadingPoint>& points,
-                             const Image& map, const KnownBrdf* brdf,
-                             const BrdfGrid& grid, const EffectsPlan& effects,
-                             RenderQuality quality, int num_threads)
-    : map_(map),
-      brdf_(brdf),
-      num_threads_(num_threads),
-      bounces_(effects.bounces) {
-  const bool reference = quality == RenderQuality::kReference;
-  if (!reference) options_ = Coarser(options_);
-  options_.num_threads = num_threads;
+                             const EffectsPlan& effects,
+                             const SceneRadianceOptions& options)
+    : scene_(scene), bounces_(effects.bounces) {
+  if (options.coarse_quadrature) reference_ = Coarser(reference_);
+  reference_.num_threads = options.num_threads;
   if (effects.visibility) {
-    options_.shadows = std::make_shared<VisibilityGrid>(
-        scene, reference ? kReferenceShadowRows : kPreviewShadowRows);
+    reference_.shadows =
+        std::make_shared<VisibilityGrid>(scene.view.scene, options.shadow_rows);
   }
-  if (effects.bounces > 0) {
-    LightObject(scene, points, map, grid, effects.bounces, reference);
-  }
-  renderer_ = std::make_unique<ReferenceRenderer>(map, options_);
+  if (effects.bounces > 0) LightObject(points, options);
+  renderer_ = std::make_unique<ReferenceRenderer>(scene.map, reference_);
 }
 
 // They are placed and lit as in a solve, at reference quality with more of
 // them.
-void SceneRadiance::LightObject(const Scene& scene,
-                                const std::vector<ShadingPoint>& points,
-                                const Image& map, const BrdfGrid& grid,
-                                int bounces, bool reference) {
-  const size_t most = reference ? kReferencePatchPoints : kPatchPoints;
-  const std::vector<ShadingPoint> few = SpreadPoints(points, most);
+void SceneRadiance::LightObject(const std::vector<ShadingPoint>& points,
+                                const SceneRadianceOptions& options) {
+  const Scene& scene = scene_.view.scene;
+  const std::vector<ShadingPoint> few =
+      SpreadPoints(points, options.patch_points);
   VisibilityOptions rays;
-  rays.num_threads = num_threads_;
+  rays.num_threads = options.num_threads;
   RadiosityOptions patches =
-      PatchesFor(std::max(points.size(), kLeastPatches), bounces);
-  patches.num_threads = num_threads_;
-  patches.max_points = static_cast<int>(most);
-  if (reference) {
+      PatchesFor(std::max(points.size(), options.least_patches), bounces_);
+  patches.num_threads = options.num_threads;
+  patches.max_points = static_cast<int>(options.patch_points);
+  if (options.fine_patches) {
     patches.patch_size = 0.05;
     patches.views = 4;
     patches.max_patches = 16000;
     patches.lattice_rows = 64;
   }
   TransportOptions transport;
-  transport.grid = grid.shape;
-  transport.num_threads = num_threads_;
+  transport.grid = scene_.grid.shape;
+  transport.num_threads = options.num_threads;
   transport.visibility = std::make_shared<Visibility>(scene, few, rays);
   transport.patches = std::make_shared<RadiosityPatches>(
       scene, few, transport.visibility, patches);
-  options_.patches = transport.patches;
+  reference_.patches = transport.patches;
+  reference_.lobe_rays = options.lobe_rays;
   // What the object lights itself by is a blur of the map.
+  const Image& map = scene_.map;
   const bool fits =
       NumFarCells(map.height, map.width, transport.quadrature.far_width) +
           transport.patches->count() <=
@@ -95,9 +85,8 @@ void SceneRadiance::LightObject(const Scene& scene,
   const Image smaller =
       fits ? Image() : ResizeMap(map, kObjectLightWidth / 2, kObjectLightWidth);
   const Image& light = fits ? map : smaller;
-  options_.lobe_rays = reference ? kMostLobeRays : kPreviewLobeRays;
   emitted_ = Transport({}, light.height, light.width, transport)
-                 .Emitted(grid, light.rgb.data());
+                 .Emitted(scene_.grid, light.rgb.data());
 }
 
 void SceneRadiance::set_bounces(int bounces) {
@@ -108,8 +97,8 @@ void SceneRadiance::set_bounces(int bounces) {
 
 void SceneRadiance::set_lobe_rays(int rays) {
   CHECK(emitted_.size() > 0 && rays > 0);
-  options_.lobe_rays = rays;
-  renderer_ = std::make_unique<ReferenceRenderer>(map_, options_);
+  reference_.lobe_rays = rays;
+  renderer_ = std::make_unique<ReferenceRenderer>(scene_.map, reference_);
 }
 
 bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
@@ -123,10 +112,10 @@ bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
                                          points.begin() + end);
     EmittedLight emitted;
     if (bounces_ > 0) emitted = {emitted_[bounces_].data(), bounces_};
-    if (brdf_->function) {
-      renderer_->Render(some, brdf_->function, L_o + 3 * begin, emitted);
+    if (scene_.brdf.function) {
+      renderer_->Render(some, scene_.brdf.function, L_o + 3 * begin, emitted);
     } else {
-      renderer_->Render(some, brdf_->table, L_o + 3 * begin, emitted);
+      renderer_->Render(some, scene_.brdf.table, L_o + 3 * begin, emitted);
     }
   }
   return true;

@@ -1,6 +1,7 @@
 // What a solve is given: the image, the object's points and what is known.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,8 +20,9 @@ struct InverseProblem {
   Image image;                       // observed radiance
   std::vector<ShadingPoint> points;  // of the object's pixels, at most one each
 
-  // Unknown reflectance: the trained model; known: its grid.
-  NeuralBrdfModel model;
+  // Unknown reflectance: the trained model, which copies of the problem share;
+  // known: null, and its grid.
+  std::shared_ptr<const NeuralBrdfModel> model;
   int lobes = 2;
   double prior_sigma = 0.5;
   std::optional<BrdfGrid> known_brdf;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ibrdf/io/image_file.h"
 #include "ibrdf/io/png.h"
@@ -20,24 +22,71 @@ namespace {
 constexpr int kLeastKnownWidth = 128;
 // Beyond it texels are finer than pixels and rings (PointQuadrature) show them.
 constexpr int kMostKnownWidth = 256;
-// What a transport takes of a map; the rest is for patches and bright samples.
+// Blocks of texels that a transport takes of a map; the rest of its sources are
+// patches and bright samples.
 constexpr int kMostFarCells = 3 * kMaxFarSources / 4;
 
-Status LoadImage(const ImageSpec& spec, Image* image, Mask* mask) {
-  StatusOr<Image> read = ReadImage(spec.file);
-  if (!read.ok()) return read.status();
-  *image = std::move(read).value();
-  if (spec.mask.empty()) return OkStatus();
-  StatusOr<Mask> read_mask = ReadMask(spec.mask);
-  if (!read_mask.ok()) return read_mask.status();
-  *mask = std::move(read_mask).value();
-  if (mask->width != image->width || mask->height != image->height) {
-    return InvalidInput(
-        spec.mask, "expected the image's size " + std::to_string(image->width) +
-                       "x" + std::to_string(image->height) + ", found " +
-                       std::to_string(mask->width) + "x" +
-                       std::to_string(mask->height));
+struct ObservedImage {
+  Image image;
+  Mask mask;  // empty: all pixels
+};
+
+StatusOr<ObservedImage> LoadObservedImage(const ImageSpec& spec) {
+  ObservedImage observed;
+  StatusOr<Image> image = ReadImage(spec.file);
+  if (!image.ok()) return image.status();
+  observed.image = *std::move(image);
+  if (spec.mask.empty()) return observed;
+  StatusOr<Mask> mask = ReadMask(spec.mask);
+  if (!mask.ok()) return mask.status();
+  observed.mask = *std::move(mask);
+  const auto size = [](int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+  };
+  if (observed.mask.width != observed.image.width ||
+      observed.mask.height != observed.image.height) {
+    return InvalidInput(spec.mask,
+                        "expected the image's size " +
+                            size(observed.image.width, observed.image.height) +
+                            ", found " +
+                            size(observed.mask.width, observed.mask.height));
   }
+  return observed;
+}
+
+struct ObjectPoints {
+  Scene scene = Scene::UnitSphere();
+  std::vector<ShadingPoint> points;  // at pixels' centres
+};
+
+StatusOr<ObjectPoints> FindObjectPoints(const Problem& problem,
+                                        const ObservedImage& observed,
+                                        int num_threads) {
+  const StatusOr<Scene> scene = LoadScene(problem.geometry);
+  if (!scene.ok()) return scene.status();
+  StatusOr<std::vector<ShadingPoint>> points =
+      FindShadingPoints(*scene, problem.camera, observed.image.width,
+                        observed.image.height, observed.mask, 1, num_threads);
+  if (!points.ok()) {
+    return InvalidInput(problem.path, points.status().message());
+  }
+  return ObjectPoints{*scene, *std::move(points)};
+}
+
+// Sets the model, or the grid of a known reflectance.
+Status LoadReflectance(const ReflectanceSpec& reflectance,
+                       InverseProblem* inverse) {
+  if (reflectance.known()) {
+    const StatusOr<MerlTable> table = LoadKnownReflectance(reflectance);
+    if (!table.ok()) return table.status();
+    inverse->known_brdf = BrdfGrid::FromMerl(*table, inverse->transport.grid);
+    return OkStatus();
+  }
+  StatusOr<OpenedModel> opened =
+      OpenModel(reflectance.model.empty() ? "default" : reflectance.model);
+  if (!opened.ok()) return opened.status();
+  inverse->model =
+      std::make_shared<const NeuralBrdfModel>(std::move(opened->model));
   return OkStatus();
 }
 
@@ -57,19 +106,81 @@ Status CheckMapSize(const Problem& problem, int far_width) {
                           found);
 }
 
-// Of a known map that no size is asked for: its own, to a power of two.
+// The width of a known map that no size is asked for: its own, to a power of
+// two.
 int KnownMapWidth(int width) {
   int out = kLeastKnownWidth;
   while (out < kMostKnownWidth && 2 * out <= width) out *= 2;
   return out;
 }
 
-}  // namespace
+// Sets the known map, and the size that it is taken at.
+Status LoadIllumination(const Problem& problem, InverseProblem* inverse) {
+  const IlluminationSpec& illumination = problem.illumination;
+  if (!illumination.known()) return OkStatus();
+  const StatusOr<Image> map = LoadKnownIllumination(illumination);
+  if (!map.ok()) return map.status();
+  if (std::none_of(map->rgb.begin(), map->rgb.end(),
+                   [](float v) { return v > 0.0f; })) {
+    return InvalidInput(problem.path + ": illumination.known",
+                        "expected light from somewhere, found a black map");
+  }
+  if (!illumination.sized && !illumination.known_file.empty()) {
+    inverse->map_width = KnownMapWidth(map->width);
+    inverse->map_height = inverse->map_width / 2;
+  }
+  inverse->known_map =
+      map->width == inverse->map_width && map->height == inverse->map_height
+          ? *map
+          : ResizeMap(*map, inverse->map_height, inverse->map_width);
+  return OkStatus();
+}
 
-StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
-                                            uint64_t default_seed,
-                                            int num_threads) {
-  IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
+// Rays from the points that find what the object hides of the light, and
+// patches by which it lights itself.
+void TraceEffects(const Scene& scene, InverseProblem* inverse) {
+  VisibilityOptions rays;
+  rays.num_threads = inverse->num_threads;
+  TransportOptions* transport = &inverse->transport;
+  transport->visibility =
+      std::make_shared<Visibility>(scene, inverse->points, rays);
+  if (inverse->effects.bounces == 0) return;
+  RadiosityOptions patches =
+      PatchesFor(inverse->points.size(), inverse->effects.bounces);
+  patches.num_threads = inverse->num_threads;
+  transport->patches = std::make_shared<RadiosityPatches>(
+      scene, inverse->points, transport->visibility, patches);
+}
+
+// Sets the effects and what the transport needs for them.
+Status PlanAndTraceEffects(const Problem& problem, const Scene& scene,
+                           InverseProblem* inverse) {
+  std::optional<Image>* map = &inverse->known_map;
+  EffectsOptions options;
+  options.threshold = kSolveOmissionError;
+  options.known_map = map->has_value() ? &**map : nullptr;
+  options.known_brdf =
+      inverse->known_brdf.has_value() ? &*inverse->known_brdf : nullptr;
+  options.num_threads = inverse->num_threads;
+  StatusOr<EffectsPlan> effects =
+      PlanEffects(problem, scene, inverse->points, options);
+  if (!effects.ok()) return effects.status();
+  inverse->effects = *std::move(effects);
+  if (!inverse->effects.visibility) return OkStatus();
+  // A block of texels that is hidden in part is taken texel by texel.
+  if (map->has_value() && !problem.illumination.sized &&
+      inverse->map_width > kLeastKnownWidth) {
+    inverse->map_width = kLeastKnownWidth;
+    inverse->map_height = kLeastKnownWidth / 2;
+    *map = ResizeMap(**map, inverse->map_height, inverse->map_width);
+  }
+  TraceEffects(scene, inverse);
+  return OkStatus();
+}
+
+// What the file says without naming another.
+InverseProblem SettingsOf(const Problem& problem, uint64_t default_seed,
+                          int num_threads) {
   InverseProblem inverse;
   inverse.kind = problem.kind;
   inverse.lobes = problem.reflectance.lobes;
@@ -87,78 +198,28 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
                      ? static_cast<uint64_t>(*problem.solver.seed)
                      : default_seed;
   inverse.num_threads = num_threads;
+  return inverse;
+}
+
+}  // namespace
+
+StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
+                                            uint64_t default_seed,
+                                            int num_threads) {
+  IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
+  InverseProblem inverse = SettingsOf(problem, default_seed, num_threads);
   IBRDF_RETURN_IF_ERROR(
       CheckMapSize(problem, inverse.transport.quadrature.far_width));
-
-  Mask mask;
-  IBRDF_RETURN_IF_ERROR(LoadImage(problem.image, &inverse.image, &mask));
-  const StatusOr<Scene> scene = LoadScene(problem.geometry);
-  if (!scene.ok()) return scene.status();
-  StatusOr<std::vector<ShadingPoint>> points =
-      FindShadingPoints(*scene, problem.camera, inverse.image.width,
-                        inverse.image.height, mask, 1, num_threads);
-  if (!points.ok()) {
-    return InvalidInput(problem.path, points.status().message());
-  }
-  inverse.points = std::move(points).value();
-
-  if (problem.reflectance.known()) {
-    const StatusOr<MerlTable> table = LoadKnownReflectance(problem.reflectance);
-    if (!table.ok()) return table.status();
-    inverse.known_brdf = BrdfGrid::FromMerl(*table, inverse.transport.grid);
-  } else {
-    StatusOr<OpenedModel> model = OpenModel(problem.reflectance.model.empty()
-                                                ? "default"
-                                                : problem.reflectance.model);
-    if (!model.ok()) return model.status();
-    inverse.model = std::move(model->model);
-  }
-  if (problem.illumination.known()) {
-    const StatusOr<Image> map = LoadKnownIllumination(problem.illumination);
-    if (!map.ok()) return map.status();
-    if (std::none_of(map->rgb.begin(), map->rgb.end(),
-                     [](float v) { return v > 0.0f; })) {
-      return InvalidInput(problem.path + ": illumination.known",
-                          "expected light from somewhere, found a black map");
-    }
-    if (!problem.illumination.sized &&
-        !problem.illumination.known_file.empty()) {
-      inverse.map_width = KnownMapWidth(map->width);
-      inverse.map_height = inverse.map_width / 2;
-    }
-    inverse.known_map =
-        map->width == inverse.map_width && map->height == inverse.map_height
-            ? *map
-            : ResizeMap(*map, inverse.map_height, inverse.map_width);
-  }
-  StatusOr<EffectsPlan> effects = PlanEffects(
-      problem, *scene, inverse.points,
-      inverse.known_map.has_value() ? &*inverse.known_map : nullptr,
-      inverse.known_brdf.has_value() ? &*inverse.known_brdf : nullptr,
-      kSolveOmissionError, num_threads);
-  if (!effects.ok()) return effects.status();
-  inverse.effects = *std::move(effects);
-  if (inverse.effects.visibility) {
-    VisibilityOptions rays;
-    rays.num_threads = num_threads;
-    // A block of texels that is hidden in part is taken texel by texel.
-    if (inverse.known_map.has_value() && !problem.illumination.sized &&
-        inverse.map_width > kLeastKnownWidth) {
-      inverse.map_width = kLeastKnownWidth;
-      inverse.map_height = kLeastKnownWidth / 2;
-      inverse.known_map =
-          ResizeMap(*inverse.known_map, inverse.map_height, inverse.map_width);
-    }
-    inverse.transport.visibility =
-        std::make_shared<Visibility>(*scene, inverse.points, rays);
-    if (inverse.effects.bounces > 0) {
-      RadiosityOptions patches =
-          PatchesFor(inverse.points.size(), inverse.effects.bounces);
-      patches.num_threads = num_threads;
-      inverse.transport.patches = std::make_shared<RadiosityPatches>(
-          *scene, inverse.points, inverse.transport.visibility, patches);
-    }
-  }
+  StatusOr<ObservedImage> observed = LoadObservedImage(problem.image);
+  if (!observed.ok()) return observed.status();
+  StatusOr<ObjectPoints> object =
+      FindObjectPoints(problem, *observed, num_threads);
+  if (!object.ok()) return object.status();
+  inverse.image = std::move(observed->image);
+  inverse.points = std::move(object->points);
+  IBRDF_RETURN_IF_ERROR(LoadReflectance(problem.reflectance, &inverse));
+  IBRDF_RETURN_IF_ERROR(LoadIllumination(problem, &inverse));
+  IBRDF_RETURN_IF_ERROR(PlanAndTraceEffects(problem, object->scene, &inverse));
   return inverse;
 }
 

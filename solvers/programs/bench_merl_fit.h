@@ -1,132 +1,13 @@
 // The experiment `merl-fit` of ibrdf_bench.
 #pragma once
-#include <CLI/CLI.hpp>
-#include <cstdio>
-#include <filesystem>
-#include <memory>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include "ibrdf/solvers/bench/baseline_fitters.h"
-#include "ibrdf/solvers/bench/merl_fit_sweep.h"
-#include "ibrdf/solvers/bench/neural_fitters.h"
-#include "ibrdf/solvers/problem/open_model.h"
 #include "ibrdf/solvers/programs/bench_session.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace ibrdf {
 
-// Flags of the methods that are flows.
-struct NeuralFitFlags {
-  std::string model = "default";
-  std::vector<int> lobes = {1, 2, 3};
-  FreeFlowOptions free;
-  LobeTableFitOptions fit;
-
-  // All methods, in the order of the results. A model that cannot be read is an
-  // error only where a method needs it.
-  Status AddFitters(const std::vector<std::string>& methods,
-                    TableFitters* fitters) const {
-    *fitters = BaselineFitters();
-    fitters->push_back(FreeFlowFitter(free));
-    const bool wanted =
-        methods.empty() ||
-        std::find(methods.begin(), methods.end(), "flow") != methods.end();
-    if (!wanted) return OkStatus();
-    const StatusOr<OpenedModel> opened = OpenModel(model);
-    if (!opened.ok()) return opened.status();
-    const auto fitter = std::make_shared<const LobeTableFitter>(opened->model);
-    for (const int count : lobes) {
-      LobeTableFitOptions options = fit;
-      options.lobes = count;
-      fitters->push_back(FlowFitter(
-          fitter, std::filesystem::path(model).stem().string(), options));
-    }
-    return OkStatus();
-  }
-};
-
-inline void AddMerlFitExperiment(CLI::App* app, BenchSession* session) {
-  struct Flags {
-    MerlFitSweepOptions options;
-    NeuralFitFlags neural;
-    OnlyFlag only;
-    bool dry_run = false;
-  };
-  const auto flags = std::make_shared<Flags>();
-  const auto run = [flags, session]() -> Status {
-    MerlFitSweepOptions& options = flags->options;
-    IBRDF_RETURN_IF_ERROR(flags->only.Parse());
-    options.only_index = flags->only.index;
-    options.only_count = flags->only.count;
-    options.seed = session->common.seed;
-    options.num_threads = session->common.threads;
-    options.command = session->command;
-    IBRDF_RETURN_IF_ERROR(
-        flags->neural.AddFitters(options.methods, &options.fitters));
-    if (flags->dry_run) {
-      const StatusOr<std::vector<MerlFitCase>> cases =
-          ListMerlFitCases(options);
-      if (!cases.ok()) return cases.status();
-      for (const MerlFitCase& c : *cases) {
-        std::printf("%s\t%s\t%s\n", c.name.c_str(), c.table_path.c_str(),
-                    c.score_path.c_str());
-      }
-      return OkStatus();
-    }
-    options.report = session->Report();
-    options.stop = session->stop;
-    return RunMerlFitSweep(options);
-  };
-  CLI::App* fit = AddExperiment(
-      app, "merl-fit",
-      "How well models fit measured tables: fits each method to each table, "
-      "and a row of DIR/results.csv as each fit finishes. The same command "
-      "goes on where it was stopped.",
-      session, run);
-  MerlFitSweepOptions& options = flags->options;
-  fit->add_option("--data", options.data,
-                  "folder of MERL .binary tables, fitted and scored")
-      ->required();
-  fit->add_option("--out", options.out, "folder of results")->required();
-  fit->add_option("--materials", options.materials,
-                  "comma-separated tables, without extension; default: all")
-      ->delimiter(',');
-  std::string methods = "flow flow_free ";
-  for (const auto& fitter : BaselineFitters()) {
-    const std::string name = fitter->method();
-    if (methods.find(name + ";") == std::string::npos) methods += name + "; ";
-  }
-  fit->add_option("--methods", options.methods,
-                  "comma-separated, of: " + methods + "default: all")
-      ->delimiter(',');
-  fit->add_option("--model", flags->neural.model,
-                  "of the method flow: default, or a model file")
-      ->capture_default_str();
-  fit->add_option("--lobes", flags->neural.lobes,
-                  "of the method flow: comma-separated numbers of lobes")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 8))
-      ->capture_default_str();
-  fit->add_option("--starts", flags->neural.fit.starts,
-                  "of the method flow: starts from the embedding, per lobe")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  fit->add_option("--prior-sigma", flags->neural.fit.prior_sigma,
-                  "of the method flow: standard deviation of the codes' prior")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  fit->add_option("--free-steps", flags->neural.free.steps,
-                  "of the method flow_free: Adam steps per table")
-      ->check(CLI::Range(1, 100000000))
-      ->capture_default_str();
-  fit->add_option("--score-data", options.score_data,
-                  "another folder of tables of the same names: each fit is "
-                  "scored on these too, without scaling");
-  fit->add_option("--only", flags->only.text,
-                  "i/n: every n-th material from the i-th")
-      ->capture_default_str();
-  fit->add_flag("--dry-run", flags->dry_run, "print the cases and stop");
-}
+void AddMerlFitExperiment(CLI::App* app, BenchSession* session);
 
 }  // namespace ibrdf

@@ -1,14 +1,15 @@
 // What the experiments of ibrdf_bench share.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <atomic>
-#include <csignal>
-#include <cstdio>
 #include <functional>
 #include <string>
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/solvers/programs/common_flags.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 namespace ibrdf {
 
@@ -20,41 +21,21 @@ struct BenchSession {
   const std::atomic<bool>* stop = nullptr;
 
   // Prints a line at once; empty with --quiet.
-  std::function<void(const std::string&)> Report() const {
-    if (common.quiet) return {};
-    return [](const std::string& line) {
-      std::printf("%s\n", line.c_str());
-      std::fflush(stdout);
-    };
-  }
+  std::function<void(const std::string&)> Report() const;
 };
 
 // A subcommand with the options that every program has; `run` is called when it
 // is the one on the command line.
-inline CLI::App* AddExperiment(CLI::App* app, const std::string& name,
-                               const std::string& description,
-                               BenchSession* session,
-                               std::function<Status()> run) {
-  CLI::App* experiment = app->add_subcommand(name, description);
-  AddCommonFlags(experiment, &session->common);
-  experiment->callback([session, run] { session->run = run; });
-  return experiment;
-}
+CLI::App* AddExperiment(CLI::App* app, const std::string& name,
+                        const std::string& description, BenchSession* session,
+                        std::function<Status()> run);
 
-// --only i/n.
+// --only i/n: every n-th case from the i-th.
 struct OnlyFlag {
   std::string text = "1/1";
-  int index = 1, count = 1;
+  int index = 1, count = 1;  // set by Parse
 
-  Status Parse() {
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%d/%d%n", &index, &count, &used) != 2 ||
-        used != static_cast<int>(text.size()) || index < 1 || index > count) {
-      return InvalidInput("command line: --only",
-                          "expected i/n with 1 <= i <= n, found " + text);
-    }
-    return OkStatus();
-  }
+  Status Parse();
 };
 
 }  // namespace ibrdf

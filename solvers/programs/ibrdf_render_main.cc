@@ -115,6 +115,43 @@ Status CheckOutputs(const Problem& problem, const Outputs& out) {
   return CheckNothingReplaced(read, paths);
 }
 
+Status WriteOutputs(const Problem& problem, const RenderedScene& rendered,
+                    const Outputs& out) {
+  IBRDF_RETURN_IF_ERROR(WriteExr(rendered.image, out.image));
+  const std::string preview = PreviewPath(out);
+  if (preview != out.mask) {
+    IBRDF_RETURN_IF_ERROR(
+        WritePng(Preview(rendered.image, rendered.mask), preview));
+  }
+  if (!out.mask.empty()) {
+    IBRDF_RETURN_IF_ERROR(WriteMask(rendered.mask, out.mask));
+  }
+  if (!out.illumination.empty()) {
+    IBRDF_RETURN_IF_ERROR(WriteExr(rendered.illumination, out.illumination));
+  }
+  if (out.brdf.empty()) return OkStatus();
+  const StatusOr<MerlTable> table = LoadKnownReflectance(problem.reflectance);
+  if (!table.ok()) return table.status();
+  return WriteMerl(*table, out.brdf);
+}
+
+// Until SIGINT or SIGTERM.
+StatusOr<RenderedScene> RenderWithProgress(const Problem& problem, bool explain,
+                                           const CommonFlags& flags) {
+  ProgressLine progress(flags.quiet);
+  RenderSceneOptions options;
+  options.seed = flags.seed;
+  options.num_threads = flags.threads;
+  options.progress = [&](double share) {
+    progress.Show(share);
+    return !stop_requested;
+  };
+  options.plan_only = explain;
+  std::signal(SIGINT, RequestStop);
+  std::signal(SIGTERM, RequestStop);
+  return RenderScene(problem, options);
+}
+
 Status Run(const std::string& scene, const std::vector<std::string>& overrides,
            const Outputs& out, bool explain, const CommonFlags& flags) {
   const StatusOr<Problem> problem = ReadProblem(scene, overrides);
@@ -127,44 +164,13 @@ Status Run(const std::string& scene, const std::vector<std::string>& overrides,
     }
     IBRDF_RETURN_IF_ERROR(CheckOutputs(*problem, out));
   }
-
-  ProgressLine progress(flags.quiet);
-  RenderSceneOptions options;
-  options.seed = flags.seed;
-  options.num_threads = flags.threads;
-  options.progress = [&](double share) {
-    progress.Show(share);
-    return !stop_requested;
-  };
-  options.plan_only = explain;
-  std::signal(SIGINT, RequestStop);
-  std::signal(SIGTERM, RequestStop);
-  const StatusOr<RenderedScene> rendered = RenderScene(*problem, options);
+  const StatusOr<RenderedScene> rendered =
+      RenderWithProgress(*problem, explain, flags);
   if (!rendered.ok()) return rendered.status();
-
   if (explain || !flags.quiet) {
-    std::printf("effects: %s\n", rendered->effects.words.c_str());
+    std::printf("effects: %s\n", Describe(*rendered).c_str());
   }
-  if (explain) return OkStatus();
-  IBRDF_RETURN_IF_ERROR(WriteExr(rendered->image, out.image));
-  const std::string preview = PreviewPath(out);
-  if (preview != out.mask) {
-    IBRDF_RETURN_IF_ERROR(
-        WritePng(Preview(rendered->image, rendered->mask), preview));
-  }
-  if (!out.mask.empty()) {
-    IBRDF_RETURN_IF_ERROR(WriteMask(rendered->mask, out.mask));
-  }
-  if (!out.illumination.empty()) {
-    IBRDF_RETURN_IF_ERROR(WriteExr(rendered->illumination, out.illumination));
-  }
-  if (!out.brdf.empty()) {
-    const StatusOr<MerlTable> table =
-        LoadKnownReflectance(problem->reflectance);
-    if (!table.ok()) return table.status();
-    IBRDF_RETURN_IF_ERROR(WriteMerl(*table, out.brdf));
-  }
-  return OkStatus();
+  return explain ? OkStatus() : WriteOutputs(*problem, *rendered, out);
 }
 
 int Main(int argc, char** argv) {

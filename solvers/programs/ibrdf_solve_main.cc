@@ -12,6 +12,7 @@
 #include "ibrdf/base/stopwatch.h"
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/problem_file.h"
+#include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/optim/blas_memory.h"
 #include "ibrdf/solvers/problem/load_problem.h"
 #include "ibrdf/solvers/programs/common_flags.h"
@@ -39,7 +40,7 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
   if (explain || !flags.quiet) {
     std::printf("%zu pixels of the object, map %dx%d; effects: %s\n",
                 inverse->points.size(), inverse->map_width, inverse->map_height,
-                inverse->effects.words.c_str());
+                Describe(inverse->effects).c_str());
   }
   if (explain) return OkStatus();
   // What the end needs, before time is spent.

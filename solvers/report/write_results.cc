@@ -19,6 +19,7 @@
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/metrics/illumination_metrics.h"
 #include "ibrdf/metrics/image_metrics.h"
+#include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/optim/conditioning.h"
 #include "ibrdf/solvers/report/report_page.h"
 #include "ibrdf/solvers/report/result_preview.h"
@@ -124,7 +125,7 @@ Json TraceJson(const Solution& estimate) {
 }
 
 Json LobesJson(const InverseProblem& inverse, const Solution& estimate) {
-  const LobeMixture mixture({inverse.lobes, inverse.model.shape.code_size()},
+  const LobeMixture mixture({inverse.lobes, inverse.model->shape.code_size()},
                             estimate.lobe_parameters.data());
   Json lobes = Json::array();
   for (int k = 0; k < inverse.lobes; ++k) {
@@ -147,7 +148,7 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& estimate) {
     for (size_t i = 0; i < n; ++i) {
       std.push_back(std::sqrt(estimate.lobe_covariance[i * n + i]));
     }
-    const LobeMixture of_lobes({inverse.lobes, inverse.model.shape.code_size()},
+    const LobeMixture of_lobes({inverse.lobes, inverse.model->shape.code_size()},
                                std.data());
     Json lobes = Json::array();
     for (int k = 0; k < inverse.lobes; ++k) {
@@ -296,7 +297,7 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
                           : problem.reflectance.model},
             {"formula",
              "raw = sum over lobes of colour * density(code) ^ exponent"},
-            {"exponent", inverse.model.exponent},
+            {"exponent", inverse.model->exponent},
             {"lobes", LobesJson(inverse, estimate)}};
     IBRDF_RETURN_IF_ERROR(WriteFileAtomically(path("brdf.json"), Text(brdf)));
   }
@@ -328,7 +329,7 @@ Status WriteResults(const Problem& problem, const InverseProblem& inverse,
       {"ibrdf_version", kVersion},
       {"status", StatusName(estimate.status)},
       {"problem", ProblemToJson(problem)},
-      {"effects", inverse.effects.words},
+      {"effects", Describe(inverse.effects)},
       {"effects_plan", EffectsJson(inverse)},
       {"gauge", Gauge(inverse)},
       {"start", estimate.start},

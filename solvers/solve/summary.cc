@@ -124,7 +124,7 @@ void SummariseReflectance(const SolveSetup& setup, const Estimate& estimate,
   solution->lobe_covariance.assign(covariance.data(),
                                    covariance.data() + covariance.size());
   const LobeDistance distance(
-      FlowLobes::Factory(problem.model, problem.lobes, problem.num_threads));
+      FlowLobes::Factory(*problem.model, problem.lobes, problem.num_threads));
   if (covariance.size() > 0) {
     solution->spread =
         ReflectanceSpread(distance, lobes, solution->lobe_covariance,

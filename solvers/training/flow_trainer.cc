@@ -17,7 +17,7 @@ namespace ibrdf {
 namespace {
 
 constexpr int64_t kWarmUpSteps = 200;
-constexpr double kFinalRate = 0.01;  // of the first
+constexpr double kFinalRate = 0.01;  // over the first
 constexpr double kGradientNorm = 1.0;
 constexpr float kCodeStart = 0.3f;  // norm of the first codes
 constexpr int kChunks = 8;          // gradient buffers, joined in order
@@ -63,6 +63,16 @@ void ProjectToUnitBall(float* code, int size) {
   for (int k = 0; k < size; ++k) code[k] *= scale;
 }
 
+// Shrinks the gradient to kGradientNorm where it is longer.
+void ClipGradient(std::vector<float>* gradient) {
+  double norm = 0.0;
+  for (const float g : *gradient) norm += static_cast<double>(g) * g;
+  norm = std::sqrt(norm);
+  if (norm <= kGradientNorm) return;
+  const float shrink = static_cast<float>(kGradientNorm / norm);
+  for (float& g : *gradient) g *= shrink;
+}
+
 class Trainer {
  public:
   Trainer(const TrainingData& data, const TrainerOptions& options)
@@ -90,60 +100,11 @@ class Trainer {
 
   // Returns the mean squared residual of the step's points.
   double Step() {
-    // A step's random numbers depend on seed and step alone: resuming needs no
-    // generator state.
-    std::mt19937_64 rng(options_.seed * 0x9e3779b97f4a7c15ULL + state_.step);
-    const int distributions = static_cast<int>(data_.names.size());
-    std::vector<int> order(distributions);
-    std::iota(order.begin(), order.end(), 0);
-    std::shuffle(order.begin(), order.end(), rng);
-    const int batch = std::min(options_.codes_per_step, distributions);
-    const int n = options_.columns_per_code * options_.points_per_column;
-    std::vector<uint64_t> seeds(batch);
-    for (uint64_t& s : seeds) s = rng();
-
-    std::vector<float> code_gradients(static_cast<size_t>(batch) * code_size_);
-    std::vector<double> sums(batch);
-    const double scale = options_.exponent / (static_cast<double>(batch) * n);
-    ParallelFor(kChunks, options_.num_threads, [&](int64_t chunk, int) {
-      const int begin = static_cast<int>(chunk * batch / kChunks);
-      const int end = static_cast<int>((chunk + 1) * batch / kChunks);
-      std::fill(chunks_[chunk].gradient.begin(), chunks_[chunk].gradient.end(),
-                0.0f);
-      if (begin == end) return;
-      AddGradient(order.data() + begin, seeds.data() + begin, end - begin,
-                  scale, &chunks_[chunk],
-                  code_gradients.data() + begin * code_size_,
-                  sums.data() + begin);
-    });
-
-    std::vector<float> gradient(state_.weights.size(), 0.0f);
-    for (Chunk& c : chunks_) {
-      flow_->AddGradient(c.gradient.data(), gradient.data());
-    }
-    double norm = 0.0;
-    for (const float g : gradient) norm += static_cast<double>(g) * g;
-    norm = std::sqrt(norm);
-    if (norm > kGradientNorm) {
-      const float shrink = static_cast<float>(kGradientNorm / norm);
-      for (float& g : gradient) g *= shrink;
-    }
-    const double rate = Schedule();
-    ++state_.step;
-    state_.weight_adam.Step(gradient.data(), rate * options_.learning_rate,
-                            state_.step, 0, gradient.size(),
-                            state_.weights.data());
-    for (int b = 0; b < batch; ++b) {
-      const int m = order[b];
-      state_.code_adam.Step(
-          code_gradients.data() + b * code_size_,
-          rate * options_.code_learning_rate, ++state_.code_steps[m],
-          static_cast<size_t>(m) * code_size_, code_size_, state_.codes.data());
-      ProjectToUnitBall(state_.codes.data() + m * code_size_, code_size_);
-    }
-    flow_->SetWeights(state_.weights);
-    return std::accumulate(sums.begin(), sums.end(), 0.0) /
-           (static_cast<double>(batch) * n);
+    const Batch batch = DrawBatch();
+    Gradients gradients = SumGradients(batch);
+    ClipGradient(&gradients.weights);
+    Update(batch, gradients);
+    return gradients.squares / NumPoints(batch);
   }
 
   NeuralBrdfModel Model() const {
@@ -162,6 +123,78 @@ class Trainer {
     std::vector<float> gradient;
     std::unique_ptr<BrdfFlow::TrainingPass> pass;
   };
+  // The distributions of a step, and a seed for the points of each.
+  struct Batch {
+    std::vector<int> distributions;
+    std::vector<uint64_t> seeds;
+    int size() const { return static_cast<int>(distributions.size()); }
+  };
+  struct Gradients {
+    std::vector<float> weights;
+    std::vector<float> codes;  // [batch][code_size_]
+    double squares = 0.0;      // sum of squared residuals
+  };
+
+  double NumPoints(const Batch& batch) const {
+    const int n = options_.columns_per_code * options_.points_per_column;
+    return static_cast<double>(batch.size()) * n;
+  }
+
+  // A step's random numbers depend on seed and step alone: resuming needs no
+  // generator state.
+  Batch DrawBatch() const {
+    std::mt19937_64 rng(options_.seed * 0x9e3779b97f4a7c15ULL + state_.step);
+    Batch batch;
+    batch.distributions.resize(data_.names.size());
+    std::iota(batch.distributions.begin(), batch.distributions.end(), 0);
+    std::shuffle(batch.distributions.begin(), batch.distributions.end(), rng);
+    batch.distributions.resize(std::min(options_.codes_per_step, batch.size()));
+    batch.seeds.resize(batch.distributions.size());
+    for (uint64_t& s : batch.seeds) s = rng();
+    return batch;
+  }
+
+  Gradients SumGradients(const Batch& batch) {
+    Gradients out;
+    out.codes.resize(static_cast<size_t>(batch.size()) * code_size_);
+    std::vector<double> sums(batch.size());
+    const double scale = options_.exponent / NumPoints(batch);
+    ParallelFor(kChunks, options_.num_threads, [&](int64_t chunk, int) {
+      const int begin = static_cast<int>(chunk * batch.size() / kChunks);
+      const int end = static_cast<int>((chunk + 1) * batch.size() / kChunks);
+      std::fill(chunks_[chunk].gradient.begin(), chunks_[chunk].gradient.end(),
+                0.0f);
+      if (begin == end) return;
+      AddGradient(batch.distributions.data() + begin,
+                  batch.seeds.data() + begin, end - begin, scale,
+                  &chunks_[chunk], out.codes.data() + begin * code_size_,
+                  sums.data() + begin);
+    });
+    out.weights.assign(state_.weights.size(), 0.0f);
+    for (Chunk& c : chunks_) {
+      flow_->AddGradient(c.gradient.data(), out.weights.data());
+    }
+    out.squares = std::accumulate(sums.begin(), sums.end(), 0.0);
+    return out;
+  }
+
+  // Adam, of the weights and of the codes of the batch.
+  void Update(const Batch& batch, const Gradients& gradients) {
+    const double rate = Schedule();
+    ++state_.step;
+    state_.weight_adam.Step(gradients.weights.data(),
+                            rate * options_.learning_rate, state_.step, 0,
+                            gradients.weights.size(), state_.weights.data());
+    for (int b = 0; b < batch.size(); ++b) {
+      const int m = batch.distributions[b];
+      state_.code_adam.Step(
+          gradients.codes.data() + b * code_size_,
+          rate * options_.code_learning_rate, ++state_.code_steps[m],
+          static_cast<size_t>(m) * code_size_, code_size_, state_.codes.data());
+      ProjectToUnitBall(state_.codes.data() + m * code_size_, code_size_);
+    }
+    flow_->SetWeights(state_.weights);
+  }
 
   double Schedule() const {
     const double t =
@@ -323,11 +356,26 @@ std::vector<double> ScoreModel(const NeuralBrdfModel& model,
   return sum;
 }
 
+Status TrainerOptions::Check() const {
+  const std::string wrong = shape.Validate();
+  if (!wrong.empty()) return InvalidInput("command line", wrong);
+  if (columns_per_code % 16 != 0) {
+    return InvalidInput("command line: --columns-per-code",
+                        "expected a multiple of 16");
+  }
+  if (points_per_column % 4 != 0) {
+    return InvalidInput("command line: --points-per-column",
+                        "expected a multiple of 4");
+  }
+  return OkStatus();
+}
+
 StatusOr<NeuralBrdfModel> TrainFlow(
     const TrainingData& train, const TrainingData& held_out,
     const TrainerOptions& options,
     const std::function<void(const TrainerProgress&)>& report,
     const std::atomic<bool>* stop) {
+  IBRDF_RETURN_IF_ERROR(options.Check());
   Trainer trainer(train, options);
   const std::string identity = DescribeTraining(options, train);
   if (!options.checkpoint.empty()) {

@@ -4,6 +4,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -19,9 +20,6 @@ constexpr int kSearchColumns = 64, kSearchPoints = 12;
 constexpr int kFitColumns = 128, kFitPoints = 24;
 constexpr uint64_t kColumnSeed = 17;
 constexpr int kRoughIterations = 20;
-constexpr double kTolerance = 1e-6;  // relative decrease of the cost to stop at
-constexpr double kWall =
-    60.0;  // of the unit ball: stiffer ones trap steps along it
 constexpr double kFreeColours = 1e3;  // standard deviation of log colours: none
 // Log colours tried for a further lobe, relative to the one that would make it
 // fit alone, go down to this.
@@ -66,6 +64,19 @@ StatusOr<std::vector<float>> ThinTable(const MerlTable& table,
     }
   }
   return log_raw;
+}
+
+// Puts codes beyond the unit ball on its sphere.
+void ProjectCodes(int lobes, int code_size, std::vector<double>* parameters) {
+  const MutableLobeMixture mixture({lobes, code_size}, parameters->data());
+  for (int k = 0; k < lobes; ++k) {
+    // As ClampCodes, but the squares are summed in their order: the bits of
+    // trained models.
+    const auto z = mixture.code(k);
+    const double norm =
+        std::sqrt(std::inner_product(z.begin(), z.end(), z.begin(), 0.0));
+    for (double& value : mixture.code(k)) value /= std::max(norm, 1.0);
+  }
 }
 
 }  // namespace
@@ -210,8 +221,24 @@ class LobeTableFitter::Search {
   const int codes_;
 };
 
+Status LobeTableFitOptions::Check() const {
+  const auto fault = [](const std::string& field, const std::string& expected) {
+    return InvalidInput("options of the fit: " + field, "expected " + expected);
+  };
+  if (lobes < 1) return fault("lobes", "at least 1");
+  if (starts < 1) return fault("starts", "at least 1");
+  if (max_iterations < 0) return fault("max_iterations", "at least 0");
+  if (!(tolerance >= 0.0)) return fault("tolerance", "at least 0");
+  if (!(wall >= 0.0)) return fault("wall", "at least 0");
+  if (!(prior_sigma > 0.0)) return fault("prior_sigma", "more than 0");
+  if (!(independent_bins > 0.0))
+    return fault("independent_bins", "more than 0");
+  return OkStatus();
+}
+
 StatusOr<LobeTableFit> LobeTableFitter::Fit(
     const MerlTable& table, const LobeTableFitOptions& options) const {
+  IBRDF_RETURN_IF_ERROR(options.Check());
   const double* red = table.raw.data();
   if (std::none_of(red, red + kMerlBins, [](double v) { return v > 0.0; })) {
     return InvalidInput("table", "expected a positive red value");
@@ -219,16 +246,28 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
   StatusOr<std::vector<float>> seen =
       ThinTable(table, search_columns_, kSearchPoints);
   if (!seen.ok()) return seen.status();
-  TableColumns columns;
-  columns.points = ThinColumns(fit_columns_, kFitPoints);
   StatusOr<std::vector<float>> target =
       ThinTable(table, fit_columns_, kFitPoints);
   if (!target.ok()) return target.status();
-  columns.log_raw = std::move(*target);
-  TableColumns rough{search_points_, *seen};
-  const Search search(*this, std::move(*seen));
+  const TableColumns rough{search_points_, *seen};
+  const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
+                             std::move(*target)};
 
-  // All starts roughly, the best one to the end.
+  // All starts are refined roughly, the best one to the end.
+  std::vector<double> best =
+      BestStart(rough, Search(*this, std::move(*seen)), options);
+  if (best.empty()) {
+    return InvalidInput("table", "no start of the fit has a finite cost");
+  }
+  Refine(columns, options.lobes, options.max_iterations, options, &best);
+  ProjectCodes(options.lobes, model_.shape.code_size(), &best);
+  const double log_rmse = LogRmse(columns, best, options);
+  return LobeTableFit{std::move(best), log_rmse};
+}
+
+std::vector<double> LobeTableFitter::BestStart(
+    const TableColumns& rough, const Search& search,
+    const LobeTableFitOptions& options) const {
   std::vector<double> best;
   for (int lobes = 1; lobes <= options.lobes; ++lobes) {
     std::vector<double> winner;
@@ -241,32 +280,24 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
         winner = start;
       }
     }
-    if (winner.empty()) {
-      return InvalidInput("table", "no start of the fit has a finite cost");
-    }
+    if (winner.empty()) return {};
     best = winner;
   }
-  Refine(columns, options.lobes, options.max_iterations, options, &best);
+  return best;
+}
 
-  const int size = model_.shape.code_size();
-  const MutableLobeMixture found({options.lobes, size}, best.data());
-  for (int k = 0; k < options.lobes; ++k) {
-    // As ClampCodes, but the squares are summed in their order: the bits of
-    // trained models.
-    const auto z = found.code(k);
-    const double norm =
-        std::sqrt(std::inner_product(z.begin(), z.end(), z.begin(), 0.0));
-    for (double& value : found.code(k)) value /= std::max(norm, 1.0);
-  }
-  const LogTableCost cost(*flow_, size, model_.exponent, options.lobes, columns,
-                          kLogFloor, 1.0, options.num_threads);
+double LobeTableFitter::LogRmse(const TableColumns& columns,
+                                const std::vector<double>& parameters,
+                                const LobeTableFitOptions& options) const {
+  const LogTableCost cost(*flow_, model_.shape.code_size(), model_.exponent,
+                          options.lobes, columns, kLogFloor, 1.0,
+                          options.num_threads);
   std::vector<double> residuals(columns.log_raw.size());
-  const double* block = best.data();
+  const double* block = parameters.data();
   cost.Evaluate(&block, residuals.data(), nullptr);
   const double square = std::inner_product(residuals.begin(), residuals.end(),
                                            residuals.begin(), 0.0);
-  return LobeTableFit{
-      best, std::sqrt(square / static_cast<double>(residuals.size()))};
+  return std::sqrt(square / static_cast<double>(residuals.size()));
 }
 
 double LobeTableFitter::Refine(const TableColumns& columns, int lobes,
@@ -276,7 +307,7 @@ double LobeTableFitter::Refine(const TableColumns& columns, int lobes,
   const int size = model_.shape.code_size();
   LobePrior prior;
   prior.sigma = options.prior_sigma;
-  prior.wall = kWall;
+  prior.wall = options.wall;
   prior.colour_sigma = kFreeColours;
   ceres::Problem problem;
   problem.AddResidualBlock(
@@ -285,12 +316,12 @@ double LobeTableFitter::Refine(const TableColumns& columns, int lobes,
                            static_cast<double>(columns.log_raw.size()),
                        options.num_threads),
       nullptr, parameters->data());
-  problem.AddResidualBlock(new LobePriorCost({lobes, size}, prior), nullptr,
+  problem.AddResidualBlock(new LobePriorCost(lobes, size, prior), nullptr,
                            parameters->data());
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   solver.max_num_iterations = iterations;
-  solver.function_tolerance = kTolerance;
+  solver.function_tolerance = options.tolerance;
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);

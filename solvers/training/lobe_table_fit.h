@@ -18,11 +18,20 @@ struct LobeTableFitOptions {
   int lobes = 2;
   int starts = 4;  // combinations of embedding codes that are refined
   int max_iterations = 60;
-  // Of the codes, z ~ N(0, sigma^2), weighed against the table as if it were
-  // this many independent measurements.
+  // Relative decrease of the cost to stop at, and the stiffness of the wall at
+  // the unit ball: a stiffer one holds up steps along it. A stiff wall and a
+  // tolerance of 1e-4 score 0.1286 in place of 0.1263 (docs/notes,
+  // reflectance_model).
+  double tolerance = 1e-6;
+  double wall = 60.0;
+  // The prior of the codes is z ~ N(0, sigma^2), weighed against the table as
+  // if it were this many independent measurements.
   double prior_sigma = 2.0;
   double independent_bins = 2000.0;
   int num_threads = 0;  // <= 0: all
+
+  // kInvalidInput names the first option that is out of range.
+  Status Check() const;
 };
 
 struct LobeTableFit {
@@ -50,10 +59,19 @@ class LobeTableFitter {
 
  private:
   class Search;
+  // Lobes at the few columns of the search; empty where no start has a finite
+  // cost.
+  std::vector<double> BestStart(const TableColumns& rough, const Search& search,
+                                const LobeTableFitOptions& options) const;
   // Levenberg-Marquardt in place; returns the cost, infinite where it failed.
   double Refine(const TableColumns& columns, int lobes, int iterations,
                 const LobeTableFitOptions& options,
                 std::vector<double>* parameters) const;
+
+  // Root mean square of the residuals over the columns.
+  double LogRmse(const TableColumns& columns,
+                 const std::vector<double>& parameters,
+                 const LobeTableFitOptions& options) const;
 
   NeuralBrdfModel model_;
   std::unique_ptr<BrdfFlow> flow_;

@@ -7,6 +7,7 @@
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/brdf/flow_brdf.h"
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/solvers/training/lobe_table_fit.h"
 
 namespace ibrdf {
@@ -21,11 +22,32 @@ float Peakedness(const BrdfFlow& flow, const Eigen::VectorXd& code) {
   return value[0] - value[1];
 }
 
+// Codes and log colours of one material's lobes, the most peaked first.
+StatusOr<std::vector<double>> FitMaterial(const LobeTableFitter& fitter,
+                                          const BrdfFlow& flow,
+                                          const MerlTable& table,
+                                          const LobeTableFitOptions& options) {
+  const StatusOr<LobeTableFit> fit = fitter.Fit(table, options);
+  if (!fit.ok()) return fit.status();
+  const LobeMixture fitted({options.lobes, fitter.model().shape.code_size()},
+                           fit->parameters.data());
+  std::vector<int> order(options.lobes);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return Peakedness(flow, fitted.code(a)) > Peakedness(flow, fitted.code(b));
+  });
+  std::vector<double> lobes;
+  for (const int k : order) {
+    const auto lobe = fitted.lobe(k);
+    lobes.insert(lobes.end(), lobe.begin(), lobe.end());
+  }
+  return lobes;
+}
+
 }  // namespace
 
 Status FitMaterialLobes(int lobes, int num_threads,
                         const std::atomic<bool>* stop, NeuralBrdfModel* model) {
-  const LobeLayout layout = {lobes, model->shape.code_size()};
   const int materials = model->num_materials();
   const LobeTableFitter fitter(*model);
   const std::unique_ptr<BrdfFlow> flow =
@@ -35,44 +57,27 @@ Status FitMaterialLobes(int lobes, int num_threads,
   LobeTableFitOptions options;
   options.lobes = lobes;
   options.num_threads = 1;
-  std::vector<std::vector<double>> fits(materials);
-  std::vector<Status> failures(materials);
+  std::vector<StatusOr<std::vector<double>>> fits(
+      materials, Status(StatusCode::kInterrupted,
+                        "stopped while lobes were fitted to materials"));
   ParallelFor(materials, num_threads, [&](int64_t m, int) {
-    if (stop != nullptr && *stop) {
-      failures[m] = Status(StatusCode::kInterrupted,
-                           "stopped while lobes were fitted to materials");
-      return;
-    }
+    if (stop != nullptr && *stop) return;
     const std::vector<double> channels =
         MaterialLobes(*model, 3 * static_cast<int>(m));
-    const StatusOr<LobeTableFit> fit =
-        fitter.Fit(by_channel.ToMerl(channels.data()), options);
-    if (!fit.ok()) {
-      failures[m] = fit.status();
-      return;
-    }
-    std::vector<int> order(lobes);
-    std::iota(order.begin(), order.end(), 0);
-    const LobeMixture fitted(layout, fit->parameters.data());
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-      return Peakedness(*flow, fitted.code(a)) >
-             Peakedness(*flow, fitted.code(b));
-    });
-    for (const int k : order) {
-      const auto lobe = fitted.lobe(k);
-      fits[m].insert(fits[m].end(), lobe.begin(), lobe.end());
-    }
+    fits[m] =
+        FitMaterial(fitter, *flow, by_channel.ToMerl(channels.data()), options);
   });
   for (int m = 0; m < materials; ++m) {
-    if (failures[m].ok()) continue;
-    if (failures[m].code() == StatusCode::kInterrupted) return failures[m];
+    if (fits[m].ok()) continue;
+    const Status status = fits[m].status();
+    if (status.code() == StatusCode::kInterrupted) return status;
     return InvalidInput(model->names[static_cast<size_t>(3) * m],
-                        failures[m].message());
+                        status.message());
   }
   model->fit_lobes = lobes;
   model->lobe_fits.clear();
-  for (const std::vector<double>& fit : fits) {
-    model->lobe_fits.insert(model->lobe_fits.end(), fit.begin(), fit.end());
+  for (const StatusOr<std::vector<double>>& fit : fits) {
+    model->lobe_fits.insert(model->lobe_fits.end(), fit->begin(), fit->end());
   }
   return OkStatus();
 }

@@ -8,6 +8,7 @@
 
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/problem_file.h"
+#include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/forward/render_scene.h"
 #include "ibrdf/solvers/problem/load_problem.h"
 #include "ibrdf/solvers/report/write_results.h"
@@ -55,27 +56,29 @@ class EffectsPlanTest : public ::testing::Test {
 
 TEST_F(EffectsPlanTest, AutoShadowsWhatNeedsItAndSaysSo) {
   const RenderedScene groove = Render({}).value();
-  EXPECT_TRUE(groove.effects.visibility);
-  EXPECT_GE(groove.effects.bounces, 1);
-  EXPECT_EQ(0u, groove.effects.words.find("visibility, interreflection ("))
-      << groove.effects.words;
-  EXPECT_GT(groove.effects.omission.unshadowed, 0.1);
-  EXPECT_LT(groove.effects.error, kSolveOmissionError);
+  EXPECT_TRUE(groove.plan.effects.visibility);
+  EXPECT_GE(groove.plan.effects.bounces, 1);
+  EXPECT_EQ(0u,
+            Describe(groove.plan.effects).find("visibility, interreflection ("))
+      << Describe(groove.plan.effects);
+  EXPECT_GT(groove.plan.effects.omission.unshadowed, 0.1);
+  EXPECT_LT(groove.plan.effects.error, kSolveOmissionError);
 
   const RenderedScene dark =
       Render({"reflectance.known={lambertian: 0.02}"}).value();
-  EXPECT_EQ(0, dark.effects.bounces);
-  EXPECT_EQ(0u, dark.effects.words.find("visibility: ")) << dark.effects.words;
-  EXPECT_EQ(1.0, groove.effects.probe.shadowed_share);
+  EXPECT_EQ(0, dark.plan.effects.bounces);
+  EXPECT_EQ(0u, Describe(dark.plan.effects).find("visibility: "))
+      << Describe(dark.plan.effects);
+  EXPECT_EQ(1.0, groove.plan.effects.probe.shadowed_share);
 
   const RenderedScene ridge = Render({"geometry.mesh=ridge.obj"}).value();
-  EXPECT_FALSE(ridge.effects.visibility);
-  EXPECT_EQ(0u, ridge.effects.words.find("none: "));
-  EXPECT_EQ(0.0, ridge.effects.omission.unshadowed);
+  EXPECT_FALSE(ridge.plan.effects.visibility);
+  EXPECT_EQ(0u, Describe(ridge.plan.effects).find("none: "));
+  EXPECT_EQ(0.0, ridge.plan.effects.omission.unshadowed);
 
   const RenderedScene sphere = Render({"geometry={sphere: {}}"}).value();
-  EXPECT_EQ(0, sphere.effects.probe.rays);
-  EXPECT_NE(std::string::npos, sphere.effects.words.find("convex"));
+  EXPECT_EQ(0, sphere.plan.effects.probe.rays);
+  EXPECT_NE(std::string::npos, Describe(sphere.plan.effects).find("convex"));
 }
 
 // By patches of the object and, of a mirror, along the lobe's own rays.
@@ -87,7 +90,7 @@ TEST_F(EffectsPlanTest, PredictionIsTheErrorOfTheImage) {
        {std::string("{lambertian: 0.5}"), mirror}) {
     const std::string known = "reflectance.known=" + material;
     const RenderedScene all = Render({known, few, "effects=all"}).value();
-    EXPECT_EQ(kMostBounces, all.effects.bounces);
+    EXPECT_EQ(kMostBounces, all.plan.effects.bounces);
     for (const char* effects :
          {"effects=none", "effects=[visibility]", "effects=auto"}) {
       const RenderedScene some = Render({known, few, effects}).value();
@@ -98,24 +101,25 @@ TEST_F(EffectsPlanTest, PredictionIsTheErrorOfTheImage) {
         error += std::abs(std::log(some.image.rgb[k] / all.image.rgb[k]));
         ++count;
       }
-      EXPECT_NEAR(error / count, some.effects.error, 0.1 * error / count + 1e-3)
+      EXPECT_NEAR(error / count, some.plan.effects.error,
+                  0.1 * error / count + 1e-3)
           << effects << " " << material;
     }
   }
 }
 
 TEST_F(EffectsPlanTest, TheUserOverrules) {
-  EXPECT_FALSE(Render({"effects=[reflectance_map]"})->effects.visibility);
+  EXPECT_FALSE(Render({"effects=[reflectance_map]"})->plan.effects.visibility);
   const RenderedScene shadows = Render({"effects=[visibility]"}).value();
-  EXPECT_TRUE(shadows.effects.visibility);
-  EXPECT_EQ(0, shadows.effects.bounces);
-  EXPECT_NE(std::string::npos, shadows.effects.words.find("absorb"));
+  EXPECT_TRUE(shadows.plan.effects.visibility);
+  EXPECT_EQ(0, shadows.plan.effects.bounces);
+  EXPECT_NE(std::string::npos, Describe(shadows.plan.effects).find("absorb"));
   const RenderedScene bounces = Render({"effects=[interreflection]"}).value();
-  EXPECT_TRUE(bounces.effects.visibility);
-  EXPECT_GE(bounces.effects.bounces, 1);
+  EXPECT_TRUE(bounces.plan.effects.visibility);
+  EXPECT_GE(bounces.plan.effects.bounces, 1);
   const RenderedScene ridge =
       Render({"effects=[visibility]", "geometry.mesh=ridge.obj"}).value();
-  EXPECT_TRUE(ridge.effects.visibility);
+  EXPECT_TRUE(ridge.plan.effects.visibility);
   EXPECT_EQ(Render({"geometry.mesh=ridge.obj"})->image.rgb, ridge.image.rgb);
 }
 
@@ -125,7 +129,7 @@ TEST_F(EffectsPlanTest, NormalsHaveNoShadows) {
   ASSERT_TRUE(WriteExr(normals, dir_.File("normals.exr")).ok());
   const std::string geometry = "geometry={normals: normals.exr}";
   EXPECT_NE(std::string::npos,
-            Render({geometry})->effects.words.find("no positions"));
+            Describe(Render({geometry})->plan.effects).find("no positions"));
   const Status refused = Render({geometry, "effects=[visibility]"}).status();
   EXPECT_EQ(StatusCode::kInvalidInput, refused.code());
   EXPECT_NE(std::string::npos, refused.message().find("effects"));
@@ -166,7 +170,7 @@ TEST_F(EffectsPlanTest, SolveUsesShadowsAndReportsThem) {
                     .ok());
     const nlohmann::json result =
         nlohmann::json::parse(ReadBytes(dir_.File("out/result.json")));
-    EXPECT_EQ(inverse->effects.words, result["effects"].get<std::string>());
+    EXPECT_EQ(Describe(inverse->effects), result["effects"].get<std::string>());
     const nlohmann::json& visibility = result["effects_plan"]["visibility"];
     EXPECT_TRUE(visibility["simulated"].get<bool>());
     EXPECT_EQ(inverse->effects.omission.unshadowed,

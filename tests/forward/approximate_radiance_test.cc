@@ -50,7 +50,7 @@ class RadianceTier : public ::testing::Test {
     RenderSceneOptions options;
     options.plan_only = true;
     options.num_threads = threads;
-    return Render(overrides, options).value().effects.approximation;
+    return Render(overrides, options).value().plan.approximation;
   }
   const TempDir dir_;
 };
@@ -67,14 +67,13 @@ double LogDifference(const RenderedScene& a, const RenderedScene& b) {
 }
 
 bool Says(const RenderedScene& scene, const std::string& text) {
-  return scene.effects.words.find(text) != std::string::npos;
+  return Describe(scene).find(text) != std::string::npos;
 }
 
 TEST_F(RadianceTier, MatteUnderSoftLightIsRenderedInHarmonics) {
   const RenderedScene fast = Render({kPerspective}).value();
-  const ApproximationPlan& plan = fast.effects.approximation;
-  EXPECT_EQ(Approximation::kHarmonics, plan.approximation)
-      << fast.effects.words;
+  const ApproximationPlan& plan = fast.plan.approximation;
+  EXPECT_EQ(Approximation::kHarmonics, plan.approximation) << Describe(fast);
   EXPECT_LE(plan.order, 8);
   EXPECT_LE(plan.predicted_error, 3e-3);
   EXPECT_GT(plan.predicted_error, 0.0);
@@ -85,8 +84,7 @@ TEST_F(RadianceTier, MatteUnderSoftLightIsRenderedInHarmonics) {
       Says(fast, "spherical harmonics up to l = " + std::to_string(plan.order) +
                      ": predicted error of log radiance"));
   const RenderedScene slow = Render({kPerspective, "effects=none"}).value();
-  EXPECT_EQ(Approximation::kQuadrature,
-            slow.effects.approximation.approximation);
+  EXPECT_EQ(Approximation::kQuadrature, slow.plan.approximation.approximation);
   EXPECT_LT(LogDifference(fast, slow), 3e-3);
   // Seen from far away, so few normals are enough that nothing is to be gained.
   const ApproximationPlan by_normal = Plan({});
@@ -96,12 +94,11 @@ TEST_F(RadianceTier, MatteUnderSoftLightIsRenderedInHarmonics) {
 
 TEST_F(RadianceTier, MatteUnderASmallSunIsRenderedInGaussians) {
   const RenderedScene fast = Render({kHard, kPerspective}).value();
-  const ApproximationPlan& plan = fast.effects.approximation;
-  EXPECT_EQ(Approximation::kGaussians, plan.approximation)
-      << fast.effects.words;
+  const ApproximationPlan& plan = fast.plan.approximation;
+  EXPECT_EQ(Approximation::kGaussians, plan.approximation) << Describe(fast);
   EXPECT_EQ(1, plan.spots);
   EXPECT_TRUE(Says(fast, "spherical Gaussians, 1 for a bright spot"))
-      << fast.effects.words;
+      << Describe(fast);
   // 0.0013.
   EXPECT_LT(plan.found_error, 2e-3);
   EXPECT_LT(plan.quadrature_error, plan.found_error);
@@ -117,21 +114,21 @@ TEST_F(RadianceTier, MirrorsAreLeftToTheQuadratureAndItSaysWhy) {
   EXPECT_EQ(Approximation::kReflectanceMap, Plan({kMirror}).approximation);
   const ApproximationPlan soft = Plan({kMirror});
   EXPECT_EQ(0, soft.checked);
-  EXPECT_NE(std::string::npos, soft.words.find("are not within 0.0030"))
-      << soft.words;
+  EXPECT_NE(std::string::npos, Describe(soft).find("are not within 0.0030"))
+      << Describe(soft);
   // A glossy surface under a sun is looked at and found to need too many.
   const ApproximationPlan hard = Plan({kGlossy, kHard});
   EXPECT_EQ(Approximation::kReflectanceMap, hard.approximation);
   EXPECT_EQ(64, hard.checked);
-  EXPECT_NE(std::string::npos, hard.words.find("slower or not within"))
-      << hard.words;
+  EXPECT_NE(std::string::npos, Describe(hard).find("slower or not within"))
+      << Describe(hard);
 }
 
 TEST_F(RadianceTier, SmallImagesAreNotWorthAChoice) {
   const ApproximationPlan plan = Plan({"image={width: 24, height: 24}"});
   EXPECT_EQ(Approximation::kReflectanceMap, plan.approximation);
   EXPECT_EQ(0, plan.checked);
-  EXPECT_EQ("", plan.words);
+  EXPECT_EQ("", Describe(plan));
 }
 
 TEST_F(RadianceTier, TheUserOverrules) {
@@ -142,7 +139,7 @@ TEST_F(RadianceTier, TheUserOverrules) {
             Plan({"effects=all"}).approximation);
   const ApproximationPlan gaussians = Plan({"effects=[gaussians]"});
   EXPECT_EQ(Approximation::kGaussians, gaussians.approximation);
-  EXPECT_NE(std::string::npos, gaussians.words.find("as asked"));
+  EXPECT_NE(std::string::npos, Describe(gaussians).find("as asked"));
   // What was asked for, as near as it comes, with its error.
   const ApproximationPlan mirror = Plan({"effects=[harmonics]", kMirror});
   EXPECT_EQ(Approximation::kHarmonics, mirror.approximation);
@@ -166,8 +163,9 @@ TEST_F(RadianceTier, PlanAndImageAreTheSameForAnyNumberOfThreads) {
     const RenderedScene a = Render({light, kPerspective}, one).value();
     const RenderedScene b = Render({light, kPerspective}, many).value();
     EXPECT_EQ(a.image.rgb, b.image.rgb);
-    EXPECT_EQ(a.effects.words, b.effects.words);
-    EXPECT_EQ(a.effects.approximation.words, Plan({light, kPerspective}).words);
+    EXPECT_EQ(Describe(a), Describe(b));
+    EXPECT_EQ(Describe(a.plan.approximation),
+              Describe(Plan({light, kPerspective})));
   }
 }
 
@@ -199,7 +197,8 @@ TEST(ApproximateRadiance, FallsBackWhereTheTruthDisagrees) {
   scale = 1.01;
   ASSERT_TRUE(approximation.Choose(points, truth, truth, options));
   EXPECT_FALSE(approximation.renders());
-  EXPECT_NE(std::string::npos, approximation.plan().words.find("not within"));
+  EXPECT_NE(std::string::npos,
+            Describe(approximation.plan()).find("not within"));
   // The quadrature may be as far off itself.
   const PointRenderer quadrature = [&](const std::vector<ShadingPoint>& some,
                                        double* L_o) {

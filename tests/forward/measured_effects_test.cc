@@ -14,14 +14,20 @@ using namespace testing;  // NOLINT
 class MeasuredEffects : public ::testing::Test {
  protected:
   MeasuredEffects() {
-    brdf_.function = Glossy(0.0, 0.9, 2.0);
+    scene_.view.scene = Scene::FromMesh(TorusMesh(48, 24)).value();
+    scene_.view.points =
+        FindShadingPoints(scene_.view.scene, TorusCamera(), 16, 16, Mask(), 1)
+            .value();
+    scene_.map = SmoothMap(32, 64);
+    scene_.brdf.function = Glossy(0.0, 0.9, 2.0);
+    scene_.grid = scene_.brdf.Grid();
     all_.visibility = true;
     all_.bounces = kMostBounces;
   }
   SceneRadiance With(const EffectsPlan& effects,
                      RenderQuality quality = RenderQuality::kPreview) const {
-    return SceneRadiance(scene_, points_, map_, &brdf_, brdf_.Grid(), effects,
-                         quality, 2);
+    return SceneRadiance(scene_, points_, effects,
+                         SceneRadianceOptions::Of(quality, 2));
   }
   std::vector<double> Render(const SceneRadiance& radiance) const {
     std::vector<double> L_o(3 * points_.size());
@@ -29,11 +35,8 @@ class MeasuredEffects : public ::testing::Test {
     return L_o;
   }
 
-  const Scene scene_ = Scene::FromMesh(TorusMesh(48, 24)).value();
-  const std::vector<ShadingPoint> points_ =
-      FindShadingPoints(scene_, TorusCamera(), 16, 16, Mask(), 1).value();
-  const Image map_ = SmoothMap(32, 64);
-  KnownBrdf brdf_;
+  ForwardScene scene_;
+  const std::vector<ShadingPoint>& points_ = scene_.view.points;
   EffectsPlan all_;
 };
 
@@ -60,8 +63,8 @@ TEST_F(MeasuredEffects, MapsWhoseSidesDoNotHalveLightTheObject) {
   const Image large = SmoothMap(450, 900);
   const Image small = ResizeMap(large, 256, 512);
   const auto render = [&](const Image& map) {
-    return Render(SceneRadiance(scene_, points_, map, &brdf_, brdf_.Grid(),
-                                all_, RenderQuality::kPreview, 2));
+    scene_.map = map;
+    return Render(With(all_));
   };
   EXPECT_LT(MeanAbsLogRatio(render(large), render(small)), 1e-3);
 }

@@ -68,8 +68,8 @@ TEST(RenderScene, PreviewSamplesThePixelsThatNeedIt) {
   Problem problem = Scene24();
   problem.illumination.sky->sun_phi_degrees = 35;
   const RenderedScene preview = RenderScene(problem, {}).value();
-  EXPECT_NE(std::string::npos, preview.effects.words.find("sampled 4 times"))
-      << preview.effects.words;
+  EXPECT_NE(std::string::npos, Describe(preview).find("sampled 4 times"))
+      << Describe(preview);
   problem.quality = RenderQuality::kReference;
   const RenderedScene reference = RenderScene(problem, {}).value();
   double error = 0.0;

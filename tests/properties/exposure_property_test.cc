@@ -51,7 +51,7 @@ InverseProblem SmallProblem(ProblemKind kind, int materials, int iterations) {
   p.kind = kind;
   p.points = testing::SpherePoints(8);
   p.image = Image(8, 8);
-  p.model = TinyModel(materials);
+  p.model = std::make_shared<const NeuralBrdfModel>(TinyModel(materials));
   p.transport = testing::TinyTransportOptions();
   p.num_threads = 1;
   p.map_width = 16;
@@ -59,17 +59,17 @@ InverseProblem SmallProblem(ProblemKind kind, int materials, int iterations) {
   p.illumination_prior = IlluminationPrior::kNone;
   p.solver.seconds = 1e6;
   p.solver.max_iterations = iterations;
-  const int code = p.model.shape.code_size();
+  const int code = p.model->shape.code_size();
   std::vector<double> lobes;
   for (int k = 0; k < 2; ++k) {
     for (int d = 0; d < code; ++d) {
-      lobes.push_back(0.8 * p.model.codes[(3 * material) * code + d] +
+      lobes.push_back(0.8 * p.model->codes[(3 * material) * code + d] +
                       *Between(-0.1, 0.1));
     }
     for (int c = 0; c < 3; ++c) lobes.push_back(*Between(3.0, 5.0));
   }
   const BrdfGrid truth =
-      FlowLobes(p.model, 2, p.transport.grid, 1).Grid(lobes.data());
+      FlowLobes(*p.model, 2, p.transport.grid, 1).Grid(lobes.data());
   Image map = testing::SmoothMap(8, 16);
   const Transport transport(p.points, 8, 16, p.transport);
   std::vector<double> L_o(3 * p.points.size());

@@ -26,7 +26,7 @@ class InverseRenderingTest : public ::testing::TestWithParam<ProblemKind> {
   InverseRenderingTest() {
     problem_.points = SpherePoints(kSize);
     problem_.image = Image(kSize, kSize);
-    problem_.model = TinyModel(3);
+    problem_.model = std::make_shared<const NeuralBrdfModel>(TinyModel(3));
     problem_.transport = TinyTransportOptions();
     problem_.num_threads = 1;
     problem_.map_width = 16;
@@ -38,7 +38,7 @@ class InverseRenderingTest : public ::testing::TestWithParam<ProblemKind> {
     // Not a code of the embedding, so that there is something to find.
     parameters_ = {0.3,  -0.4, 0.2, 0.1,  5.0, 4.6, 4.2,
                    -0.5, 0.1,  0.3, -0.2, 3.0, 3.5, 3.3};
-    const FlowLobes lobes(problem_.model, 2, problem_.transport.grid, 1);
+    const FlowLobes lobes(*problem_.model, 2, problem_.transport.grid, 1);
     truth_ = lobes.Grid(parameters_.data());
     const Transport transport(problem_.points, 8, 16, problem_.transport);
     std::vector<double> L_o(3 * problem_.points.size());
@@ -217,7 +217,7 @@ TEST_P(InverseRenderingTest, EveryPixelOfALargeImageIsRendered) {
   std::fill(problem_.image.rgb.begin(), problem_.image.rgb.end(), 1.0f);
   const Solution e = Solve();
   ASSERT_EQ(problem_.image.rgb.size(), e.render.rgb.size());
-  const FlowLobes lobes(problem_.model, 2, problem_.transport.grid, 1);
+  const FlowLobes lobes(*problem_.model, 2, problem_.transport.grid, 1);
   const BrdfGrid grid =
       e.lobe_parameters.empty() ? truth_ : lobes.Grid(e.lobe_parameters.data());
   std::vector<double> L_o(3 * problem_.points.size());
@@ -384,7 +384,9 @@ TEST_F(InverseRenderingTest, MirrorsMapsAreFoundFromFinerPixels) {
 
 // No material explains the image, and the start is what there is to write.
 TEST_F(InverseRenderingTest, ASearchWithoutAnEndKeepsTheStart) {
-  for (float& colour : problem_.model.log_colours) colour = -1e4f;
+  NeuralBrdfModel black = *problem_.model;
+  for (float& colour : black.log_colours) colour = -1e4f;
+  problem_.model = std::make_shared<const NeuralBrdfModel>(black);
   const Solution e = Solve();
   ExpectWhole(e);
   EXPECT_EQ(StatusCode::kNoImprovement, e.status.code());

@@ -1,0 +1,81 @@
+#include "ibrdf/solvers/forward/forward_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ibrdf/io/merl.h"
+#include "ibrdf/solvers/problem/load_scene.h"
+#include "ibrdf/transport/lobe_bundles.h"
+
+namespace ibrdf {
+namespace {
+
+StatusOr<KnownBrdf> LoadBrdf(const ReflectanceSpec& reflectance) {
+  KnownBrdf brdf;
+  if (reflectance.analytic.has_value()) {
+    brdf.function = reflectance.analytic->Function();
+    return brdf;
+  }
+  StatusOr<MerlTable> table = ReadMerl(reflectance.known_file);
+  if (!table.ok()) return table.status();
+  brdf.table = *std::move(table);
+  return brdf;
+}
+
+}  // namespace
+
+void SortByAngle(std::vector<ShadingPoint>* points) {
+  std::stable_sort(points->begin(), points->end(),
+                   [](const ShadingPoint& a, const ShadingPoint& b) {
+                     return a.normal.dot(a.wo) < b.normal.dot(b.wo);
+                   });
+}
+
+int SamplesPerSide(RenderQuality quality) {
+  return quality == RenderQuality::kReference ? kMostSamplesPerSide : 1;
+}
+
+Status RenderInterrupted(const Problem& problem) {
+  return Status(StatusCode::kInterrupted, problem.path + ": interrupted");
+}
+
+StatusOr<ViewPoints> FindViewPoints(const Problem& problem, int num_threads) {
+  const StatusOr<Scene> scene = LoadScene(problem.geometry);
+  if (!scene.ok()) return scene.status();
+  const int width = problem.image.width, height = problem.image.height;
+  StatusOr<std::vector<ShadingPoint>> found =
+      FindShadingPoints(*scene, problem.camera, width, height, Mask(),
+                        SamplesPerSide(problem.quality), num_threads);
+  if (!found.ok()) {
+    return InvalidInput(problem.path, found.status().message());
+  }
+  ViewPoints view;
+  view.scene = *scene;
+  view.points = *std::move(found);
+  view.mask = Mask(width, height, 0);
+  for (const ShadingPoint& p : view.points) view.mask.inside[p.pixel] = 255;
+  SortByAngle(&view.points);
+  return view;
+}
+
+StatusOr<ForwardScene> LoadForwardScene(const Problem& problem,
+                                        int num_threads) {
+  StatusOr<ViewPoints> view = FindViewPoints(problem, num_threads);
+  if (!view.ok()) return view.status();
+  StatusOr<Image> map = LoadKnownIllumination(problem.illumination);
+  if (!map.ok()) return map.status();
+  StatusOr<KnownBrdf> brdf = LoadBrdf(problem.reflectance);
+  if (!brdf.ok()) return brdf.status();
+
+  ForwardScene scene;
+  scene.view = *std::move(view);
+  scene.map = *std::move(map);
+  scene.brdf = *std::move(brdf);
+  if (scene.view.scene.CastsShadows()) {
+    scene.grid = scene.brdf.Grid();
+    scene.narrow_lobe = LobeHalfWidth(scene.brdf.Lookup()) < kNarrowLobe;
+  }
+  return scene;
+}
+
+}  // namespace ibrdf

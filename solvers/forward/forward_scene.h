@@ -1,0 +1,52 @@
+// The files of a renderable problem, read.
+#pragma once
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/io/problem.h"
+#include "ibrdf/scene/scene.h"
+#include "ibrdf/solvers/forward/known_brdf.h"
+
+namespace ibrdf {
+
+// What the camera sees.
+struct ViewPoints {
+  // By view angle: points of one angle share their work when they are rendered
+  // together.
+  std::vector<ShadingPoint> points;
+  Mask mask;  // pixels with a point
+  Scene scene = Scene::UnitSphere();
+};
+
+struct ForwardScene {
+  ViewPoints view;
+  Image map;       // the illumination
+  KnownBrdf brdf;  // its Lookup() refers to this
+  BrdfGrid grid;   // the BRDF's; empty where nothing casts shadows
+  // Whether the object may see itself as in a mirror: it casts shadows, and its
+  // lobe is narrower than kNarrowLobe.
+  bool narrow_lobe = false;
+};
+
+// Sorts points by the angle between normal and view.
+void SortByAngle(std::vector<ShadingPoint>* points);
+
+// SamplesPerSide(problem.quality) squared points per pixel.
+StatusOr<ViewPoints> FindViewPoints(const Problem& problem,
+                                    int num_threads = 0);
+
+// Two at reference quality; one in a preview, which samples some pixels anew
+// with as many as the reference (PixelRenderer::Refine).
+inline constexpr int kMostSamplesPerSide = 2;
+int SamplesPerSide(RenderQuality quality);
+
+// What a render returns whose progress stops it.
+Status RenderInterrupted(const Problem& problem);
+
+// Reads geometry, illumination and reflectance. CheckRenderable first.
+StatusOr<ForwardScene> LoadForwardScene(const Problem& problem,
+                                        int num_threads);
+
+}  // namespace ibrdf

@@ -1,0 +1,100 @@
+#include "ibrdf/solvers/forward/pixel_renderer.h"
+
+#include <utility>
+
+#include "ibrdf/approximation/reflectance_map.h"
+#include "ibrdf/render/reference_renderer.h"
+#include "ibrdf/scene/pixel_samples.h"
+
+namespace ibrdf {
+
+PixelRenderer::PixelRenderer(const Problem& problem, const ForwardScene& scene,
+                             const PlannedRender& planned, int num_threads,
+                             const RenderProgress& progress)
+    : problem_(problem),
+      scene_(scene),
+      planned_(planned),
+      num_threads_(num_threads),
+      progress_(progress) {}
+
+StatusOr<Image> PixelRenderer::Render() {
+  const bool reference = problem_.quality == RenderQuality::kReference;
+  // The second pass has fewer pixels but more points.
+  const double first = reference ? 1.0 : 0.5;
+  StatusOr<Image> image = RenderPoints(scene_.view.points, {0.0, first});
+  if (!image.ok()) return image.status();
+  if (!reference) IBRDF_RETURN_IF_ERROR(Refine({first, 1.0}, &*image));
+  if (progress_) progress_(1.0);
+  return image;
+}
+
+StatusOr<Image> PixelRenderer::RenderPoints(
+    const std::vector<ShadingPoint>& points, const Span& span) {
+  std::vector<double> L_o(3 * points.size());
+  counts_.points += points.size();
+  if (planned_.approximation->renders()) {
+    if (progress_ && !progress_(span.begin)) return RenderInterrupted(problem_);
+    planned_.approximation->Render(points, L_o.data());
+  } else if (planned_.plan.approximation.approximation ==
+             Approximation::kReflectanceMap) {
+    IBRDF_RETURN_IF_ERROR(RenderByNormals(points, span, L_o.data()));
+  } else if (!RenderEach(points, span, L_o.data())) {
+    return RenderInterrupted(problem_);
+  }
+  return PixelMeans(points, L_o.data(), problem_.image.width,
+                    problem_.image.height);
+}
+
+Status PixelRenderer::RenderByNormals(const std::vector<ShadingPoint>& points,
+                                      const Span& span, double* L_o) {
+  ReflectanceMapOptions options;
+  options.log_error = RenderTolerances::Of(problem_.quality).approximation;
+  const auto each = [&](const std::vector<ShadingPoint>& some, double* out) {
+    return RenderEach(some, span, out);
+  };
+  const StatusOr<ReflectanceMapReport> report =
+      RenderByNormal(points, each, options, L_o);
+  if (!report.ok()) {
+    return report.status().code() == StatusCode::kInterrupted
+               ? RenderInterrupted(problem_)
+               : report.status();
+  }
+  counts_.interpolated += report->interpolated;
+  return OkStatus();
+}
+
+bool PixelRenderer::RenderEach(const std::vector<ShadingPoint>& points,
+                               const Span& span, double* L_o) const {
+  if (!progress_) return planned_.radiance->Render(points, nullptr, L_o);
+  const auto progress = [&](double share) {
+    return progress_(span.begin + (span.end - span.begin) * share);
+  };
+  return planned_.radiance->Render(points, progress, L_o);
+}
+
+Status PixelRenderer::Refine(const Span& span, Image* image) {
+  // What a mirror shows of its own object has detail that the differences
+  // between pixels do not tell of: all of its pixels are sampled anew.
+  const double log_error = planned_.plan.lobe_rays > 0
+                               ? 0.0
+                               : RenderTolerances::Of(problem_.quality).pixel;
+  const Mask unclear = PixelsToSample(*image, scene_.view.mask, log_error);
+  if (unclear.empty()) return OkStatus();
+  StatusOr<std::vector<ShadingPoint>> points = FindShadingPoints(
+      scene_.view.scene, problem_.camera, image->width, image->height, unclear,
+      kMostSamplesPerSide, num_threads_);
+  if (!points.ok()) return points.status();
+  SortByAngle(&*points);
+  const StatusOr<Image> finer = RenderPoints(*points, span);
+  if (!finer.ok()) return finer.status();
+  // All samples of a pixel may pass by what its centre meets.
+  std::vector<char> met(image->num_pixels(), 0);
+  for (const ShadingPoint& p : *points) met[p.pixel] = 1;
+  for (size_t k = 0; k < image->rgb.size(); ++k) {
+    if (met[k / 3] != 0) image->rgb[k] = finer->rgb[k];
+  }
+  counts_.refined = unclear.CountInside();
+  return OkStatus();
+}
+
+}  // namespace ibrdf

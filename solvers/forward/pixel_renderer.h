@@ -1,0 +1,63 @@
+// Pixels of a planned render.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/io/problem.h"
+#include "ibrdf/scene/scene.h"
+#include "ibrdf/solvers/forward/forward_scene.h"
+#include "ibrdf/solvers/forward/render_plan.h"
+
+namespace ibrdf {
+
+// Called with the share done, in [0, 1], from the calling thread; false stops.
+using RenderProgress = std::function<bool(double)>;
+
+// How the points came to their radiance.
+struct PixelCounts {
+  size_t points = 0;
+  size_t interpolated = 0;  // points, by their normal from others
+  size_t refined = 0;       // pixels that were sampled anew
+};
+
+// One sample per pixel in a preview, whose pixels are sampled anew where their
+// centre does not stand for them; all samples at once at reference quality.
+// References are kept.
+class PixelRenderer {
+ public:
+  // `progress` may be empty.
+  PixelRenderer(const Problem& problem, const ForwardScene& scene,
+                const PlannedRender& planned, int num_threads,
+                const RenderProgress& progress);
+
+  // All passes; 0 outside the object. kInterrupted where `progress` stops it.
+  StatusOr<Image> Render();
+
+  const PixelCounts& counts() const { return counts_; }
+
+ private:
+  // Shares of the progress, [begin, end].
+  struct Span {
+    double begin, end;
+  };
+
+  StatusOr<Image> RenderPoints(const std::vector<ShadingPoint>& points,
+                               const Span& span);
+  Status RenderByNormals(const std::vector<ShadingPoint>& points,
+                         const Span& span, double* L_o);
+  bool RenderEach(const std::vector<ShadingPoint>& points, const Span& span,
+                  double* L_o) const;
+  // Renders the pixels anew whose centre does not stand for them.
+  Status Refine(const Span& span, Image* image);
+
+  const Problem& problem_;
+  const ForwardScene& scene_;
+  const PlannedRender& planned_;
+  const int num_threads_;
+  const RenderProgress& progress_;
+  PixelCounts counts_;
+};
+
+}  // namespace ibrdf

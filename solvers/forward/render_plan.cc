@@ -1,0 +1,131 @@
+#include "ibrdf/solvers/forward/render_plan.h"
+
+#include <utility>
+
+#include "ibrdf/solvers/forward/measured_effects.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kReferenceApproximationError = 3e-4;
+
+// Lights the scene with all effects, as which it returns it, and measures what
+// each is for. Patches do not tell what a narrow lobe shows of the object.
+OmissionErrors MeasureNarrowLobe(const ForwardScene& scene,
+                                 const RenderTolerances& tolerances,
+                                 const SceneRadianceOptions& options,
+                                 std::unique_ptr<SceneRadiance>* lit) {
+  const std::vector<ShadingPoint>& points = scene.view.points;
+  EffectsPlan none, all;
+  all.visibility = true;
+  all.bounces = kMostBounces;
+  const SceneRadiance bare(scene, points, none, options);
+  *lit = std::make_unique<SceneRadiance>(scene, points, all, options);
+  const OmissionErrors omission = MeasureEffects(bare, points, lit->get());
+  ChooseLobeRays(points, tolerances.lobe, lit->get());
+  return omission;
+}
+
+// Fills effects, lobe_rays and radiance in.
+Status PlanRadiance(const Problem& problem, const ForwardScene& scene,
+                    int num_threads, PlannedRender* out) {
+  const RenderTolerances tolerances = RenderTolerances::Of(problem.quality);
+  const SceneRadianceOptions radiance =
+      SceneRadianceOptions::Of(problem.quality, num_threads);
+  EffectsOptions options;
+  options.threshold = tolerances.omission;
+  options.known_map = &scene.map;
+  options.known_brdf = &scene.grid;
+  options.num_threads = num_threads;
+  std::unique_ptr<SceneRadiance> lit;
+  if (scene.narrow_lobe && problem.quality == RenderQuality::kPreview) {
+    options.measure = [&] {
+      return MeasureNarrowLobe(scene, tolerances, radiance, &lit);
+    };
+  }
+  StatusOr<EffectsPlan> effects =
+      PlanEffects(problem, scene.view.scene, scene.view.points, options);
+  if (!effects.ok()) return effects.status();
+
+  if (lit != nullptr && effects->visibility) {
+    lit->set_bounces(effects->bounces);
+    out->radiance = std::move(lit);
+  } else {
+    out->radiance = std::make_unique<SceneRadiance>(scene, scene.view.points,
+                                                    *effects, radiance);
+  }
+  out->plan.effects = *std::move(effects);
+  if (scene.narrow_lobe && out->plan.effects.bounces > 0) {
+    out->plan.lobe_rays = out->radiance->lobe_rays();
+  }
+  return OkStatus();
+}
+
+// What the points may be rendered by. A preview takes what is fast; reference
+// quality only what the user asks for.
+ApproximationOptions MayTake(const Problem& problem,
+                             const EffectsPlan& effects) {
+  ApproximationOptions options;
+  options.log_error = RenderTolerances::Of(problem.quality).approximation;
+  if (effects.visibility) return options;
+  options.reflectance_map = effects.reflectance_map;
+  const EffectsSpec& spec = problem.effects;
+  if (spec.mode == EffectsMode::kAuto) {
+    options.harmonics = options.gaussians =
+        problem.quality == RenderQuality::kPreview;
+  } else if (spec.mode == EffectsMode::kList) {
+    options.harmonics = spec.Lists(Effect::kHarmonics);
+    options.gaussians = spec.Lists(Effect::kGaussians);
+    options.forced = options.harmonics || options.gaussians;
+  }
+  return options;
+}
+
+// Fills the approximation in. False: interrupted.
+bool PlanApproximation(const Problem& problem, const ForwardScene& scene,
+                       int num_threads, PlannedRender* out) {
+  const EffectsPlan& effects = out->plan.effects;
+  const auto quadrature = [&](const std::vector<ShadingPoint>& some,
+                              double* L_o) {
+    return out->radiance->Render(some, nullptr, L_o);
+  };
+  // At reference quality, as a preview is off by more than what is looked for
+  // under a small sun.
+  const auto reference = [&](const std::vector<ShadingPoint>& some,
+                             double* L_o) {
+    return SceneRadiance(
+               scene, some, effects,
+               SceneRadianceOptions::Of(RenderQuality::kReference, num_threads))
+        .Render(some, nullptr, L_o);
+  };
+  out->approximation =
+      std::make_unique<ApproximateRadiance>(scene.map, scene.brdf, num_threads);
+  if (!out->approximation->Choose(scene.view.points, quadrature, reference,
+                                  MayTake(problem, effects))) {
+    return false;
+  }
+  out->plan.approximation = out->approximation->plan();
+  return true;
+}
+
+}  // namespace
+
+RenderTolerances RenderTolerances::Of(RenderQuality quality) {
+  RenderTolerances tolerances;
+  if (quality == RenderQuality::kPreview) return tolerances;
+  tolerances.omission = kReferenceOmissionError;
+  tolerances.approximation = kReferenceApproximationError;
+  return tolerances;
+}
+
+StatusOr<PlannedRender> PlanRender(const Problem& problem,
+                                   const ForwardScene& scene, int num_threads) {
+  PlannedRender out;
+  IBRDF_RETURN_IF_ERROR(PlanRadiance(problem, scene, num_threads, &out));
+  if (!PlanApproximation(problem, scene, num_threads, &out)) {
+    return RenderInterrupted(problem);
+  }
+  return out;
+}
+
+}  // namespace ibrdf
