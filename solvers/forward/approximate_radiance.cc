@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/render/scene_probe.h"
 #include "ibrdf/transport/lobe_bundles.h"
 
@@ -174,7 +175,7 @@ bool ApproximateRadiance::Choose(const std::vector<ShadingPoint>& points,
     plan_.words = Format(
         "; spherical harmonics and spherical Gaussians are not within %.4f for "
         "a lobe of %.1f degrees",
-        options.log_error, lobe * 180.0 / M_PI);
+        options.log_error, lobe * 180.0 / kPi);
     return true;
   }
 

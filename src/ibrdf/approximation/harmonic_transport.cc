@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/scene/view_angles.h"
 
 namespace ibrdf {
 namespace {
 using namespace view_angles;  // NOLINT
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kDarkest = 1e-3;  // of the mean radiance
 
 }  // namespace

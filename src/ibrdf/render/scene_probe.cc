@@ -9,12 +9,12 @@
 #include <memory>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kGoldenAngle = kPi * (3.0 - 2.23606797749978969641);
 // Of the mean radiance: darker points count as this bright.
 constexpr double kDarkest = 1e-3;
