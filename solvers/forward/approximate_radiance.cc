@@ -6,6 +6,7 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/base/pi.h"
+#include "ibrdf/image/darkest.h"
 #include "ibrdf/render/scene_probe.h"
 #include "ibrdf/transport/lobe_bundles.h"
 
@@ -35,7 +36,6 @@ constexpr int kSpreads[] = {64, 128, 256};
 // By normal: points compared, and nodes over the number of harmonics that the
 // radiance needs, or where those are too many to tell.
 constexpr double kMapChecks = 256, kMapNodes = 6, kRoughMapNodes = 4000;
-constexpr double kDarkest = 1e-3;  // of the mean radiance
 constexpr double kNotPredicted = -1.0;
 
 double Cube(double x) { return x * x * x; }
@@ -56,7 +56,7 @@ double ErrorBound(const std::vector<double>& L_o,
   double mean = 0.0;
   for (const double v : truth) mean += v / static_cast<double>(truth.size());
   if (!(mean > 0.0)) return 0.0;
-  const double least = kDarkest * mean;
+  const double least = kDarkestShare * mean;
   double sum = 0.0, squares = 0.0;
   const auto count = static_cast<double>(truth.size() / 3);
   for (size_t i = 0; i < truth.size(); i += 3) {
