@@ -165,7 +165,8 @@ class EvidenceStudy {
     o.least_gain = least_gain;
     descent.summary = Descend(objective, o, &y);
     descent.value = objective.last_value();
-    descent.end = {objective.LobesOf(y.data()), objective.HyperparametersOf(y.data())};
+    descent.end = {objective.LobesOf(y.data()),
+                   objective.HyperparametersOf(y.data())};
     return descent;
   }
 

@@ -8,12 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/solvers/baselines/table_samples.h"
 
 namespace ibrdf {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Beyond these a parameter no longer changes a table.
 constexpr ParameterBounds kLogColour = {-20.0, 10.0};

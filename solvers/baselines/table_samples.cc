@@ -6,10 +6,11 @@
 #include <cmath>
 #include <random>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kBlockH = 2, kBlockD = 4, kBlockP = 15;
 constexpr int kHalfPhiD = kMerlPhiD / 2;
 

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/brdf_sampler.h"
 #include "ibrdf/io/atomic_file.h"
 #include "ibrdf/io/merl.h"
@@ -22,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSampledView = kPi / 4;
 
 std::string ViewColumn(double degrees) {

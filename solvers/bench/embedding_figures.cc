@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/flow_brdf.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/io/atomic_file.h"
@@ -23,7 +24,6 @@
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kNeighbours = 5;
 constexpr int kRows = 8;  // of neighbours.png
 constexpr int kWalkSteps = 9;

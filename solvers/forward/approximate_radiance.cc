@@ -7,6 +7,7 @@
 #include <string>
 
 #include "ibrdf/approximation/gaussian_transport.h"
+#include "ibrdf/image/darkest.h"
 #include "ibrdf/render/scene_probe.h"
 #include "ibrdf/solvers/forward/approximation_costs.h"
 #include "ibrdf/transport/lobe_bundles.h"
@@ -22,7 +23,6 @@ constexpr int kProbeOrder = 16;
 constexpr int kTrustedOrder = kProbeOrder - 3;
 constexpr int kProbeViews = 12;
 constexpr int kHarmonicViews = 24;
-constexpr double kDarkest = 1e-3;  // of the mean radiance
 constexpr double kNotPredicted = -1.0;
 
 // Mean |log L_o - log truth| over points and channels, and twice its standard
@@ -32,7 +32,7 @@ double ErrorBound(const std::vector<double>& L_o,
   double mean = 0.0;
   for (const double v : truth) mean += v / static_cast<double>(truth.size());
   if (!(mean > 0.0)) return 0.0;
-  const double least = kDarkest * mean;
+  const double least = kDarkestShare * mean;
   double sum = 0.0, squares = 0.0;
   const auto count = static_cast<double>(truth.size() / 3);
   for (size_t i = 0; i < truth.size(); i += 3) {

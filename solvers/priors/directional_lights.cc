@@ -5,12 +5,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
+constexpr double kDegree = kPi / 180.0;
 // Seen at smaller cosines, mirrored light is Fresnel's as much as a directional
 // light's.
 constexpr double kMinCosine = 0.25;

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kDegree = kPi / 180;
 
 Eigen::Matrix3d GreyAndChroma(double grey, double chroma) {
   return grey * Eigen::Matrix3d::Ones() +

@@ -4,15 +4,11 @@
 
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/priors/light_process.h"
 
 namespace ibrdf {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
 
 LightSpectrum::LightSpectrum(int height, int width,
                              const Correlation& correlation)

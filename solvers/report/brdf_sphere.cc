@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/camera.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
@@ -15,8 +16,6 @@
 
 namespace ibrdf {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 std::vector<ShadingPoint> SpherePoints(int size, int samples_per_side) {
   CHECK_GT(size, 1);

@@ -148,8 +148,8 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& estimate) {
     for (size_t i = 0; i < n; ++i) {
       std.push_back(std::sqrt(estimate.lobe_covariance[i * n + i]));
     }
-    const LobeMixture of_lobes({inverse.lobes, inverse.model->shape.code_size()},
-                               std.data());
+    const LobeMixture of_lobes(
+        {inverse.lobes, inverse.model->shape.code_size()}, std.data());
     Json lobes = Json::array();
     for (int k = 0; k < inverse.lobes; ++k) {
       lobes.push_back({{"code_std", ToVector(of_lobes.code(k))},

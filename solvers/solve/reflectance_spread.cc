@@ -9,6 +9,7 @@
 
 #include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/base/normal_source.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
 
 namespace ibrdf {
@@ -29,7 +30,7 @@ LobeDistance::LobeDistance(const LobeFactory& lobes)
   double sum = 0.0;
   for (int node = 0; node < kGrid.num_nodes(); ++node) {
     const Eigen::Vector3d x = kGrid.NodePoint(node);
-    const double bound = ThetaHBound(M_PI / 2 * x[1], M_PI * x[2]);
+    const double bound = ThetaHBound(kPi / 2 * x[1], kPi * x[2]);
     double w = std::sqrt(std::max(bound, 0.0));
     for (const double end : {x[0], x[1]}) {
       if (end == 0.0 || end == 1.0) w *= 0.5;

@@ -98,8 +98,8 @@ Image RenderOf(const View& view, const SolveSetup& setup) {
 
 // Other candidates, with their distances from the estimate.
 std::vector<Alternative> AlternativesOf(
-    const std::vector<MaterialCandidate>& candidates, const LobeDistance& distance,
-    const std::vector<double>& lobes) {
+    const std::vector<MaterialCandidate>& candidates,
+    const LobeDistance& distance, const std::vector<double>& lobes) {
   std::vector<Alternative> alternatives;
   if (candidates.empty()) return alternatives;
   const std::vector<double> found = distance.LogValues(lobes);
@@ -182,8 +182,9 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
     last = std::move(first);
     end = start;
     end.stage = "end";
-    solution.status = Status(StatusCode::kNoImprovement,
-                             "the solver could not improve on its initial guess");
+    solution.status =
+        Status(StatusCode::kNoImprovement,
+               "the solver could not improve on its initial guess");
   }
   if (context->Interrupted()) {
     solution.status = Status(StatusCode::kInterrupted,

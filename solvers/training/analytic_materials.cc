@@ -4,6 +4,7 @@
 #include <random>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/base/pi.h"
 
 namespace ibrdf {
 
@@ -36,7 +37,7 @@ void AddAnalyticMaterials(int count, uint64_t seed, TrainingData* data) {
     const size_t channel = static_cast<size_t>(x.columns) * kMerlThetaH;
     data->log_raw.resize(begin + 3 * channel);
     for (int c = 0; c < x.columns; ++c) {
-      const double theta_d = x.x_d[c] * M_PI / 2, phi_d = x.x_p[c] * M_PI;
+      const double theta_d = x.x_d[c] * kPi / 2, phi_d = x.x_p[c] * kPi;
       for (int i = 0; i < kMerlThetaH; ++i) {
         const Eigen::Array3d f = brdf.Evaluate(MerlThetaH(i), theta_d, phi_d);
         for (int k = 0; k < 3; ++k) {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/flow/brdf_flow.h"
 #include "ibrdf/solvers/optim/adam.h"
 #include "ibrdf/solvers/training/checkpoint.h"
@@ -202,7 +203,7 @@ class Trainer {
     const double warm =
         std::min(1.0, (state_.step + 1.0) / static_cast<double>(kWarmUpSteps));
     return warm *
-           (kFinalRate + (1 - kFinalRate) * 0.5 * (1 + std::cos(M_PI * t)));
+           (kFinalRate + (1 - kFinalRate) * 0.5 * (1 + std::cos(kPi * t)));
   }
 
   // The share of `count` distributions of a step; sums: of their squared

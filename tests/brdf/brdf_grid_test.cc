@@ -6,11 +6,11 @@
 #include <cmath>
 #include <random>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
 
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 // f = 0.1 (c + 1) (1 + theta_h) in every valid bin, invalid ones marked.
 MerlTable RampTable() {

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
 #include "ibrdf/metrics/albedo.h"
@@ -15,7 +16,6 @@
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLevel = 1e-3;  // of tests with fixed seeds
 
 Eigen::Vector3d Direction(double theta, double phi) {

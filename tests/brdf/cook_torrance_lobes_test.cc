@@ -5,13 +5,13 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/sample_merl.h"
 #include "tests/support/coloured_paint.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr BrdfGridShape kGrid{10, 6, 5};
 
 CookTorrance Paint() {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <random>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
 
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 Eigen::Vector3d Direction(double theta, double phi) {
   return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),

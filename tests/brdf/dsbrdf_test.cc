@@ -5,9 +5,10 @@
 #include <cmath>
 #include <random>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(SplineBasis, SumsToOneInterpolatesTheEndsAndIsExactOnLines) {
   for (const int n : {4, 6, 9}) {

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 constexpr double kRounding = 1e-12;
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(Camera, OrthographicShorterSideSpansTheUnitSquare) {
   const Camera camera;

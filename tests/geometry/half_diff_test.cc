@@ -7,9 +7,10 @@
 #include <cmath>
 #include <random>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 // Rounding of the two chains of double trigonometry.
 constexpr double kRounding = 1e-12;
 

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/image/image.h"
@@ -21,8 +22,6 @@
 
 namespace ibrdf {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Status Unknown(const std::string& what, const YAML::Node& node) {
   return InvalidInput("recipe", what + ": " + YAML::Dump(node));

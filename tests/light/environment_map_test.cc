@@ -5,10 +5,11 @@
 #include <cmath>
 #include <random>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Rounding of a chain of double sines and arc tangents.
 constexpr double kRounding = 1e-12;
 // Rounding of float texels.

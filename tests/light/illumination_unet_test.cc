@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/illumination_unet_reference.h"
 
 namespace ibrdf {
@@ -15,8 +16,6 @@ namespace {
 
 using Doubles = std::vector<double>;
 using Floats = std::vector<float>;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Central differences at the step below: truncation up to 1e-7, cancellation
 // 1e-9.

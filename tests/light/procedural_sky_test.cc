@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 int BrightestTexel(const Image& map) {
   int best = 0;

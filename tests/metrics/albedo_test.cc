@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
 #include "ibrdf/brdf/merl_table.h"
@@ -13,7 +14,6 @@
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kRounding = 1e-12;
 // Smooth integrands, of which the rule resolves the horizon.
 constexpr double kSpectral = 1e-8;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
@@ -74,7 +76,7 @@ TEST(BrdfMetrics, MatchesASlowReference) {
             std::cos(td) * half +
             std::sin(td) * (std::cos(pd) * tangent + std::sin(pd) * binormal);
         const Eigen::Vector3d wo = 2 * wi.dot(half) * half - wi;
-        const double limit = std::cos(80 * 3.14159265358979323846 / 180);
+        const double limit = std::cos(80 * kPi / 180);
         const bool below = wi.z() >= limit && wo.z() >= limit;
         ++bins;
         bins80 += below;

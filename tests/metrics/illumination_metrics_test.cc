@@ -6,10 +6,11 @@
 #include <limits>
 #include <random>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Radiance is float, the floor shifts a factor by less than 1e-4 relative to
 // maps whose darkest texel is 0.1 of the brightest.
 constexpr double kFloorTolerance = 1e-4;

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/flow_brdf.h"
@@ -14,8 +15,6 @@
 
 namespace ibrdf {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 RC_GTEST_PROP(HalfDiffProperty, ExchangeOfDirectionsChangesNothing, ()) {
   const Eigen::Vector3d wi = AnyDirectionAbove(1e-6),

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/transport/transport.h"
 #include "tests/properties/generators.h"
@@ -12,7 +13,6 @@
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kHeight = 8, kWidth = 16;
 
 TransportOptions Options() {

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Normals and pixels are float.
 constexpr double kFloatTolerance = 2e-6;
 // The quadrature under a map is coarse by intent.

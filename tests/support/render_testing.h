@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
@@ -14,8 +15,6 @@
 
 namespace ibrdf {
 namespace testing {
-
-inline constexpr double kPi = 3.14159265358979323846;
 
 inline BrdfFunction Lambertian(double albedo) {
   return [albedo](double, double, double) {

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // A texel belongs to a spot where it is brighter than this times what surrounds
 // the spot.
 constexpr double kAbove = 2.0;

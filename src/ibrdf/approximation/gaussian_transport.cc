@@ -9,6 +9,7 @@
 
 #include "ibrdf/base/fast_atan2.h"
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/scene/view_angles.h"
 
@@ -16,7 +17,6 @@ namespace ibrdf {
 namespace {
 using namespace view_angles;  // NOLINT
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kMostRows = 80;
 // Tables bend as a Gaussian so much sharper does: by the cosine.
 constexpr double kCosineSharpness = 8.0;

@@ -6,14 +6,13 @@
 #include <cmath>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
+#include "ibrdf/image/darkest.h"
 #include "ibrdf/scene/view_angles.h"
 
 namespace ibrdf {
 namespace {
 using namespace view_angles;  // NOLINT
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDarkest = 1e-3;  // of the mean radiance
 
 }  // namespace
 
@@ -241,7 +240,7 @@ std::vector<double> HarmonicTransport::PredictLogErrors(
     for (int c = 0; c < 3; ++c) {
       // Of a normal distribution: mean magnitude over standard deviation.
       const double scale =
-          std::sqrt(2.0 / kPi) / std::max(L_o[3 * i + c], kDarkest * mean);
+          std::sqrt(2.0 / kPi) / std::max(L_o[3 * i + c], kDarkestShare * mean);
       double variance = 0.0;
       for (int l = order; l >= 0; --l) {
         errors[l] += std::log1p(scale * std::sqrt(variance)) /

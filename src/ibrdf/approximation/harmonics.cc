@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 int Legendre2(int l, int m) { return l * (l + 1) / 2 + m; }
 

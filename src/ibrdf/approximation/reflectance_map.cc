@@ -8,10 +8,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // Cells of the first cut: by angle to the view and around it.
 constexpr int kRows = 2;
 constexpr int kColumns = 8;

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kFloor = 1e-6;  // raw units, as in the metric
 constexpr int kCells = kMerlThetaH * kMerlThetaD;
 

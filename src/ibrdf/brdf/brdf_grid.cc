@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
 
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 // Whether InterpolateMerl would meet a valid bin.
 bool AnyValidCorner(const MerlTable& table, double theta_h, double theta_d,

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLastViewDegrees = 88.5;
 constexpr int kSub = 2;  // points of a cell along each axis
 

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 // Cosines below it count as it: f stays finite at grazing angles.
 constexpr double kMinCosine = 1e-4;
 // Stands for 0 where a logarithm is taken.

@@ -4,12 +4,12 @@
 #include <memory>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/sample_merl.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 // exp(it) is 0: no diffuse part.
 constexpr double kLogZero = -1000.0;
 // A shape beyond it, 1/sr, is no reflectance: products with it stay floats.

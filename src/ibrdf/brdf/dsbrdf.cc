@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 // Cosines below it count as it.
 constexpr double kMinCosine = 1e-6;
 // Exponents and logarithms above it count as it, with no slope: f stays finite.

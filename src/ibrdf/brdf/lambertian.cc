@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 // Stands for 0 where a logarithm is taken.
 constexpr double kTiny = 1e-12;
 }  // namespace

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 int Floor(double x, int n) {
   return std::clamp(static_cast<int>(std::floor(x)), 0, n - 1);

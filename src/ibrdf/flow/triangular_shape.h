@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/flow/dense_layer.h"
 
 namespace ibrdf {
@@ -47,9 +48,9 @@ void ColumnFeatures(T x_d, T x_p, T* features, T* by_d, T* by_p) {
   using std::cos;
   using std::sin;
   using std::sqrt;
-  const T quarter = T(M_PI / 2);
+  const T quarter = T(kPi / 2);
   const T sine_d = sin(quarter * x_d), cosine_d = cos(quarter * x_d);
-  const T sine_p = sin(T(M_PI) * x_p), cosine_p = cos(T(M_PI) * x_p);
+  const T sine_p = sin(T(kPi) * x_p), cosine_p = cos(T(kPi) * x_p);
   const T c = sqrt(cosine_p * cosine_p + T(kCosineRounding));
   // Zero only at x_d = 1, and not in floating point.
   const T b = atan2(abs(cosine_d), c * sine_d) / quarter;
@@ -57,21 +58,21 @@ void ColumnFeatures(T x_d, T x_p, T* features, T* by_d, T* by_p) {
   features[0] = 2 * x_d - 1;
   features[1] = 2 * root_b - 1;
   features[2] = 2 * b - 1;
-  features[3] = cos(T(2 * M_PI) * x_p);
-  features[4] = sin(T(2 * M_PI) * x_p);
+  features[3] = cos(T(2 * kPi) * x_p);
+  features[4] = sin(T(2 * kPi) * x_p);
   features[5] = 2 * root_c - 1;
   if (by_d == nullptr || by_p == nullptr) return;
   const T norm = cosine_d * cosine_d + c * c * sine_d * sine_d;
   const T b_by_d = -c / norm;
-  const T c_by_p = -T(M_PI) * cosine_p * sine_p / c;
+  const T c_by_p = -T(kPi) * cosine_p * sine_p / c;
   const T b_by_p = -sine_d * cosine_d / norm / quarter * c_by_p;
   const T d[kColumnFeatures] = {T(2), b_by_d / root_b, 2 * b_by_d, T(0), T(0),
                                 T(0)};
   const T p[kColumnFeatures] = {T(0),
                                 b_by_p / root_b,
                                 2 * b_by_p,
-                                -T(2 * M_PI) * features[4],
-                                T(2 * M_PI) * features[3],
+                                -T(2 * kPi) * features[4],
+                                T(2 * kPi) * features[3],
                                 c_by_p / root_c};
   std::copy(d, d + kColumnFeatures, by_d);
   std::copy(p, p + kColumnFeatures, by_p);

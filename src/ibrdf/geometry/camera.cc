@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 // Sine of the smallest angle between view and `up` that still fixes the roll.
 constexpr double kMinUpSine = 1e-6;
 }  // namespace

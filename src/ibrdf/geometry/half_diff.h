@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 
 // Local frame, normal = +z. Angles in radians. Isotropy drops phi_h;
@@ -16,8 +18,8 @@ struct HalfDiff {
 
 // [-pi, pi] to [0, pi), by reciprocity.
 inline double FoldPhi(double phi) {
-  if (phi < 0.0) phi += M_PI;
-  return phi >= M_PI ? 0.0 : phi;
+  if (phi < 0.0) phi += kPi;
+  return phi >= kPi ? 0.0 : phi;
 }
 
 // wi, wo: unit, z > 0. At theta_h = 0 or theta_d = 0, where phi_d is not

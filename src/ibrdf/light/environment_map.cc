@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "ibrdf/base/fast_atan2.h"
+#include "ibrdf/base/pi.h"
 
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 
 // Overlap of the intervals [edges_a[i], edges_a[i+1]] with those of b, as
 // (b index, length) lists per interval of a. Both ascending, same ends.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
@@ -51,7 +53,7 @@ Eigen::Array3d LogMap::Mean() const {
   for (int c = 0; c < 3; ++c) {
     const auto plane = Plane(c);
     for (int r = 0; r < H; ++r) {
-      const double w = TexelSolidAngle(r, H, W) / (4 * M_PI);
+      const double w = TexelSolidAngle(r, H, W) / (4 * kPi);
       for (int x = 0; x < W; ++x) mean[c] += w * plane(r, x);
     }
   }

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180.0;
 
 // Beyond so many radii the sun's profile exp(-x^4) is below 1e-7.

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/metrics/log_difference.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kFloor = 1e-6;  // raw units
 constexpr size_t kEntries = size_t{3} * kMerlBins;
 

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/metrics/image_checks.h"
 #include "ibrdf/metrics/log_difference.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kRelativeFloor = 1e-6;
 
 // Solid angle of a texel of the row but for a factor common to all rows.

@@ -9,12 +9,11 @@
 #include <utility>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // Texels with this many times the mean power of a texel stay apart.
 constexpr double kBrightTexel = 16.0;

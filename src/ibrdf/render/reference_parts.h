@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/render/reference_kernels.h"
@@ -86,7 +87,6 @@ void SampleNearOf(const PointFrame& frame, const PointQuadrature& quadrature,
 // Bins and weights of InterpolateMerl, `factor` times; bins may be invalid.
 inline MerlTaps MerlTapsAt(double theta_h, double theta_d, double phi_d,
                            double factor) {
-  constexpr double kPi = 3.14159265358979323846;
   const auto x =
       static_cast<float>(std::sqrt(theta_h * (2 / kPi)) * kMerlThetaH - 0.5);
   const auto y = static_cast<float>(theta_d * (2 / kPi) * kMerlThetaD - 0.5);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/transport/lobe_bundles.h"
@@ -31,8 +32,6 @@ constexpr int kFewerRays = 4;
 // many along a side.
 constexpr double kBrightStep = 0.25;
 constexpr int kMostBrightSamples = 16;
-
-constexpr double kPi = 3.14159265358979323846;
 
 using Float4 [[gnu::vector_size(16)]] = float;
 

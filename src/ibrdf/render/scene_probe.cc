@@ -9,15 +9,14 @@
 #include <memory>
 
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
+#include "ibrdf/image/darkest.h"
 #include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kGoldenAngle = kPi * (3.0 - 2.23606797749978969641);
-// Of the mean radiance: darker points count as this bright.
-constexpr double kDarkest = 1e-3;
 // Of the patches: coarser than a solve takes.
 constexpr double kProbePatch = 0.2;
 constexpr int kProbePatches = 500;
@@ -74,8 +73,8 @@ double MeanAbsLogRatio(const std::vector<double>& a,
   for (const double e : b) mean += e / count;
   if (!(mean > 0.0)) return 0.0;
   for (size_t i = 0; i < b.size(); ++i) {
-    sum += std::abs(std::log(std::max(a[i], kDarkest * mean)) -
-                    std::log(std::max(b[i], kDarkest * mean)));
+    sum += std::abs(std::log(std::max(a[i], kDarkestShare * mean)) -
+                    std::log(std::max(b[i], kDarkestShare * mean)));
   }
   return sum / count;
 }

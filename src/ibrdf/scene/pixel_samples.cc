@@ -6,10 +6,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "ibrdf/image/darkest.h"
+
 namespace ibrdf {
 namespace {
 
-constexpr double kDarkest = 1e-3;  // of the image's mean
 // Of a second difference between pixels: 1/24 for the mean of a parabola over a
 // pixel, a quarter for an edge at a random place.
 constexpr double kShare = 1.0 / 8;
@@ -32,7 +33,7 @@ std::vector<double> CentreErrors(const Image& image, const Mask& mask) {
   };
   const auto log_at = [&](int x, int y, int c) {
     return std::log(
-        std::max(static_cast<double>(image.At(x, y)[c]), kDarkest * mean));
+        std::max(static_cast<double>(image.At(x, y)[c]), kDarkestShare * mean));
   };
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

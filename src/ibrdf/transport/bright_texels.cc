@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr size_t kMostTexels = 32;
 constexpr double kContrast = 30.0;  // to the map's mean
 constexpr double kLeastShare = 0.002;

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kWidthSteps = 2048;
 
 class Cutter {

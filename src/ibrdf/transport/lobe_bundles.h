@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/brdf_grid.h"
 
 namespace ibrdf {
@@ -14,7 +15,7 @@ double LobeHalfWidth(const BrdfFunction& brdf);
 
 // A lobe whose LobeHalfWidth is below this shows the object as a mirror does:
 // patches, which are patches, blur it.
-inline constexpr double kNarrowLobe = 4.0 * 3.14159265358979323846 / 180;
+inline constexpr double kNarrowLobe = 4.0 * kPi / 180;
 
 struct LobeBundles {
   std::vector<int> of;  // each direction's, in [0, count)

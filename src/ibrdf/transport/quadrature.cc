@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "ibrdf/base/fast_atan2.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegree = kPi / 180.0;
 
 // Steps of the view angle and fineness of the rings for the share of the cosine

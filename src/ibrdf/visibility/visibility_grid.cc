@@ -6,12 +6,12 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kLatticeRows = 32;
 
 // What is known of a direction. What follows from its neighbours (filled) gives
