@@ -15,7 +15,7 @@
 namespace ibrdf {
 namespace {
 
-// Of the largest pixel: inside the logarithms.
+// The floor inside the logarithms, over the largest pixel.
 constexpr double kRelativeFloor = 1e-6;
 
 // Box of starts and results. Beyond it a parameter no longer changes an image.
@@ -26,11 +26,11 @@ constexpr Bounds kLogColour = {-16.0, 8.0};
 constexpr Bounds kLogRoughness = {-5.5, 0.7};  // 0.004 to 2
 constexpr Bounds kLogitF0 = {-7.0, 7.0};
 
-// Vjp on every parameter to where it started, natural log: too weak to show in
-// the misfit, it holds what the image does not tell. Bounds instead cost Ceres
-// a line search, ten renders and more, in each step along them.
+// A pull on every parameter to where it started, natural log: too weak to show
+// in the misfit, it holds what the image does not tell. Bounds instead cost
+// Ceres a line search, ten renders and more, in each step along them.
 constexpr double kPullScale = 30.0;
-// Of a fit of the colours alone, which takes no renders.
+// Iterations of a fit of the colours alone, which takes no renders.
 constexpr int kColourIterations = 40;
 
 Bounds BoundsOf(int parameter) {

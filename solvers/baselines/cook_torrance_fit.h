@@ -11,7 +11,8 @@
 namespace ibrdf {
 
 struct CookTorranceFitOptions {
-  // Of more points about so many are kept, those of every n-th row and column:
+  // Where there are more points, about so many are kept, those of every n-th
+  // row and column:
   // the limb keeps the share that it has in the image.
   int max_points = 512;
   // Starts: each of these with each of those, its colours fitted first, which

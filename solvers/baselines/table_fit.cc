@@ -20,7 +20,7 @@ constexpr ParameterBounds kLogSlope = {-6.5, 1.5};  // 0.0015 to 4.5
 constexpr ParameterBounds kLogit = {-9.0, 9.0};
 constexpr ParameterBounds kLogitRoughness = {-4.0, 9.0};  // from 0.018
 
-// Of Cook-Torrance.
+// Starts of Cook-Torrance.
 constexpr double kStartSlopes[] = {0.03, 0.1, 0.3, 0.8};
 constexpr double kStartLogitF0[] = {-2.5, 1.0};
 

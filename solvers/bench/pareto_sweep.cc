@@ -74,7 +74,8 @@ std::string ProblemText(const ParetoSweepOptions& options, const SweepCase& c,
          JointTruthYaml(c);
 }
 
-// Of one setting under any other options: its results are not overwritten.
+// A folder of its own for each setting under any options: no results are
+// overwritten.
 std::string EstimateName(const NamedPoint& named, const ChosenModel& model) {
   const ParetoPoint& p = named.point;
   return "pareto_" + named.name + "_" + p.estimator + "_" + p.method + "_" +

@@ -12,7 +12,7 @@ using ResultsRow = std::vector<std::string>;  // a cell per column
 // Six digits; empty where the value is not finite.
 std::string NumberCell(double value);
 
-// Of at least one value.
+// The median of at least one value.
 double Median(std::vector<double> values);
 
 // A row that is filled by column name; empty cells at first.

@@ -15,12 +15,12 @@ struct TraceLine {
   double misfit = 0.0;
   int64_t pixels = 0;  // that took part
   // False in the search for the reflectance with the light integrated out:
-  // its misfit is of cells of pixels and of no map.
+  // its misfit is of normal-binned pixels and of no map.
   bool has_map = false;
 };
 
-// Of the text of the file `path`. Fails, naming the file, on one that holds no
-// whole trace.
+// The trace in the text of the file `path`. Fails, naming the file, where it
+// holds no whole trace.
 StatusOr<std::vector<TraceLine>> DecodeTrace(const std::string& path,
                                              const std::string& text);
 StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json);

@@ -7,7 +7,7 @@
 
 namespace ibrdf {
 
-// Of the maps that a sweep takes.
+// Extensions of the maps that a sweep takes.
 std::vector<std::string> MapExtensions();
 
 // Absolute path of the file in `folder` called `name` with one of the

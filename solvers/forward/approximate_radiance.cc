@@ -17,9 +17,9 @@ namespace {
 
 // A quadrature of fewer seconds than this is not worth a choice.
 constexpr double kWorthChoosing = 0.3;
-// Of the probe whose spectra tell what an order leaves out.
+// Order of the probe whose spectra tell what lower orders leave out. It does
+// not know what is above its own.
 constexpr int kProbeOrder = 16;
-// It does not know what is above its own.
 constexpr int kTrustedOrder = kProbeOrder - 3;
 constexpr int kProbeViews = 12;
 constexpr int kHarmonicViews = 24;
@@ -58,8 +58,8 @@ int SmoothOrder(const std::vector<double>& by_order, double log_error) {
   return order;
 }
 
-bool Render(const PointRenderer& render,
-            const std::vector<ShadingPoint>& points, std::vector<double>* L_o) {
+bool RenderTo(std::vector<double>* L_o, const PointRenderer& render,
+              const std::vector<ShadingPoint>& points) {
   L_o->resize(3 * points.size());
   return render(points, L_o->data());
 }
@@ -114,39 +114,23 @@ bool ApproximateRadiance::Choose(const std::vector<ShadingPoint>& points,
                                  const ApproximationOptions& options) {
   CHECK(options.Check().ok()) << options.Check().message();
   const auto count = static_cast<double>(points.size());
-  plan_ = ApproximationPlan();
-  plan_.forced = options.forced;
-  plan_.log_error = options.log_error;
-  plan_.seconds = plan_.quadrature_seconds = QuadratureSeconds(count);
-  if (options.reflectance_map) {
-    plan_.approximation = Approximation::kReflectanceMap;
-  }
-  if (!MayGain(options)) return true;
-  plan_.lobe_half_width = LobeHalfWidth(brdf_.Lookup());
-  if (!options.forced && plan_.lobe_half_width < kNarrowLobe) {
-    plan_.verdict = ApproximationVerdict::kNarrowLobe;
-    return true;
-  }
+  StartPlan(count, options);
+  if (!MayGain(options) || LobeIsTooNarrow(options)) return true;
 
   Samples at;
   at.points = SpreadPoints(points, options.checked_points);
   grid_ = brdf_.Grid();
   const std::vector<double> by_order = PredictByOrder(at);
-  if (options.reflectance_map) {
-    const int order = SmoothOrder(by_order, options.log_error);
-    plan_.seconds =
-        std::min(plan_.seconds,
-                 ReflectanceMapSeconds(order <= kTrustedOrder ? order : -1));
-  }
+  PredictReflectanceMap(by_order, options);
   if (!MayGain(options)) return true;
-  if (!ibrdf::Render(quadrature, at.points, &at.quadrature)) return false;
+  if (!RenderTo(&at.quadrature, quadrature, at.points)) return false;
   std::vector<Candidate> table = ListCandidates(by_order, count, options);
   if (!AnyPromising(at, options, &table)) {
     Decline(ApproximationVerdict::kPredictedOff, table);
     return true;
   }
 
-  if (!ibrdf::Render(reference, at.points, &at.reference)) return false;
+  if (!RenderTo(&at.reference, reference, at.points)) return false;
   plan_.checked = static_cast<int>(at.points.size());
   plan_.quadrature_error = ErrorBound(at.quadrature, at.reference);
   if (const Candidate* chosen = ChooseFrom(at, options, &table)) {
@@ -157,9 +141,37 @@ bool ApproximateRadiance::Choose(const std::vector<ShadingPoint>& points,
   return true;
 }
 
+void ApproximateRadiance::StartPlan(double num_points,
+                                    const ApproximationOptions& options) {
+  plan_ = ApproximationPlan();
+  plan_.forced = options.forced;
+  plan_.log_error = options.log_error;
+  plan_.seconds = plan_.quadrature_seconds = QuadratureSeconds(num_points);
+  if (options.reflectance_map) {
+    plan_.approximation = Approximation::kReflectanceMap;
+  }
+}
+
 bool ApproximateRadiance::MayGain(const ApproximationOptions& options) const {
   if (!options.harmonics && !options.gaussians) return false;
   return options.forced || plan_.seconds >= kWorthChoosing;
+}
+
+bool ApproximateRadiance::LobeIsTooNarrow(const ApproximationOptions& options) {
+  if (options.forced) return false;
+  plan_.lobe_half_width = LobeHalfWidth(brdf_.Lookup());
+  if (plan_.lobe_half_width >= kNarrowLobe) return false;
+  plan_.verdict = ApproximationVerdict::kNarrowLobe;
+  return true;
+}
+
+void ApproximateRadiance::PredictReflectanceMap(
+    const std::vector<double>& by_order, const ApproximationOptions& options) {
+  if (!options.reflectance_map) return;
+  const int order = SmoothOrder(by_order, options.log_error);
+  const double seconds =
+      ReflectanceMapSeconds(order <= kTrustedOrder ? order : -1);
+  plan_.seconds = std::min(plan_.seconds, seconds);
 }
 
 std::vector<double> ApproximateRadiance::PredictByOrder(
@@ -170,7 +182,7 @@ std::vector<double> ApproximateRadiance::PredictByOrder(
 
 std::vector<ApproximateRadiance::Candidate> ApproximateRadiance::ListCandidates(
     const std::vector<double>& by_order, double num_points,
-    const ApproximationOptions& options) {
+    const ApproximationOptions& options) const {
   std::vector<Candidate> table;
   if (options.harmonics) {
     const int first =

@@ -44,7 +44,7 @@ struct ApproximationOptions {
   Status Check() const;
 };
 
-// Of one scene. Keeps references to the map and the BRDF.
+// The choice for one scene. Keeps references to the map and the BRDF.
 class ApproximateRadiance {
  public:
   ApproximateRadiance(const Image& map, const KnownBrdf& brdf, int num_threads);
@@ -83,13 +83,21 @@ class ApproximateRadiance {
   };
   struct Gaussians;
 
+  // The plan of points that are rendered each by itself, or by normal.
+  void StartPlan(double num_points, const ApproximationOptions& options);
+  // Whether harmonics or Gaussians may be taken and save seconds that count.
   bool MayGain(const ApproximationOptions& options) const;
+  bool LobeIsTooNarrow(const ApproximationOptions& options);
+  // Puts the seconds of the reflectance map, where it may be taken, in place of
+  // the quadrature's.
+  void PredictReflectanceMap(const std::vector<double>& by_order,
+                             const ApproximationOptions& options);
   // Mean |log error| of harmonics up to each order.
   std::vector<double> PredictByOrder(const Samples& at) const;
   // By seconds, the least first.
-  std::vector<Candidate> ListCandidates(const std::vector<double>& by_order,
-                                        double num_points,
-                                        const ApproximationOptions& options);
+  std::vector<Candidate> ListCandidates(
+      const std::vector<double>& by_order, double num_points,
+      const ApproximationOptions& options) const;
   // Fills `predicted` and `spots` in, where they are not.
   void Predict(const Samples& at, Candidate* candidate) const;
   // Whether any candidate is worth rendering the reference for.

@@ -31,16 +31,17 @@ struct ApproximationPlan {
   ApproximationVerdict verdict = ApproximationVerdict::kNotConsidered;
   bool forced = false;           // the user asks for harmonics or Gaussians
   double log_error = 0.0;        // allowed
-  double lobe_half_width = 0.0;  // radians; of kNarrowLobe
-  // Of the harmonics or Gaussians taken, else of the best candidate: predicted
-  // from the light that is left out.
+  double lobe_half_width = 0.0;  // radians, where it was asked for
+  // Error of the harmonics or Gaussians taken, else of the best candidate, as
+  // predicted from the light that is left out.
   double predicted_error = 0.0;
-  // Of those taken and of the quadrature: found, with two standard errors, at
-  // `checked` points of the image that are rendered at reference quality.
+  // Errors of those taken and of the quadrature, with two standard errors, as
+  // found at `checked` points of the image that are rendered at reference
+  // quality.
   double found_error = 0.0, quadrature_error = 0.0;
   int checked = 0;
-  // Predicted from counts, not from a clock: of the decision and of the
-  // quadrature, on one core.
+  // What the decision and the quadrature take on one core, as predicted from
+  // counts, not by a clock.
   double seconds = 0.0, quadrature_seconds = 0.0;
 };
 

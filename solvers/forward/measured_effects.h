@@ -1,4 +1,4 @@
-// What the effects of a known scene are worth, by rendering a few points.
+// Omission errors of the effects of a known scene, by rendering a few points.
 #pragma once
 #include <vector>
 

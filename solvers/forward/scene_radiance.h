@@ -14,7 +14,8 @@ namespace ibrdf {
 
 // How finely radiance is worked out. The defaults are a preview's.
 struct SceneRadianceOptions {
-  // Of Coarser(): a quarter of the rings of directions around a highlight.
+  // Whether the quadrature is that of Coarser(): a quarter of the rings of
+  // directions around a highlight.
   bool coarse_quadrature = true;
   // Rows of directions of shadow rays. Those of the reference brought the
   // mirror-like armadillo nothing (docs/notes, effects).

@@ -35,13 +35,13 @@ struct InverseProblem {
 
   std::optional<double> scale, epsilon;  // of the likelihood
   SolverSpec solver;
-  // Of solver.seconds: what went before the call, and what is to be left for
-  // what follows it, as a program reads files before and writes them after.
+  // Shares of solver.seconds: what went before the call, and what is to be left
+  // for what follows it, as a program reads files before and writes them after.
   double seconds_spent = 0.0, seconds_reserved = 0.0;
   uint64_t seed = 1;
   int num_threads = 0;
-  // Of the level solver.quadrature; with the visibility of `points` where
-  // `effects` has it.
+  // The light transport, at the level solver.quadrature; with the visibility of
+  // `points` where `effects` has it.
   TransportOptions transport;
   EffectsPlan effects;
 };

@@ -25,7 +25,7 @@ struct TrainFlags {
   std::vector<int> widths = {96, 96, 96};
   TrainerOptions trainer;
 
-  // Of a training. Names the first flag that is missing.
+  // For a training: names the flag that is missing.
   Status Check() const;
 };
 

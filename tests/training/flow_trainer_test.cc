@@ -51,6 +51,18 @@ TEST(Adam, TouchesItsRangeOnly) {
   EXPECT_EQ(1.0f, x[3]);
 }
 
+TEST(TrainerOptions, CheckNamesTheFlag) {
+  TrainerOptions options;
+  EXPECT_TRUE(options.Check().ok());
+  options.columns_per_code = 24;
+  EXPECT_EQ("command line: --columns-per-code: expected a multiple of 16",
+            options.Check().message());
+  options.columns_per_code = 16;
+  options.points_per_column = 6;
+  EXPECT_EQ("command line: --points-per-column: expected a multiple of 4",
+            options.Check().message());
+}
+
 // Three analytic materials on disk: matte, glossy and coloured.
 class TrainerTest : public ::testing::Test {
  protected:

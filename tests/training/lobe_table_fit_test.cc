@@ -160,6 +160,15 @@ TEST_F(LobeTableFitTest, CodesStayInTheBallAndScoreIsThatOfTheTable) {
   EXPECT_NEAR(full, fit->log_rmse, 0.1 * full);
 }
 
+TEST_F(LobeTableFitTest, OptionsOutOfRangeAreRefused) {
+  EXPECT_TRUE(LobeTableFitOptions().Check().ok());
+  const MerlTable table = TableOf(model_, {0.3, 0.3, 0.3, 0.3, 4.0, 3.0, 2.0});
+  options_.prior_sigma = 0.0;
+  const Status status = fitter_.Fit(table, options_).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+  EXPECT_NE(std::string::npos, status.message().find("prior_sigma"));
+}
+
 TEST_F(LobeTableFitTest, ThreadsDoNotChangeTheFit) {
   const MerlTable table = TableOf(model_, {0.3, 0.3, 0.3, 0.3, 4.0, 3.0, 2.0});
   options_.lobes = 1;
