@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "ibrdf/base/format.h"
@@ -9,6 +10,7 @@
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/report/brdf_sphere.h"
 #include "ibrdf/solvers/report/preview.h"
+#include "ibrdf/solvers/report/result_images.h"
 #include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
@@ -195,6 +197,21 @@ Rgb8Image ComposeOverview(const ResultPanels& rows,
 }
 
 }  // namespace
+
+ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
+  ResultPreviewInput input;
+  input.title = std::filesystem::path(solved.problem.path).filename().string();
+  input.input = solved.inverse.image;
+  input.mask = ObjectMask(solved.inverse);
+  input.render = solved.solution.render;
+  input.illumination = solved.solution.map;
+  input.reference_illumination = solved.truth.illumination;
+  input.brdf = solved.solution.brdf;
+  input.reference_brdf = solved.truth.brdf;
+  input.metrics = MetricLines(solved.metrics);
+  input.num_threads = solved.inverse.num_threads;
+  return input;
+}
 
 Rgb8Image MakeOverview(const ResultPreviewInput& input) {
   return ComposeOverview(MakeRows(input), input);

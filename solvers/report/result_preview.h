@@ -8,6 +8,7 @@
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
 #include "ibrdf/solvers/report/preview.h"
+#include "ibrdf/solvers/report/solved_problem.h"
 
 namespace ibrdf {
 
@@ -25,8 +26,10 @@ struct ResultPreviewInput {
   int num_threads = 0;               // <= 0: all
 };
 
+ResultPreviewInput PreviewInput(const SolvedProblem& solved);
+
 // The overview: input, render and residual; the maps; the BRDFs on spheres
-// under the lights of render/brdf_sphere.h, the estimate's beside the
+// under the lights of report/brdf_sphere.h, the estimate's beside the
 // reference's. Input and render share an exposure, and so do each estimate and
 // its reference; an estimate with a reference is first brought to the
 // reference's scale by one factor for all channels, which its label states.
