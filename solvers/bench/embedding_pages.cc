@@ -38,98 +38,125 @@ struct Box {
   }
 };
 
-}  // namespace
+// The map's page in pixels: head, spheres, foot.
+constexpr int kMapWidth = 1600, kMapHeight = 1200, kMapDiameter = 68;
+constexpr double kMapTop = 96.0, kMapBottom = 60.0;
 
-Rgb8Image MapPage(const EmbeddingMap& map,
-                  const std::vector<NamedSphere>& spheres, double exposure) {
-  constexpr int kWidth = 1600, kHeight = 1200, kDiameter = 68;
-  constexpr double kTop = 96.0, kBottom = 60.0, kLabelGap = 3.0;
-  const int n = static_cast<int>(spheres.size());
-  Picture page(kWidth, kHeight);
-  page.Text("Embedding of the materials, first two principal axes", kMargin,
-            48.0, kTitleHeight);
+void DrawMapText(int materials, const Eigen::VectorXd& variance,
+                 Picture* page) {
+  page->Text("Embedding of the materials, first two principal axes", kMargin,
+             48.0, kTitleHeight);
   const std::string note = Format(
       "%d materials; codes of the three channels in a row. Spheres "
       "that would overlap are moved; a line leads to the place.",
-      n);
-  page.Text(note, kMargin, 74.0, kTextHeight, Picture::Align::kLeft, kGreyInk);
+      materials);
+  page->Text(note, kMargin, 74.0, kTextHeight, Picture::Align::kLeft, kGreyInk);
+  constexpr double kLine = kMapHeight - kMapBottom + 8;
+  page->Line(kMargin, kLine, kMapWidth - kMargin, kLine, kFaintInk);
+  page->Text(Format("axis 1: %.1f %% of the variance", 100.0 * variance[0]),
+             kMapWidth - kMargin, kLine + 24, kTextHeight,
+             Picture::Align::kRight, kGreyInk);
+  page->Text(
+      Format("axis 2, upwards: %.1f %% of the variance", 100.0 * variance[1]),
+      kMargin, kLine + 24, kTextHeight, Picture::Align::kLeft, kGreyInk);
+}
 
-  // One scale for both axes would leave a band: axes are scaled by themselves.
-  const double radius = kDiameter / 2.0;
-  const Eigen::Array2d low(kMargin + radius + 20, kTop + radius);
-  const Eigen::Array2d high(kWidth - kMargin - radius - 20,
-                            kHeight - kBottom - radius - 16);
-  Eigen::MatrixXd places(n, 2);
+// Scores along the first two axes as places [n, 2] in the box from low to high.
+// One scale for both would leave a band: each axis has its own.
+Eigen::MatrixXd PlacesOf(const Eigen::MatrixXd& scores,
+                         const Eigen::Array2d& low,
+                         const Eigen::Array2d& high) {
+  Eigen::MatrixXd places(scores.rows(), 2);
   for (int k = 0; k < 2; ++k) {
-    const Eigen::VectorXd scores = map.scores.col(k);
-    const double span = std::max(scores.maxCoeff() - scores.minCoeff(), 1e-12);
-    for (int i = 0; i < n; ++i) {
-      const double t = (scores[i] - scores.minCoeff()) / span;
+    const double least = scores.col(k).minCoeff();
+    const double span = std::max(scores.col(k).maxCoeff() - least, 1e-12);
+    for (Eigen::Index i = 0; i < scores.rows(); ++i) {
+      const double t = (scores(i, k) - least) / span;
       places(i, k) = k == 0
                          ? low[0] + t * (high[0] - low[0])
                          : high[1] - t * (high[1] - low[1]);  // up is positive
     }
   }
+  return places;
+}
+
+// The lines of a name and how much room they take.
+struct NameLines {
+  static constexpr double kLine = kNameHeight + 4.0;
+  NameLines(const std::string& name, double width_limit)
+      : lines(WrapName(name, width_limit, kNameHeight)) {
+    for (const std::string& line : lines) {
+      width = std::max(width, Picture::TextWidth(line, kNameHeight));
+    }
+    height = kLine * static_cast<double>(lines.size());
+  }
+
+  std::vector<std::string> lines;
+  double width = 0.0, height = 0.0;
+};
+
+// Draws the name below or above its sphere, or either with a shift to a side,
+// and adds it to what is taken; where nothing is free the csv has to do.
+void DrawName(const NameLines& name, double sphere_x, double sphere_y,
+              int diameter, std::vector<Box>* taken, Picture* page) {
+  constexpr double kLabelGap = 3.0;
+  const double shift = 0.35 * diameter;
+  for (const double aside : {0.0, shift, -shift}) {
+    for (const bool below : {true, false}) {
+      const double x = sphere_x + aside;
+      const double top =
+          below ? sphere_y + 0.5 * diameter + kLabelGap
+                : sphere_y - 0.5 * diameter - kLabelGap - name.height;
+      const Box box{x - name.width / 2, top, x + name.width / 2,
+                    top + name.height};
+      const bool free =
+          std::none_of(taken->begin(), taken->end(),
+                       [&](const Box& o) { return box.Meets(o); });
+      if (!free || box.left < 12 || box.right > kMapWidth - 12) continue;
+      for (size_t k = 0; k < name.lines.size(); ++k) {
+        page->Text(name.lines[k], x, top + kNameHeight + k * NameLines::kLine,
+                   kNameHeight, Picture::Align::kCentre);
+      }
+      taken->push_back(box);
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+Rgb8Image MapPage(const EmbeddingMap& map,
+                  const std::vector<NamedSphere>& spheres, double exposure) {
+  const int n = static_cast<int>(spheres.size());
+  Picture page(kMapWidth, kMapHeight);
+  DrawMapText(n, map.variance, &page);
+  constexpr double kRadius = kMapDiameter / 2.0;
+  const Eigen::Array2d low(kMargin + kRadius + 20, kMapTop + kRadius);
+  const Eigen::Array2d high(kMapWidth - kMargin - kRadius - 20,
+                            kMapHeight - kMapBottom - kRadius - 16);
+  const Eigen::MatrixXd places = PlacesOf(map.scores, low, high);
   // Room for a line of text below each sphere, as far as there is.
   const double cell = std::sqrt((high - low).prod() / n);
-  const double distance = std::min(kDiameter + 40.0, 0.93 * cell);
+  const double distance = std::min(kMapDiameter + 40.0, 0.93 * cell);
   const Eigen::MatrixXd at = SpreadApart(places, distance, low, high);
-
-  page.Line(kMargin, kHeight - kBottom + 8, kWidth - kMargin,
-            kHeight - kBottom + 8, kFaintInk);
-  page.Text(Format("axis 1: %.1f %% of the variance", 100.0 * map.variance[0]),
-            kWidth - kMargin, kHeight - kBottom + 32, kTextHeight,
-            Picture::Align::kRight, kGreyInk);
-  page.Text(Format("axis 2, upwards: %.1f %% of the variance",
-                   100.0 * map.variance[1]),
-            kMargin, kHeight - kBottom + 32, kTextHeight, Picture::Align::kLeft,
-            kGreyInk);
   for (int i = 0; i < n; ++i) {
     page.Line(places(i, 0), places(i, 1), at(i, 0), at(i, 1), kFaintInk);
     page.Dot(places(i, 0), places(i, 1), 2.5, kGreyInk);
   }
   const int diameter =
-      static_cast<int>(std::min<double>(kDiameter, distance - 6.0));
+      static_cast<int>(std::min<double>(kMapDiameter, distance - 6.0));
   // The head of the page, and a strip at its foot.
-  std::vector<Box> taken = {{0, 0, kWidth, 82},
-                            {0, kHeight - kBottom, kWidth, kHeight}};
+  std::vector<Box> taken = {
+      {0, 0, kMapWidth, 82},
+      {0, kMapHeight - kMapBottom, kMapWidth, kMapHeight}};
   for (int i = 0; i < n; ++i) {
     page.Sphere(spheres[i].image, at(i, 0), at(i, 1), diameter, exposure);
     const double r = 0.46 * diameter;
     taken.push_back({at(i, 0) - r, at(i, 1) - r, at(i, 0) + r, at(i, 1) + r});
   }
-  // Names: below, above, and either with a shift to a side; where nothing is
-  // free the csv has to do.
-  const double line = kNameHeight + 4.0;
-  const double shift = 0.35 * diameter;
   for (int i = 0; i < n; ++i) {
-    const std::vector<std::string> lines =
-        WrapName(spheres[i].name, 1.2 * distance, kNameHeight);
-    double width = 0.0;
-    for (const std::string& text : lines) {
-      width = std::max(width, Picture::TextWidth(text, kNameHeight));
-    }
-    const double height = line * static_cast<double>(lines.size());
-    for (int place = 0; place < 6; ++place) {
-      const double aside = place / 2 == 0   ? 0.0
-                           : place / 2 == 1 ? shift
-                                            : -shift;
-      const double x = at(i, 0) + aside;
-      const double top = place % 2 == 0
-                             ? at(i, 1) + 0.5 * diameter + kLabelGap
-                             : at(i, 1) - 0.5 * diameter - kLabelGap - height;
-      const Box box{x - width / 2, top, x + width / 2, top + height};
-      const bool free =
-          std::none_of(taken.begin(), taken.end(),
-                       [&](const Box& o) { return box.Meets(o); });
-      if (!free || box.left < 12 || box.right > kWidth - 12) continue;
-      for (size_t k = 0; k < lines.size(); ++k) {
-        page.Text(lines[k], x, top + kNameHeight + k * line, kNameHeight,
-                  Picture::Align::kCentre);
-      }
-      taken.push_back(box);
-      break;
-    }
+    DrawName(NameLines(spheres[i].name, 1.2 * distance), at(i, 0), at(i, 1),
+             diameter, &taken, &page);
   }
   return page.ToImage();
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ibrdf/solvers/report/html.h"
-#include "ibrdf/solvers/report/short_number.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 
 namespace ibrdf {
 namespace {

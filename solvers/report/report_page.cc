@@ -6,12 +6,12 @@
 #include "ibrdf/io/problem_json.h"
 #include "ibrdf/solvers/report/gauge_words.h"
 #include "ibrdf/solvers/report/html.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/report/report_metrics.h"
 #include "ibrdf/solvers/report/report_plots.h"
 #include "ibrdf/solvers/report/report_posterior.h"
 #include "ibrdf/solvers/report/report_style.h"
 #include "ibrdf/solvers/report/report_warnings.h"
-#include "ibrdf/solvers/report/short_number.h"
 #include "ibrdf/solvers/report/svg_plot.h"
 
 namespace ibrdf {

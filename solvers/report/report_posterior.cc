@@ -5,7 +5,7 @@
 
 #include "ibrdf/solvers/report/html.h"
 #include "ibrdf/solvers/report/lobe_summary.h"
-#include "ibrdf/solvers/report/short_number.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {

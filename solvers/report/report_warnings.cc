@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ibrdf/solvers/report/short_number.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {

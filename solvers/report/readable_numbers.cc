@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/report/short_number.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 
 #include <cmath>
 
@@ -10,6 +10,14 @@ std::string ShortNumber(double value) {
   if (!std::isfinite(value)) return "-";
   const bool whole = value == std::floor(value) && std::fabs(value) < 1e9;
   return Format(whole ? "%.0f" : "%.4g", value);
+}
+
+double RoundUp(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (x <= factor * power * (1.0 + 1e-9)) return factor * power;
+  }
+  return 10.0 * power;
 }
 
 }  // namespace ibrdf
