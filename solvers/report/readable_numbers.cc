@@ -8,7 +8,8 @@ namespace ibrdf {
 
 std::string ShortNumber(double value) {
   if (!std::isfinite(value)) return "-";
-  const bool whole = value == std::floor(value) && std::fabs(value) < 1e9;
+  const double size = std::fabs(value);
+  const bool whole = size < 1e9 && (size >= 1e4 || value == std::floor(value));
   return Format(whole ? "%.0f" : "%.4g", value);
 }
 

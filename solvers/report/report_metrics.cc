@@ -31,15 +31,16 @@ std::vector<MetricRow> TruthRows(const ResultMetrics& metrics) {
          "bins of the MERL table: 0.1 is about 10 %, 0.7 a factor of two."});
     rows.push_back(
         {"BRDF log-RMSE below 80 degrees", brdf->log_rmse_below80, std::nullopt,
-         "The same where both directions lie within 80 degrees of the normal: "
-         "grazing bins dominate the whole table and hardly show in an image."});
+         "The same over the bins whose two directions lie within 80 degrees of "
+         "the normal. Grazing bins dominate the whole table and hardly show in "
+         "an image."});
   }
   if (const auto& map = metrics.illumination) {
     rows.push_back(
         {"Illumination relative log-RMSE", map->relative_log_rmse,
          map->relative_log_rmse_aligned,
          "Root mean square difference of log radiance over the sphere, as a "
-         "share of the truth's range from darkest to brightest."});
+         "share of the range of the truth's log radiance."});
     rows.push_back({"The same, unweighted", map->relative_log_rmse_unweighted,
                     std::nullopt,
                     "Every texel counts alike, those at the poles too."});
@@ -50,20 +51,21 @@ std::vector<MetricRow> TruthRows(const ResultMetrics& metrics) {
 std::vector<MetricRow> ImageRows(const ResultMetrics& metrics) {
   std::vector<MetricRow> rows = {
       {"Misfit", metrics.misfit, std::nullopt,
-       "Mean |log E - log I| of render and image, natural: 0.02 is 2 %. It "
-       "ends at the noise, or at what the lobes cannot render."}};
+       "Mean absolute log error, |log L_o - log I|, of the rendered radiance "
+       "L_o against the image I: 0.02 is about 2 %. The least that can be "
+       "reached is the noise, and what the lobes cannot render."}};
   if (const auto& image = metrics.image) {
     rows.push_back({"Image log-RMSE", image->log_rmse, std::nullopt,
-                    "Root mean square of the same difference."});
+                    "Root mean square of log L_o - log I."});
     rows.push_back({"PSNR (dB)", image->psnr, std::nullopt,
-                    "Peak signal to noise ratio after the best scale: bright "
+                    "Peak signal-to-noise ratio after the best scale. Bright "
                     "pixels count most."});
     rows.push_back(
         {"DSSIM", image->dssim, std::nullopt,
          "(1 - SSIM) / 2 of log(1 + radiance): 0 is the same structure."});
   }
   rows.push_back({"Time (s)", metrics.seconds, std::nullopt,
-                  "Of the solver, without files."});
+                  "Reading of the input and solving, without writing."});
   return rows;
 }
 
@@ -90,18 +92,17 @@ std::string TruthTable(const ResultMetrics& metrics, ProblemKind kind) {
                        "No truth was given: nothing here says how near the "
                        "estimate is to it. A low misfit alone does not.");
   }
-  std::string out =
+  const std::string out =
       HtmlElement("h3", "Against the truth") + "\n" +
       HtmlTable({"metric", "as is", "after the best scale", "meaning"}, cells);
+  std::string note = "The best scale is one factor per channel.";
   if (kind == ProblemKind::kJoint) {
-    out += HtmlElement(
-        "p",
-        "The best scale is one factor per channel. An image cannot tell a "
-        "bright object in dim light from a dark one in bright light, so that "
-        "the first number holds the luck of that choice, too; the second "
-        "leaves it out, and with it the overall colour.");
+    note +=
+        " An image cannot tell a bright object in dim light from a dark object "
+        "in bright light. The first number holds the luck of that choice, too. "
+        "The second leaves it out, and with it the overall colour.";
   }
-  return out;
+  return out + HtmlElement("p", note);
 }
 
 }  // namespace

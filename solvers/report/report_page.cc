@@ -36,11 +36,12 @@ std::string KindInWords(ProblemKind kind) {
 
 std::string Summary(const SolvedProblem& solved) {
   return KindInWords(solved.problem.kind) + " Misfit " +
-         ShortNumber(solved.metrics.misfit) +
-         " (mean |log render - log image|) after " +
+         ShortNumber(solved.metrics.misfit) + " after " +
          ShortNumber(solved.metrics.seconds) + " s, from " +
          ShortNumber(static_cast<double>(solved.solution.pixels_used)) +
-         " pixels.";
+         " pixels. The misfit is the mean absolute log error of the render: "
+         "the mean of |log L_o - log I| over pixels and channels, with the "
+         "rendered radiance L_o and the image I.";
 }
 
 std::string WarningList(const SolvedProblem& solved) {
@@ -63,12 +64,14 @@ Rows Choices(const SolvedProblem& solved) {
       {"gauge", GaugeWords(solved.inverse)},
       {"likelihood.scale",
        ShortNumber(solution.scale) +
-           " (b of the Laplacian, natural log, at the end)"},
+           " (b of the Laplace distribution of log errors, at the "
+           "result)"},
       {"likelihood.epsilon", ShortNumber(solution.epsilon) +
                                  " (radiance added inside the logarithms)"}};
-  if (!solution.start.empty()) rows.push_back({"start", solution.start});
-  rows.push_back(
-      {"seed", ShortNumber(static_cast<double>(solved.inverse.seed))});
+  if (!solution.start.empty()) {
+    rows.push_back({"initial guess", solution.start});
+  }
+  rows.push_back({"seed", std::to_string(solved.inverse.seed)});
   return rows;
 }
 
@@ -89,8 +92,9 @@ std::string GaugeSection(const InverseProblem& inverse) {
   return Section(
       "Scale",
       HtmlElement("p",
-                  "(s R, L / s) renders the same image for every s, per "
-                  "channel, so that no image fixes it. Here: " +
+                  "A reflectance R and a light L render the same image as the "
+                  "pair (s R, L / s), for every factor s per channel. No image "
+                  "tells s. What set it here: " +
                       GaugeWords(inverse) + ".") +
           "\n");
 }
@@ -101,11 +105,11 @@ std::string PlotSection(const std::vector<TraceEntry>& trace) {
   std::string body =
       HtmlElement(
           "p",
-          "The best state after each step. Misfits compare across the "
-          "steps at the pixels; costs only between steps with as many "
-          "pixels and the same scale b, which is estimated anew in "
-          "each round: a smaller b raises the likelihood term. Lines break "
-          "where the number of pixels changes.") +
+          "A point is the best state after a step. Misfits compare across all "
+          "steps at the image's pixels. Costs compare only between steps with "
+          "as many pixels and the same scale b of the likelihood. The scale is "
+          "estimated anew in each outer iteration, and a smaller b raises the "
+          "likelihood term. Lines break where the number of pixels changes.") +
       "\n<div class=\"plots\">\n";
   for (const LinePlot& plot : plots) {
     body += "<div class=\"plot\">\n" + SvgLinePlot(plot) + "</div>\n";

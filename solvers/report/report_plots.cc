@@ -47,8 +47,10 @@ bool AnyFinite(const PlotSeries& series) {
 }
 
 LinePlot MisfitPlot(const std::vector<TraceEntry>& trace) {
-  LinePlot plot{
-      "Misfit", kSeconds, {"mean |log E - log I| (natural log)", true}, {}};
+  LinePlot plot{"Misfit: mean absolute log error",
+                kSeconds,
+                {"mean |log L_o - log I| (natural log)", true},
+                {}};
   for (const TraceEntry& entry : trace) {
     Append(StageName(entry), entry.seconds, entry.misfit, &plot);
   }

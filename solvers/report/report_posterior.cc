@@ -15,7 +15,7 @@ namespace {
 std::string Uncertainty(double log_std) {
   if (!std::isfinite(log_std)) return "";
   if (log_std < 0.4) return " \xC2\xB1 " + ShortNumber(100 * log_std) + " %";
-  return " within a factor of " + ShortNumber(std::exp(log_std));
+  return ", within a factor of " + ShortNumber(std::exp(log_std));
 }
 
 double Norm(const std::vector<double>& v) {
@@ -28,7 +28,7 @@ std::string LobeTable(const std::vector<LobeSummary>& lobes) {
   std::vector<std::vector<std::string>> rows;
   for (size_t k = 0; k < lobes.size(); ++k) {
     const auto& deviation = lobes[k].deviation;
-    std::vector<std::string> row = {"lobe " + std::to_string(k + 1)};
+    std::vector<std::string> row = {"lobe\xC2\xA0" + std::to_string(k + 1)};
     for (size_t c = 0; c < 3; ++c) {
       row.push_back(ShortNumber(lobes[k].colour[c]) +
                     (deviation ? Uncertainty(deviation->log_colour[c]) : ""));
@@ -40,29 +40,32 @@ std::string LobeTable(const std::vector<LobeSummary>& lobes) {
                       : "-");
     rows.push_back(row);
   }
-  return HtmlTable({"", "red", "green", "blue", "length of the code",
-                    "deviation of a code's entry"},
+  return HtmlTable({"", "red", "green", "blue", "norm of the code",
+                    "standard deviation of its entries"},
                    rows);
 }
 
 std::string LobesInWords(const std::vector<LobeSummary>& lobes) {
   if (lobes.empty()) return "";
-  return HtmlElement("p", std::string("The estimate (brdf.json): ") +
-                              kLobeFormula + ".") +
+  return HtmlElement(
+             "p", std::string("The estimate is a sum of lobes (brdf.json): ") +
+                      kLobeFormula +
+                      ". A code is a place among the training materials, whose "
+                      "codes have norms of at most 1. Colours are in raw MERL "
+                      "units.") +
          "\n" + LobeTable(lobes) +
          HtmlElement(
              "p",
              lobes[0].deviation
-                 ? "Colours are in raw MERL units. Each number has one "
-                   "standard "
-                   "deviation, by Laplace's approximation at this optimum with "
-                   "the light integrated out; entries of codes lie within the "
-                   "unit ball. Correlations are in result.json "
-                   "(posterior.covariance). What the approximation cannot see "
-                   "are other optima:"
-                 : "Colours are in raw MERL units. No covariance was computed "
-                   "for this problem: how well these numbers are known is not "
-                   "stated.") +
+                 ? "Each colour is given with one standard deviation of its "
+                   "logarithm. The last column is the root mean square of the "
+                   "standard deviations of a code's entries. Both come from "
+                   "Laplace's approximation at this optimum, with the light "
+                   "integrated out. Correlations are in result.json "
+                   "(posterior.covariance). The approximation does not see "
+                   "other local optima."
+                 : "No covariance was computed for this problem: how well "
+                   "these numbers are known is not stated.") +
          "\n";
 }
 
@@ -71,43 +74,48 @@ std::string ExpectedErrorInWords(double spread) {
   const ErrorToExpect error = ExpectError(spread);
   return HtmlElement(
              "p",
-             "How far off to expect it: reflectances drawn from this posterior "
-             "differ from the estimate by " +
+             "How far off to expect it: reflectances sampled from this "
+             "posterior differ from the estimate by " +
                  ShortNumber(spread) +
-                 " in the logarithm (root mean square over all angles, "
-                 "aligned). Such posteriors are too sure: of images whose "
-                 "truth is known half were off by more than " +
+                 " in the logarithm (root mean square over all angles, after "
+                 "the best scale). Such posteriors are too sure: of images "
+                 "whose truth is known, half were off by more than " +
                  ShortNumber(error.median) + " at such a spread (a factor of " +
                  ShortNumber(std::exp(error.median)) +
-                 "), one in ten by more "
-                 "than " +
-                 ShortNumber(error.most) + ".") +
+                 "), one in ten by more than " + ShortNumber(error.most) +
+                 ".") +
          "\n";
+}
+
+// What is smaller than `least` is not told apart from it.
+std::string AtLeast(double least, double value) {
+  return value >= 0.0 && value < least ? "below " + ShortNumber(least)
+                                       : ShortNumber(value);
 }
 
 std::string AlternativesInWords(const std::vector<Alternative>& alternatives) {
   if (alternatives.empty()) {
-    return HtmlElement("p", "No other starts were followed.") + "\n";
+    return HtmlElement("p", "No other candidates were followed.") + "\n";
   }
   std::vector<std::vector<std::string>> rows;
   for (const Alternative& other : alternatives) {
     rows.push_back({other.start, ShortNumber(other.cost),
-                    ShortNumber(std::exp(-other.cost)),
-                    ShortNumber(other.brdf_log_difference)});
+                    AtLeast(1e-6, std::exp(-other.cost)),
+                    AtLeast(1e-3, other.brdf_log_difference)});
   }
   return HtmlElement("h3", "Other explanations") + "\n" +
-         HtmlTable(
-             {"started from", "cost above the best (nats)", "relative evidence",
-              "BRDF log-RMSE from the estimate, aligned"},
-             rows) +
+         HtmlTable({"initial guess", "cost above the best (nats)",
+                    "relative evidence", "BRDF log-RMSE from the estimate"},
+                   rows) +
          HtmlElement(
              "p",
-             "Where the search ended from its best starts. The relative "
-             "evidence is exp(-cost above the best): how probable that end "
-             "is compared with the best, given the image. One close to 1 "
-             "with a large difference is an ambiguity that this image leaves "
-             "open; materials that were ranked lower at the start were not "
-             "followed.") +
+             "Each row is a local optimum, named after the training material "
+             "that the search began with. The relative evidence is exp(-cost "
+             "above the best): how probable the optimum is compared with the "
+             "best one, given the image. The BRDF log-RMSE is taken after the "
+             "best scale. An evidence near 1 with a large difference is an "
+             "ambiguity that this image leaves open. Candidates that ranked "
+             "lower were not followed.") +
          "\n";
 }
 

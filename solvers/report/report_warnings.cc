@@ -27,13 +27,13 @@ std::string StatusWarning(const Status& status) {
     case StatusCode::kOk:
       return "";
     case StatusCode::kNoImprovement:
-      return "The solver could not improve on its start: what is shown is the "
-             "start.";
+      return "The solver could not improve on its start: the result is the "
+             "initial guess.";
     case StatusCode::kInterrupted:
-      return "The solver was stopped early: what is shown is the best state it "
+      return "The solver was stopped early: the result is the best state it "
              "had reached.";
     default:
-      return "The solver ended with status error.";
+      return "The solver ended with an error.";
   }
 }
 
@@ -44,16 +44,17 @@ bool IsOutOfTime(const SolvedProblem& solved) {
 std::string TimeWarning(const SolvedProblem& solved) {
   if (!IsOutOfTime(solved)) return "";
   return "The time limit of " + ShortNumber(solved.problem.solver.seconds) +
-         " s was nearly used up: with more (solver.seconds) the result may "
-         "still change.";
+         " s was nearly used up. With more time (solver.seconds) the result "
+         "may still change.";
 }
 
 std::string MisfitWarning(const SolvedProblem& solved) {
   const double misfit = solved.metrics.misfit;
   if (!std::isfinite(misfit)) return "The misfit is not a number.";
   if (misfit <= kLargeMisfit) return "";
-  return "The estimate does not explain the image: its misfit of " +
-         ShortNumber(misfit) + " is far above usual noise. " +
+  return "The estimate does not explain the image: its misfit, the mean "
+         "absolute log error, is " +
+         ShortNumber(misfit) + ", far above usual noise. " +
          (IsOutOfTime(solved) ? "If more time does not help, check" : "Check") +
          " the shape, the mask, the camera, and that the image is linear "
          "radiance.";
@@ -72,8 +73,8 @@ std::string UncertainWarning(const Solution& solution) {
   if (!std::isfinite(solution.spread)) return "";
   const double expected = ExpectError(solution.spread).median;
   if (!(expected > kUncertain)) return "";
-  return "This image does not tell the reflectance well: its logarithm is "
-         "expected to be off by " +
+  return "This image does not tell the reflectance well. The logarithm of the "
+         "estimate is expected to be off by " +
          ShortNumber(expected) + ", a factor of " +
          ShortNumber(std::exp(expected)) +
          " (root mean square over all angles, after the best scale).";
@@ -83,11 +84,12 @@ std::string RivalWarning(const std::vector<Alternative>& alternatives) {
   for (const Alternative& other : alternatives) {
     const double difference = other.brdf_log_difference;
     if (!(other.cost < kRivalCost && difference > kRivalDifference)) continue;
-    return "Another reflectance explains the image nearly as well: the one "
-           "found from " +
-           other.start + " has " + ShortNumber(std::exp(-other.cost)) +
-           " of the best one's evidence and differs from the estimate by " +
-           ShortNumber(difference) + " in the logarithm.";
+    return "Another reflectance explains the image nearly as well. It is the "
+           "local optimum found from " +
+           other.start + ": it has " + ShortNumber(std::exp(-other.cost)) +
+           " of the best one's evidence, and its logarithm differs from the "
+           "estimate's by " +
+           ShortNumber(difference) + " (root mean square).";
   }
   return "";
 }

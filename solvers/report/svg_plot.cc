@@ -265,8 +265,10 @@ std::string SvgLinePlot(const LinePlot& plot) {
   double top = 0.0;
   out += Legend(plot, &top);
   if (left_out > 0) {
-    out += Text(kWidth - kRight, 18, "end", 12,
-                std::to_string(left_out) + " values cannot be shown");
+    out +=
+        Text(kWidth - kRight, 18, "end", 12,
+             std::to_string(left_out) + (left_out == 1 ? " value" : " values") +
+                 " cannot be shown");
   }
   const Scale to_x(xs.low, xs.high, plot.x.logarithmic, kLeft, kWidth - kRight);
   const Scale to_y(ys.low, ys.high, plot.y.logarithmic, kHeight - kBottom, top);
