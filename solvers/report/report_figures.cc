@@ -111,7 +111,7 @@ constexpr char kSphereNote[] =
 
 // Explains the factor in an estimate's caption.
 constexpr char kScaleNote[] =
-    " An estimate beside its reference is shown times the factor xN of its "
+    " An estimate beside its reference is shown times the factor in its "
     "caption. It is one factor for all channels, which brings the mean "
     "logarithm of the estimate to that of the reference.";
 

@@ -53,7 +53,7 @@ std::vector<MetricRow> ImageRows(const ResultMetrics& metrics) {
       {"Misfit", metrics.misfit, std::nullopt,
        "Mean absolute log error, |log L_o - log I|, of the rendered radiance "
        "L_o against the image I: 0.02 is about 2 %. The least that can be "
-       "reached is the noise, and what the lobes cannot render."}};
+       "reached is the noise, and what the model cannot render."}};
   if (const auto& image = metrics.image) {
     rows.push_back({"Image log-RMSE", image->log_rmse, std::nullopt,
                     "Root mean square of log L_o - log I."});

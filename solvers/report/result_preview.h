@@ -19,6 +19,7 @@ struct ResultPreviewInput {
   Mask mask;     // of the object, of the input's size; empty: all pixels
   Image render;  // of the input's size
   Image illumination;
+  bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;
   MerlTable brdf;
   MerlTable reference_brdf;
@@ -38,7 +39,7 @@ Rgb8Image MakeOverview(const ResultPreviewInput& input);
 // The overview's rows of panels; empty where there is nothing to show.
 struct ResultPanels {
   std::vector<PreviewPanel> images;   // input, render, residual
-  std::vector<PreviewPanel> maps;     // estimate, reference
+  std::vector<PreviewPanel> maps;     // estimate, reference; or known
   std::vector<PreviewPanel> spheres;  // of each light, estimate and reference
 };
 
