@@ -155,6 +155,21 @@ const char* KindName(ProblemKind kind) {
   return "";
 }
 
+void AppendLeaves(const std::string& key, const json& value,
+                  std::vector<ProblemSetting>* settings) {
+  if (value.is_object() && !value.empty()) {
+    for (const auto& [name, member] : value.items()) {
+      AppendLeaves(key.empty() ? name : key + "." + name, member, settings);
+    }
+    return;
+  }
+  // Paths need not be UTF-8.
+  settings->push_back(
+      {key, value.is_string()
+                ? value.get<std::string>()
+                : value.dump(-1, ' ', false, json::error_handler_t::replace)});
+}
+
 }  // namespace
 
 nlohmann::json ProblemToJson(const Problem& problem) {
@@ -186,6 +201,12 @@ nlohmann::json ProblemToJson(const Problem& problem) {
   }
   if (!truth.empty()) out["truth"] = truth;
   return out;
+}
+
+std::vector<ProblemSetting> ListSettings(const Problem& problem) {
+  std::vector<ProblemSetting> settings;
+  AppendLeaves("", ProblemToJson(problem), &settings);
+  return settings;
 }
 
 }  // namespace ibrdf

@@ -64,12 +64,17 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
   const StatusOr<Solution> estimate =
       SolveInverseRendering(*inverse, progress, &stop_requested);
   if (!estimate.ok()) return estimate.status();
-  std::string metrics;
+  const StatusOr<ResultMetrics> metrics =
+      MeasureResult(*inverse, *truth, *estimate);
+  if (!metrics.ok()) return metrics.status();
   IBRDF_RETURN_IF_ERROR(
-      WriteResults(*problem, *inverse, *truth, *estimate, folder, &metrics));
+      WriteResults({*problem, *inverse, *truth, *estimate, *metrics}, folder));
   if (!flags.quiet) {
-    std::printf("%sresults in %s; look at %s/report.html\n", metrics.c_str(),
-                folder.c_str(), folder.c_str());
+    for (const std::string& line : MetricLines(*metrics)) {
+      std::printf("  %s\n", line.c_str());
+    }
+    std::printf("results in %s; look at %s/report.html\n", folder.c_str(),
+                folder.c_str());
   }
   return estimate->status;
 }

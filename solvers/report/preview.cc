@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
@@ -80,15 +81,6 @@ bool IsInside(const Mask& mask, size_t pixel) {
 
 double ChannelMean(const float* rgb) {
   return (static_cast<double>(rgb[0]) + rgb[1] + rgb[2]) / 3.0;
-}
-
-// The smallest of 1, 2 and 5 times a power of ten that is >= x > 0.
-double RoundUp(double x) {
-  const double power = std::pow(10.0, std::floor(std::log10(x)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (x <= factor * power * (1.0 + 1e-9)) return factor * power;
-  }
-  return 10.0 * power;
 }
 
 double ResidualRange(const PreviewPanel& panel) {
@@ -274,17 +266,25 @@ RowLayout LayOut(const std::vector<PreviewPanel>& row) {
   return layout;
 }
 
+// Below each other; returns where they end.
+int DrawLines(cv::Mat* canvas, const std::vector<std::string>& lines, int left,
+              int top, const TextStyle& style) {
+  for (const std::string& line : lines) {
+    DrawText(canvas, line, left, top, style);
+    top += style.line_height;
+  }
+  return top;
+}
+
 void DrawRow(cv::Mat* canvas, const RowLayout& row, int top) {
   int left = kMargin;
   const int picture_top = top + row.label_height;
   for (const Placed& panel : row.panels) {
     // Labels stand right above their picture.
-    int y = picture_top - 4 -
-            static_cast<int>(panel.label.size()) * kLabelStyle.line_height;
-    for (const std::string& line : panel.label) {
-      DrawText(canvas, line, left, y, kLabelStyle);
-      y += kLabelStyle.line_height;
-    }
+    const int label_top =
+        picture_top - 4 -
+        static_cast<int>(panel.label.size()) * kLabelStyle.line_height;
+    DrawLines(canvas, panel.label, left, label_top, kLabelStyle);
     const cv::Rect area(left, picture_top, panel.pixels.cols,
                         panel.pixels.rows);
     panel.pixels.copyTo((*canvas)(area));
@@ -299,6 +299,61 @@ void DrawRow(cv::Mat* canvas, const RowLayout& row, int top) {
     DrawText(canvas, panel.caption, left, below + 2, kCaptionStyle);
     left += panel.width() + kGap;
   }
+}
+
+// Width of the row with its text: a label may be wider than its picture.
+int WidthWithText(const RowLayout& row) {
+  int left = 0, width = row.width;
+  for (const Placed& panel : row.panels) {
+    for (const std::string& line : panel.label) {
+      width = std::max(width, left + TextWidth(line, kLabelStyle));
+    }
+    width = std::max(width, left + TextWidth(panel.caption, kCaptionStyle));
+    left += panel.width() + kGap;
+  }
+  return width;
+}
+
+int Widest(const std::vector<std::string>& lines, const TextStyle& style) {
+  int width = 0;
+  for (const std::string& line : lines) {
+    width = std::max(width, TextWidth(line, style));
+  }
+  return width;
+}
+
+struct PageLayout {
+  std::vector<std::string> title, notes;  // lines
+  std::vector<RowLayout> rows;
+  int width = 0;  // without margins
+
+  int height() const {
+    int height = 2 * kMargin;
+    height += static_cast<int>(title.size()) * kTitleStyle.line_height;
+    height += static_cast<int>(notes.size()) * kLabelStyle.line_height;
+    for (const RowLayout& row : rows) height += row.height() + kGap;
+    return notes.empty() ? height - kGap : height;
+  }
+};
+
+PageLayout LayOutPage(const std::vector<std::vector<PreviewPanel>>& rows,
+                      const std::string& title,
+                      const std::vector<std::string>& notes) {
+  PageLayout page;
+  for (const std::vector<PreviewPanel>& row : rows) {
+    page.rows.push_back(LayOut(row));
+    page.width = std::max(page.width, WidthWithText(page.rows.back()));
+  }
+  const int text_width = std::max(page.width, kMaxWidth / 2);
+  page.title = Wrap(title, text_width, kTitleStyle);
+  for (const std::string& note : notes) {
+    for (std::string& line : Wrap(note, text_width, kLabelStyle)) {
+      page.notes.push_back(std::move(line));
+    }
+  }
+  page.width = std::max({page.width, Widest(page.title, kTitleStyle),
+                         Widest(page.notes, kLabelStyle)});
+  return page;
 }
 
 }  // namespace
@@ -327,59 +382,15 @@ PanelPicture DrawPanel(const PreviewPanel& panel, int max_side) {
 Rgb8Image ComposePanels(const std::vector<std::vector<PreviewPanel>>& rows,
                         const std::string& title,
                         const std::vector<std::string>& notes) {
-  std::vector<RowLayout> layouts;
-  int content_width = 0;
-  for (const std::vector<PreviewPanel>& row : rows) {
-    layouts.push_back(LayOut(row));
-    content_width = std::max(content_width, layouts.back().width);
-    // A label may be wider than its picture.
-    int left = 0;
-    for (const Placed& panel : layouts.back().panels) {
-      for (const std::string& line : panel.label) {
-        content_width =
-            std::max(content_width, left + TextWidth(line, kLabelStyle));
-      }
-      content_width = std::max(content_width,
-                               left + TextWidth(panel.caption, kCaptionStyle));
-      left += panel.width() + kGap;
-    }
-  }
-  const std::vector<std::string> title_lines =
-      Wrap(title, std::max(content_width, kMaxWidth / 2), kTitleStyle);
-  std::vector<std::string> note_lines;
-  for (const std::string& note : notes) {
-    for (std::string& line :
-         Wrap(note, std::max(content_width, kMaxWidth / 2), kLabelStyle)) {
-      note_lines.push_back(std::move(line));
-    }
-  }
-  int height = 2 * kMargin;
-  for (const std::string& line : title_lines) {
-    content_width = std::max(content_width, TextWidth(line, kTitleStyle));
-    height += kTitleStyle.line_height;
-  }
-  for (const std::string& line : note_lines) {
-    content_width = std::max(content_width, TextWidth(line, kLabelStyle));
-    height += kLabelStyle.line_height;
-  }
-  for (const RowLayout& row : layouts) height += row.height() + kGap;
-  if (note_lines.empty()) height -= kGap;
-
-  cv::Mat canvas(height, content_width + 2 * kMargin, CV_8UC3, kGround);
+  const PageLayout page = LayOutPage(rows, title, notes);
+  cv::Mat canvas(page.height(), page.width + 2 * kMargin, CV_8UC3, kGround);
   int top = kMargin - 8;
-  for (const std::string& line : title_lines) {
-    DrawText(&canvas, line, kMargin, top, kTitleStyle);
-    top += kTitleStyle.line_height;
-  }
-  top += 8;
-  for (const RowLayout& row : layouts) {
+  top = DrawLines(&canvas, page.title, kMargin, top, kTitleStyle) + 8;
+  for (const RowLayout& row : page.rows) {
     DrawRow(&canvas, row, top);
     top += row.height() + kGap;
   }
-  for (const std::string& line : note_lines) {
-    DrawText(&canvas, line, kMargin, top, kLabelStyle);
-    top += kLabelStyle.line_height;
-  }
+  DrawLines(&canvas, page.notes, kMargin, top, kLabelStyle);
   return ToRgb8(canvas);
 }
 

@@ -89,10 +89,31 @@ StatusOr<std::string> FigureMarkup(const ReportFigure& figure) {
   return out + HtmlElement("figcaption", figure.caption) + "\n</figure>\n";
 }
 
+constexpr char kImageNote[] =
+    "The residual should look like noise: red is rendered too bright, blue too "
+    "dark. Where it has structure, the estimate does not explain the image. "
+    "Grey pixels took no part.";
+
+constexpr char kMapNote[] =
+    "Equirectangular maps of the light that arrives at the object, in the "
+    "world frame. The columns look along the axes named below a map, the top "
+    "row looks up (+y). The orthographic camera looks along -z: the middle is "
+    "behind the object, the edges are behind the camera, and what is on the "
+    "camera's right (+x) is left of the middle.";
+
+constexpr char kDeviationNote[] =
+    " The standard deviation is that of the light given the reflectance. Where "
+    "it is large, the image says nothing and the map shows the prior.";
+
+constexpr char kSphereNote[] =
+    "Spheres of the material under three directional lights and under an "
+    "artificial sky.";
+
 // Explains the factor in an estimate's caption.
 constexpr char kScaleNote[] =
-    " An estimate beside its reference is shown times the factor xN, the one "
-    "for all channels that brings its mean logarithm to the reference's.";
+    " An estimate beside its reference is shown times the factor in its "
+    "caption. It is one factor for all channels, which brings the mean "
+    "logarithm of the estimate to that of the reference.";
 
 }  // namespace
 
@@ -100,33 +121,18 @@ std::vector<ReportGroup> MakeReportGroups(const ResultPanels& panels,
                                           const Image& map_std) {
   std::vector<ReportGroup> groups;
   if (!panels.images.empty()) {
-    groups.push_back(Group(
-        "Image",
-        "Where the residual has structure, the estimate does not explain the "
-        "image: red is rendered too bright, blue too dark. Grey pixels took no "
-        "part.",
-        panels.images));
+    groups.push_back(Group("Image", kImageNote, panels.images));
   }
   if (!panels.maps.empty()) {
-    groups.push_back(
-        Group("Illumination",
-              "Columns look along the axes named below the map, the top row "
-              "up (+y); the middle (-z) is what the camera looks at, the edges "
-              "are behind it.",
-              panels.maps));
+    groups.push_back(Group("Illumination", kMapNote, panels.maps));
     if (panels.maps.size() > 1) groups.back().text += kScaleNote;
     if (!map_std.empty()) {
-      groups.back().text +=
-          " The deviation is that of the light given the reflectance: where it "
-          "is large, the image says nothing and the map shows the prior.";
+      groups.back().text += kDeviationNote;
       groups.back().figures.push_back(DeviationFigure(map_std));
     }
   }
   if (!panels.spheres.empty()) {
-    groups.push_back(Group("Reflectance",
-                           "Spheres of the material under three lamps and "
-                           "under an artificial sky.",
-                           panels.spheres));
+    groups.push_back(Group("Reflectance", kSphereNote, panels.spheres));
     if (panels.spheres.size() > 2) groups.back().text += kScaleNote;
   }
   return groups;

@@ -1,70 +1,83 @@
 #include "ibrdf/solvers/report/report_metrics.h"
 
-#include <algorithm>
-#include <set>
+#include <cmath>
+#include <optional>
 #include <vector>
 
 #include "ibrdf/solvers/report/html.h"
-#include "ibrdf/solvers/report/json_values.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 
 namespace ibrdf {
 namespace {
-using Json = nlohmann::ordered_json;
 
 struct MetricRow {
   const char* name;
-  const char* key;
-  const char* aligned;  // key after the best scale; null: there is none
+  double value;
+  std::optional<double> aligned;  // after the best scale; unset: there is none
   const char* meaning;
+
+  bool IsKnown() const {
+    return std::isfinite(value) ||
+           (aligned.has_value() && std::isfinite(*aligned));
+  }
 };
 
-constexpr MetricRow kTruthRows[] = {
-    {"BRDF log-RMSE", "brdf_log_rmse", "brdf_log_rmse_aligned",
-     "Root mean square difference of natural logarithms over the valid bins of "
-     "the MERL table: 0.1 is about 10 %, 0.7 a factor of two."},
-    {"BRDF log-RMSE below 80 degrees", "brdf_log_rmse_below80", nullptr,
-     "The same where both directions lie within 80 degrees of the normal: "
-     "grazing bins dominate the whole table and hardly show in an image."},
-    {"Illumination relative log-RMSE", "illumination_relative_log_rmse",
-     "illumination_relative_log_rmse_aligned",
-     "Root mean square difference of log radiance over the sphere, as a share "
-     "of the truth's range from darkest to brightest."},
-    {"The same, unweighted", "illumination_relative_log_rmse_unweighted",
-     nullptr, "Every texel counts alike, those at the poles too."},
-};
+std::vector<MetricRow> TruthRows(const ResultMetrics& metrics) {
+  std::vector<MetricRow> rows;
+  if (const auto& brdf = metrics.brdf) {
+    rows.push_back(
+        {"BRDF log-RMSE", brdf->log_rmse, brdf->log_rmse_aligned,
+         "Root mean square difference of natural logarithms over the valid "
+         "bins of the MERL table: 0.1 is about 10 %, 0.7 a factor of two."});
+    rows.push_back(
+        {"BRDF log-RMSE below 80 degrees", brdf->log_rmse_below80, std::nullopt,
+         "The same over the bins whose two directions lie within 80 degrees of "
+         "the normal. Grazing bins dominate the whole table and hardly show in "
+         "an image."});
+  }
+  if (const auto& map = metrics.illumination) {
+    rows.push_back(
+        {"Illumination relative log-RMSE", map->relative_log_rmse,
+         map->relative_log_rmse_aligned,
+         "Root mean square difference of log radiance over the sphere, as a "
+         "share of the range of the truth's log radiance."});
+    rows.push_back({"The same, unweighted", map->relative_log_rmse_unweighted,
+                    std::nullopt,
+                    "Every texel counts alike, those at the poles too."});
+  }
+  return rows;
+}
 
-constexpr MetricRow kImageRows[] = {
-    {"Misfit", "misfit", nullptr,
-     "Mean |log E - log I| of render and image, natural: 0.02 is 2 %. It ends "
-     "at the noise, or at what the lobes cannot render."},
-    {"Image log-RMSE", "image_log_rmse", nullptr,
-     "Root mean square of the same difference."},
-    {"PSNR (dB)", "psnr", nullptr,
-     "Peak signal to noise ratio after the best scale: bright pixels count "
-     "most."},
-    {"DSSIM", "dssim", nullptr,
-     "(1 - SSIM) / 2 of log(1 + radiance): 0 is the same structure."},
-    {"Time (s)", "seconds", nullptr, "Of the solver, without files."},
-};
+std::vector<MetricRow> ImageRows(const ResultMetrics& metrics) {
+  std::vector<MetricRow> rows = {
+      {"Misfit", metrics.misfit, std::nullopt,
+       "Mean absolute log error, |log L_o - log I|, of the rendered radiance "
+       "L_o against the image I: 0.02 is about 2 %. The least that can be "
+       "reached is the noise, and what the model cannot render."}};
+  if (const auto& image = metrics.image) {
+    rows.push_back({"Image log-RMSE", image->log_rmse, std::nullopt,
+                    "Root mean square of log L_o - log I."});
+    rows.push_back({"PSNR (dB)", image->psnr, std::nullopt,
+                    "Peak signal-to-noise ratio after the best scale. Bright "
+                    "pixels count most."});
+    rows.push_back(
+        {"DSSIM", image->dssim, std::nullopt,
+         "(1 - SSIM) / 2 of log(1 + radiance): 0 is the same structure."});
+  }
+  rows.push_back({"Time (s)", metrics.seconds, std::nullopt,
+                  "Reading of the input and solving, without writing."});
+  return rows;
+}
 
-template <size_t N>
-std::vector<std::vector<std::string>> Rows(const MetricRow (&rows)[N],
-                                           const Json& metrics, bool aligned,
-                                           std::set<std::string>* shown) {
-  std::vector<std::vector<std::string>> out;
+using Cells = std::vector<std::vector<std::string>>;
+
+Cells ToCells(const std::vector<MetricRow>& rows, bool with_aligned) {
+  Cells out;
   for (const MetricRow& row : rows) {
-    shown->insert(row.key);
-    if (row.aligned != nullptr) shown->insert(row.aligned);
-    if (MemberAt(metrics, row.key).is_null() &&
-        (row.aligned == nullptr || MemberAt(metrics, row.aligned).is_null())) {
-      continue;
-    }
-    std::vector<std::string> cells = {row.name,
-                                      ShortNumber(NumberAt(metrics, row.key))};
-    if (aligned) {
-      cells.push_back(row.aligned == nullptr
-                          ? ""
-                          : ShortNumber(NumberAt(metrics, row.aligned)));
+    if (!row.IsKnown()) continue;
+    std::vector<std::string> cells = {row.name, ShortNumber(row.value)};
+    if (with_aligned) {
+      cells.push_back(row.aligned.has_value() ? ShortNumber(*row.aligned) : "");
     }
     cells.push_back(row.meaning);
     out.push_back(cells);
@@ -72,39 +85,34 @@ std::vector<std::vector<std::string>> Rows(const MetricRow (&rows)[N],
   return out;
 }
 
-}  // namespace
-
-std::string MetricsSection(const Json& metrics, const Json& problem) {
-  std::set<std::string> shown;
-  std::string out = "<section>\n" + HtmlElement("h2", "Metrics") + "\n";
-  const auto truth = Rows(kTruthRows, metrics, true, &shown);
-  if (truth.empty()) {
-    out += HtmlElement("p",
+std::string TruthTable(const ResultMetrics& metrics, ProblemKind kind) {
+  const Cells cells = ToCells(TruthRows(metrics), true);
+  if (cells.empty()) {
+    return HtmlElement("p",
                        "No truth was given: nothing here says how near the "
                        "estimate is to it. A low misfit alone does not.");
-  } else {
-    out += HtmlElement("h3", "Against the truth") + "\n" +
-           HtmlTable({"metric", "as is", "after the best scale", "meaning"},
-                     truth);
-    const bool joint = TextAt(problem, "problem") == "joint";
-    if (joint) {
-      out += HtmlElement(
-          "p",
-          "The best scale is one factor per channel. An image cannot tell a "
-          "bright object in dim light from a dark one in bright light, so that "
-          "the first number holds the luck of that choice, too; the second "
-          "leaves it out, and with it the overall colour.");
-    }
   }
-  out += "\n" + HtmlElement("h3", "Against the image") + "\n";
-  auto image = Rows(kImageRows, metrics, false, &shown);
-  if (metrics.is_object()) {
-    for (const auto& [key, value] : metrics.items()) {
-      if (shown.count(key) > 0 || !value.is_number()) continue;
-      image.push_back({key, ShortNumber(ToNumber(value)), ""});
-    }
+  const std::string out =
+      HtmlElement("h3", "Against the truth") + "\n" +
+      HtmlTable({"metric", "as is", "after the best scale", "meaning"}, cells);
+  std::string note = "The best scale is one factor per channel.";
+  if (kind == ProblemKind::kJoint) {
+    note +=
+        " An image cannot tell a bright object in dim light from a dark object "
+        "in bright light. The first number holds the luck of that choice, too. "
+        "The second leaves it out, and with it the overall colour.";
   }
-  return out + HtmlTable({"metric", "value", "meaning"}, image) +
+  return out + HtmlElement("p", note);
+}
+
+}  // namespace
+
+std::string MetricsSection(const ResultMetrics& metrics, ProblemKind kind) {
+  return "<section>\n" + HtmlElement("h2", "Metrics") + "\n" +
+         TruthTable(metrics, kind) + "\n" +
+         HtmlElement("h3", "Against the image") + "\n" +
+         HtmlTable({"metric", "value", "meaning"},
+                   ToCells(ImageRows(metrics), false)) +
          "</section>\n";
 }
 

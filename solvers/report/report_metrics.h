@@ -1,12 +1,13 @@
 // The metrics of a result and what they mean.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "ibrdf/io/problem.h"
+#include "ibrdf/solvers/report/result_metrics.h"
 
 namespace ibrdf {
 
-// Of result.json's `metrics` and `problem`: a <section>.
-std::string MetricsSection(const nlohmann::ordered_json& metrics,
-                           const nlohmann::ordered_json& problem);
+// A <section>.
+std::string MetricsSection(const ResultMetrics& metrics, ProblemKind kind);
 
 }  // namespace ibrdf

@@ -1,9 +1,13 @@
 #include "ibrdf/solvers/report/report_page.h"
 
-#include <utility>
+#include <filesystem>
 
+#include "ibrdf/base/version.h"
+#include "ibrdf/io/problem_json.h"
+#include "ibrdf/solvers/effects/describe_plan.h"
+#include "ibrdf/solvers/report/gauge_words.h"
 #include "ibrdf/solvers/report/html.h"
-#include "ibrdf/solvers/report/json_values.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/report/report_metrics.h"
 #include "ibrdf/solvers/report/report_plots.h"
 #include "ibrdf/solvers/report/report_posterior.h"
@@ -13,34 +17,37 @@
 
 namespace ibrdf {
 namespace {
-using Json = nlohmann::ordered_json;
 
 std::string Section(const std::string& heading, const std::string& body) {
   return "<section>\n" + HtmlElement("h2", heading) + "\n" + body +
          "</section>\n";
 }
 
-std::string KindInWords(const Json& problem) {
-  const std::string kind = TextAt(problem, "problem");
-  if (kind == "joint") return "Reflectance and illumination, both unknown.";
-  if (kind == "reflectance") return "Reflectance under known illumination.";
-  if (kind == "illumination") return "Illumination of known reflectance.";
-  return kind;
+std::string KindInWords(ProblemKind kind) {
+  switch (kind) {
+    case ProblemKind::kJoint:
+      return "Reflectance and illumination, both unknown.";
+    case ProblemKind::kReflectance:
+      return "Reflectance under known illumination.";
+    case ProblemKind::kIllumination:
+      return "Illumination of known reflectance.";
+  }
+  return "";
 }
 
-std::string Summary(const Json& result) {
-  const Json metrics = MemberAt(result, "metrics");
-  std::string text = KindInWords(MemberAt(result, "problem"));
-  text += " Misfit " + ShortNumber(NumberAt(metrics, "misfit")) +
-          " (mean |log render - log image|) after " +
-          ShortNumber(NumberAt(metrics, "seconds")) + " s, from " +
-          ShortNumber(NumberAt(result, "pixels_used")) + " pixels.";
-  return text;
+std::string Summary(const SolvedProblem& solved) {
+  return KindInWords(solved.problem.kind) + " Misfit " +
+         ShortNumber(solved.metrics.misfit) + " after " +
+         ShortNumber(solved.metrics.seconds) + " s, from " +
+         ShortNumber(static_cast<double>(solved.solution.pixels_used)) +
+         " pixels. The misfit is the mean absolute log error of the render: "
+         "the mean of |log L_o - log I| over pixels and channels, with the "
+         "rendered radiance L_o and the image I.";
 }
 
-std::string WarningList(const Json& result) {
+std::string WarningList(const SolvedProblem& solved) {
   std::string items;
-  for (const std::string& warning : ResultWarnings(result)) {
+  for (const std::string& warning : ResultWarnings(solved)) {
     items += HtmlElement("li", warning) + "\n";
   }
   if (items.empty()) return "";
@@ -48,66 +55,62 @@ std::string WarningList(const Json& result) {
          "\n<ul>\n" + items + "</ul>\n</section>\n";
 }
 
-// One row for each leaf of the document, named as --set names it.
-void Flatten(const std::string& name, const Json& value,
-             std::vector<std::vector<std::string>>* rows) {
-  if (value.is_object() && !value.empty()) {
-    for (const auto& [key, member] : value.items()) {
-      Flatten(name.empty() ? key : name + "." + key, member, rows);
-    }
-    return;
+using Rows = std::vector<std::vector<std::string>>;
+
+// What the problem left to the program.
+Rows Choices(const SolvedProblem& solved) {
+  const Solution& solution = solved.solution;
+  Rows rows = {
+      {"effects", Describe(solved.inverse.effects)},
+      {"gauge", GaugeWords(solved.inverse)},
+      {"likelihood.scale",
+       ShortNumber(solution.scale) +
+           " (b of the Laplace distribution of log errors, at the "
+           "result)"},
+      {"likelihood.epsilon", ShortNumber(solution.epsilon) +
+                                 " (radiance added inside the logarithms)"}};
+  if (!solution.start.empty()) {
+    rows.push_back({"initial guess", solution.start});
   }
-  rows->push_back(
-      {name, value.is_string()
-                 ? value.get<std::string>()
-                 : value.dump(-1, ' ', false, Json::error_handler_t::replace)});
+  rows.push_back({"seed", std::to_string(solved.inverse.seed)});
+  return rows;
 }
 
-std::string ProblemSection(const Json& result) {
-  std::vector<std::vector<std::string>> rows;
-  Flatten("", MemberAt(result, "problem"), &rows);
-  std::vector<std::vector<std::string>> chosen = {
-      {"effects", TextAt(result, "effects")},
-      {"gauge", TextAt(result, "gauge")}};
-  const Json likelihood = MemberAt(result, "likelihood");
-  chosen.push_back({"likelihood.scale",
-                    ShortNumber(NumberAt(likelihood, "scale")) +
-                        " (b of the Laplacian, natural log, at the end)"});
-  chosen.push_back(
-      {"likelihood.epsilon", ShortNumber(NumberAt(likelihood, "epsilon")) +
-                                 " (radiance added inside the logarithms)"});
-  const std::string start = TextAt(result, "start");
-  if (!start.empty()) chosen.push_back({"start", start});
-  chosen.push_back({"seed", ShortNumber(NumberAt(result, "seed"))});
+std::string ProblemSection(const SolvedProblem& solved) {
+  Rows settings;
+  for (const ProblemSetting& setting : ListSettings(solved.problem)) {
+    settings.push_back({setting.key, setting.value});
+  }
   return Section("What was solved",
-                 HtmlElement("p", KindInWords(MemberAt(result, "problem"))) +
-                     "\n" + HtmlElement("h3", "What the program chose") + "\n" +
-                     HtmlTable({}, chosen) +
+                 HtmlElement("p", KindInWords(solved.problem.kind)) + "\n" +
+                     HtmlElement("h3", "What the program chose") + "\n" +
+                     HtmlTable({}, Choices(solved)) +
                      HtmlElement("h3", "The problem as resolved") + "\n" +
-                     HtmlTable({}, rows));
+                     HtmlTable({}, settings));
 }
 
-std::string GaugeSection(const Json& result) {
+std::string GaugeSection(const InverseProblem& inverse) {
   return Section(
       "Scale",
       HtmlElement("p",
-                  "(s R, L / s) renders the same image for every s, per "
-                  "channel, so that no image fixes it. Here: " +
-                      TextAt(result, "gauge") + ".") +
+                  "A reflectance R and a light L render the same image as the "
+                  "pair (s R, L / s), for every factor s per channel. No image "
+                  "tells s. What set it here: " +
+                      GaugeWords(inverse) + ".") +
           "\n");
 }
 
-std::string PlotSection(const Json& trace) {
+std::string PlotSection(const std::vector<TraceEntry>& trace) {
   const std::vector<LinePlot> plots = TracePlots(trace);
   if (plots.empty()) return "";
   std::string body =
       HtmlElement(
           "p",
-          "The best state after each step. Misfits compare across the "
-          "steps at the pixels; costs only between steps with as many "
-          "pixels and the same scale b, which is estimated anew in "
-          "each round: a smaller b raises the likelihood term. Lines break "
-          "where the number of pixels changes.") +
+          "A point is the best state after a step. Misfits compare across all "
+          "steps at the image's pixels. Costs compare only between steps with "
+          "as many pixels and the same scale b of the likelihood. The scale is "
+          "estimated anew in each outer iteration, and a smaller b raises the "
+          "likelihood term. Lines break where the number of pixels changes.") +
       "\n<div class=\"plots\">\n";
   for (const LinePlot& plot : plots) {
     body += "<div class=\"plot\">\n" + SvgLinePlot(plot) + "</div>\n";
@@ -115,36 +118,45 @@ std::string PlotSection(const Json& trace) {
   return Section("Progress", body + "</div>\n");
 }
 
-}  // namespace
+std::string Footer() {
+  return HtmlElement("footer", std::string("ibrdf ") + kVersion +
+                                   ". Numbers in full: result.json, beside "
+                                   "this file. Logarithms are natural.") +
+         "\n";
+}
 
-StatusOr<std::string> ReportPage(const ReportInput& input) {
-  const Json& result = input.result;
-  const Json problem = MemberAt(result, "problem");
-  std::string body = HtmlElement("h1", input.name) + "\n" +
-                     HtmlElement("p", Summary(result), "class=\"summary\"") +
-                     "\n" + WarningList(result);
-  for (const ReportGroup& group : input.groups) {
-    const StatusOr<std::string> section = GroupSection(group);
-    if (!section.ok()) return section.status();
-    body += *section;
-  }
-  body += PosteriorSection(MemberAt(result, "posterior"), input.brdf);
-  body += MetricsSection(MemberAt(result, "metrics"), problem);
-  if (TextAt(problem, "problem") == "joint") body += GaugeSection(result);
-  body += PlotSection(MemberAt(result, "trace"));
-  body += ProblemSection(result);
-  body += HtmlElement("footer", "ibrdf " + TextAt(result, "ibrdf_version") +
-                                    ". Numbers in full: result.json, beside "
-                                    "this file. Logarithms are natural.") +
-          "\n";
+std::string Page(const std::string& title, const std::string& body) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
          "<meta charset=\"utf-8\" />\n"
          "<meta name=\"viewport\" content=\"width=device-width, "
          "initial-scale=1\" />\n"
          "<meta name=\"color-scheme\" content=\"light dark\" />\n" +
-         HtmlElement("title", input.name + " - ibrdf") + "\n<style>\n" +
+         HtmlElement("title", title + " - ibrdf") + "\n<style>\n" +
          kReportStyle + "</style>\n</head>\n<body>\n<main>\n" + body +
          "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace
+
+StatusOr<std::string> ReportPage(const SolvedProblem& solved,
+                                 const std::vector<ReportGroup>& groups) {
+  const std::string name =
+      std::filesystem::path(solved.problem.path).filename().string();
+  const ProblemKind kind = solved.problem.kind;
+  std::string body = HtmlElement("h1", name) + "\n" +
+                     HtmlElement("p", Summary(solved), "class=\"summary\"") +
+                     "\n" + WarningList(solved);
+  for (const ReportGroup& group : groups) {
+    const StatusOr<std::string> section = GroupSection(group);
+    if (!section.ok()) return section.status();
+    body += *section;
+  }
+  body += PosteriorSection(solved.inverse, solved.solution);
+  body += MetricsSection(solved.metrics, kind);
+  if (kind == ProblemKind::kJoint) body += GaugeSection(solved.inverse);
+  body += PlotSection(solved.solution.trace);
+  body += ProblemSection(solved);
+  return Page(name, body + Footer());
 }
 
 }  // namespace ibrdf

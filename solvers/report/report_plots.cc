@@ -3,23 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "ibrdf/solvers/report/json_values.h"
+#include <utility>
 
 namespace ibrdf {
 namespace {
-using Json = nlohmann::ordered_json;
 
 constexpr double kBreak = std::numeric_limits<double>::quiet_NaN();
 const PlotAxis kSeconds = {"time (s)", false};
 
-// Lines whose misfits and costs compare. The search compares cells of pixels
-// under light that is integrated out; it has no scale.
-std::string StageName(const Json& entry) {
-  if (!(NumberAt(entry, "scale") > 0.0)) return "search, light integrated out";
-  const double pixels = NumberAt(entry, "pixels");
-  if (!std::isfinite(pixels)) return "pixels";
-  return std::to_string(std::llround(pixels)) + " pixels";
+// The search compares normal-binned pixels under light that is integrated out;
+// it has no scale.
+bool IsSearch(const TraceEntry& entry) { return !(entry.scale > 0.0); }
+
+// Lines whose misfits and costs compare.
+std::string StageName(const TraceEntry& entry) {
+  if (IsSearch(entry)) return "search, light integrated out";
+  return std::to_string(entry.pixels) + " pixels";
 }
 
 // The series of that name, made at first use.
@@ -47,53 +46,66 @@ bool AnyFinite(const PlotSeries& series) {
                      [](double y) { return std::isfinite(y); });
 }
 
-}  // namespace
+LinePlot MisfitPlot(const std::vector<TraceEntry>& trace) {
+  LinePlot plot{"Misfit: mean absolute log error",
+                kSeconds,
+                {"mean |log L_o - log I| (natural log)", true},
+                {}};
+  for (const TraceEntry& entry : trace) {
+    Append(StageName(entry), entry.seconds, entry.misfit, &plot);
+  }
+  return plot;
+}
 
-std::vector<LinePlot> TracePlots(const Json& trace) {
-  LinePlot misfit{
-      "Misfit", kSeconds, {"mean |log E - log I| (natural log)", true}, {}};
-  LinePlot search{"Search: -log posterior with the light integrated out",
-                  kSeconds,
-                  {"cost (nats)", false},
-                  {}};
-  LinePlot terms{
+// One curve for each step of the search: coarse and fine ones differ in their
+// number of bins.
+LinePlot SearchPlot(const std::vector<TraceEntry>& trace) {
+  LinePlot plot{"Search: -log posterior with the light integrated out",
+                kSeconds,
+                {"cost (nats)", false},
+                {}};
+  for (const TraceEntry& entry : trace) {
+    if (!IsSearch(entry)) continue;
+    const std::string step = entry.stage.substr(0, entry.stage.find(' '));
+    Append(step, entry.seconds, entry.cost, &plot);
+  }
+  return plot;
+}
+
+LinePlot TermsPlot(const std::vector<TraceEntry>& trace) {
+  LinePlot plot{
       "Terms of the cost at the pixels", kSeconds, {"cost (nats)", true}, {}};
-  if (!trace.is_array()) return {};
-  std::string last_stage;  // at the pixels
-  for (const Json& entry : trace) {
-    const double seconds = NumberAt(entry, "seconds");
+  std::string last_stage;
+  for (const TraceEntry& entry : trace) {
+    if (IsSearch(entry)) continue;
     const std::string stage = StageName(entry);
-    Append(stage, seconds, NumberAt(entry, "misfit"), &misfit);
-    if (!(NumberAt(entry, "scale") > 0.0)) {
-      // One curve for each step of the search: coarse and fine ones differ in
-      // their number of cells.
-      const std::string step = TextAt(entry, "stage");
-      Append(step.substr(0, step.find(' ')), seconds, NumberAt(entry, "cost"),
-             &search);
-      continue;
-    }
-    const char* const names[][2] = {
-        {"cost", "sum"},
-        {"likelihood", "likelihood"},
-        {"reflectance_prior", "prior of the reflectance"},
-        {"illumination_prior", "prior of the light"}};
-    for (const auto& name : names) {
-      if (!last_stage.empty() && stage != last_stage) {
-        Append(name[1], kBreak, kBreak, &terms);
-      }
-      Append(name[1], seconds, NumberAt(entry, name[0]), &terms);
-    }
+    const bool breaks = !last_stage.empty() && stage != last_stage;
+    const auto append = [&](const char* name, double value) {
+      if (breaks) Append(name, kBreak, kBreak, &plot);
+      Append(name, entry.seconds, value, &plot);
+    };
+    append("sum", entry.cost);
+    append("likelihood", entry.likelihood);
+    append("prior of the reflectance", entry.reflectance_prior);
+    append("prior of the light", entry.illumination_prior);
     last_stage = stage;
   }
+  return plot;
+}
+
+}  // namespace
+
+std::vector<LinePlot> TracePlots(const std::vector<TraceEntry>& trace) {
   std::vector<LinePlot> plots;
-  for (LinePlot* plot : {&misfit, &search, &terms}) {
+  for (LinePlot plot :
+       {MisfitPlot(trace), SearchPlot(trace), TermsPlot(trace)}) {
     // A term that the problem does not have is zero throughout.
-    const auto shown = plot->y.logarithmic ? AnyPositive : AnyFinite;
-    plot->series.erase(
-        std::remove_if(plot->series.begin(), plot->series.end(),
+    const auto shown = plot.y.logarithmic ? AnyPositive : AnyFinite;
+    plot.series.erase(
+        std::remove_if(plot.series.begin(), plot.series.end(),
                        [&](const PlotSeries& s) { return !shown(s); }),
-        plot->series.end());
-    if (!plot->series.empty()) plots.push_back(std::move(*plot));
+        plot.series.end());
+    if (!plot.series.empty()) plots.push_back(std::move(plot));
   }
   return plots;
 }

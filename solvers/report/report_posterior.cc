@@ -4,24 +4,18 @@
 #include <vector>
 
 #include "ibrdf/solvers/report/html.h"
-#include "ibrdf/solvers/report/json_values.h"
+#include "ibrdf/solvers/report/lobe_summary.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
 namespace {
-using Json = nlohmann::ordered_json;
 
 // A standard deviation of a logarithm in words.
 std::string Uncertainty(double log_std) {
   if (!std::isfinite(log_std)) return "";
   if (log_std < 0.4) return " \xC2\xB1 " + ShortNumber(100 * log_std) + " %";
-  return " within a factor of " + ShortNumber(std::exp(log_std));
-}
-
-std::vector<double> Numbers(const Json& list) {
-  std::vector<double> out;
-  if (!list.is_array()) return out;
-  for (const Json& value : list) out.push_back(ToNumber(value));
-  return out;
+  return ", within a factor of " + ShortNumber(std::exp(log_std));
 }
 
 double Norm(const std::vector<double>& v) {
@@ -30,118 +24,111 @@ double Norm(const std::vector<double>& v) {
   return std::sqrt(sum);
 }
 
-std::string LobeTable(const Json& lobes, const Json& deviations) {
+std::string LobeTable(const std::vector<LobeSummary>& lobes) {
   std::vector<std::vector<std::string>> rows;
   for (size_t k = 0; k < lobes.size(); ++k) {
-    const Json deviation =
-        deviations.is_array() && k < deviations.size() ? deviations[k] : Json();
-    const std::vector<double> colour =
-        Numbers(MemberAt(lobes[k], "colour_raw_merl"));
-    const std::vector<double> colour_std =
-        Numbers(MemberAt(deviation, "log_colour_std"));
-    const std::vector<double> code = Numbers(MemberAt(lobes[k], "code"));
-    const std::vector<double> code_std =
-        Numbers(MemberAt(deviation, "code_std"));
-    std::vector<std::string> row = {"lobe " + std::to_string(k + 1)};
+    const auto& deviation = lobes[k].deviation;
+    std::vector<std::string> row = {"lobe\xC2\xA0" + std::to_string(k + 1)};
     for (size_t c = 0; c < 3; ++c) {
-      row.push_back(
-          c < colour.size()
-              ? ShortNumber(colour[c]) +
-                    (c < colour_std.size() ? Uncertainty(colour_std[c]) : "")
-              : "-");
+      row.push_back(ShortNumber(lobes[k].colour[c]) +
+                    (deviation ? Uncertainty(deviation->log_colour[c]) : ""));
     }
-    row.push_back(ShortNumber(Norm(code)));
-    row.push_back(
-        code_std.empty()
-            ? "-"
-            : ShortNumber(Norm(code_std) / std::sqrt(double(code_std.size()))));
+    row.push_back(ShortNumber(Norm(lobes[k].code)));
+    row.push_back(deviation
+                      ? ShortNumber(Norm(deviation->code) /
+                                    std::sqrt(double(deviation->code.size())))
+                      : "-");
     rows.push_back(row);
   }
-  return HtmlTable({"", "red", "green", "blue", "length of the code",
-                    "deviation of a code's entry"},
+  return HtmlTable({"", "red", "green", "blue", "norm of the code",
+                    "standard deviation of its entries"},
                    rows);
 }
 
-std::string AlternativeTable(const Json& alternatives) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Json& other : alternatives) {
-    const double cost = NumberAt(other, "cost_above_best");
-    rows.push_back({TextAt(other, "start"), ShortNumber(cost),
-                    ShortNumber(std::exp(-cost)),
-                    ShortNumber(NumberAt(other, "brdf_log_difference"))});
-  }
-  return HtmlTable(
-      {"started from", "cost above the best (nats)", "relative evidence",
-       "BRDF log-RMSE from the estimate, aligned"},
-      rows);
+std::string LobesInWords(const std::vector<LobeSummary>& lobes) {
+  if (lobes.empty()) return "";
+  return HtmlElement(
+             "p", std::string("The estimate is a sum of lobes (brdf.json): ") +
+                      kLobeFormula +
+                      ". A code is a place among the training materials, whose "
+                      "codes have norms of at most 1. Colours are in raw MERL "
+                      "units.") +
+         "\n" + LobeTable(lobes) +
+         HtmlElement(
+             "p",
+             lobes[0].deviation
+                 ? "Each colour is given with one standard deviation of its "
+                   "logarithm. The last column is the root mean square of the "
+                   "standard deviations of a code's entries. Both come from "
+                   "Laplace's approximation at this optimum, with the light "
+                   "integrated out. Correlations are in result.json "
+                   "(posterior.covariance). The approximation does not see "
+                   "other local optima."
+                 : "No covariance was computed for this problem: how well "
+                   "these numbers are known is not stated.") +
+         "\n";
 }
 
-// Where it is stated.
-std::string ExpectedErrorWords(const Json& posterior) {
-  const double expected = NumberAt(posterior, "brdf_log_rmse_expected");
-  if (!std::isfinite(expected)) return "";
-  const double most = NumberAt(posterior, "brdf_log_rmse_90");
+std::string ExpectedErrorInWords(double spread) {
+  if (!std::isfinite(spread)) return "";
+  const ErrorToExpect error = ExpectError(spread);
   return HtmlElement(
              "p",
-             "How far off to expect it: reflectances drawn from this posterior "
-             "differ from the estimate by " +
-                 ShortNumber(NumberAt(posterior, "brdf_spread")) +
-                 " in the logarithm (root mean square over all angles, "
-                 "aligned). Such posteriors are too sure: of images whose "
-                 "truth is known half were off by more than " +
-                 ShortNumber(expected) + " at such a spread (a factor of " +
-                 ShortNumber(std::exp(expected)) +
-                 "), one in ten by more "
-                 "than " +
-                 ShortNumber(most) + ".") +
+             "How far off to expect it: reflectances sampled from this "
+             "posterior differ from the estimate by " +
+                 ShortNumber(spread) +
+                 " in the logarithm (root mean square over all angles, after "
+                 "the best scale). Such posteriors are too sure: of images "
+                 "whose truth is known, half were off by more than " +
+                 ShortNumber(error.median) + " at such a spread (a factor of " +
+                 ShortNumber(std::exp(error.median)) +
+                 "), one in ten by more than " + ShortNumber(error.most) +
+                 ".") +
+         "\n";
+}
+
+// What is smaller than `least` is not told apart from it.
+std::string AtLeast(double least, double value) {
+  return value >= 0.0 && value < least ? "below " + ShortNumber(least)
+                                       : ShortNumber(value);
+}
+
+std::string AlternativesInWords(const std::vector<Alternative>& alternatives) {
+  if (alternatives.empty()) {
+    return HtmlElement("p", "No other candidates were followed.") + "\n";
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const Alternative& other : alternatives) {
+    rows.push_back({other.start, ShortNumber(other.cost),
+                    AtLeast(1e-6, std::exp(-other.cost)),
+                    AtLeast(1e-3, other.brdf_log_difference)});
+  }
+  return HtmlElement("h3", "Other explanations") + "\n" +
+         HtmlTable({"initial guess", "cost above the best (nats)",
+                    "relative evidence", "BRDF log-RMSE from the estimate"},
+                   rows) +
+         HtmlElement(
+             "p",
+             "Each row is a local optimum, named after the training material "
+             "that the search began with. The relative evidence is exp(-cost "
+             "above the best): how probable the optimum is compared with the "
+             "best one, given the image. The BRDF log-RMSE is taken after the "
+             "best scale. An evidence near 1 with a large difference is an "
+             "ambiguity that this image leaves open. Candidates that ranked "
+             "lower were not followed.") +
          "\n";
 }
 
 }  // namespace
 
-std::string PosteriorSection(const Json& posterior, const Json& brdf) {
-  if (brdf.is_null()) return "";
-  std::string out = "<section>\n" +
-                    HtmlElement("h2", "How well the reflectance is known") +
-                    "\n";
-  const Json lobes = MemberAt(brdf, "lobes");
-  const Json deviations = MemberAt(posterior, "lobes");
-  if (lobes.is_array() && !lobes.empty()) {
-    out +=
-        HtmlElement(
-            "p", "The estimate (brdf.json): " + TextAt(brdf, "formula") + ".") +
-        "\n";
-    out += LobeTable(lobes, deviations);
-    out += HtmlElement(
-        "p",
-        deviations.is_array()
-            ? "Colours are in raw MERL units. Each number has one standard "
-              "deviation, by Laplace's approximation at this optimum with the "
-              "light integrated out; entries of codes lie within the unit "
-              "ball. Correlations are in result.json (posterior.covariance). "
-              "What the approximation cannot see are other optima:"
-            : "Colours are in raw MERL units. No covariance was computed for "
-              "this problem: how well these numbers are known is not stated.");
-    out += "\n";
-  }
-  out += ExpectedErrorWords(posterior);
-  const Json alternatives = MemberAt(posterior, "alternatives");
-  if (alternatives.is_array() && !alternatives.empty()) {
-    out += HtmlElement("h3", "Other explanations") + "\n" +
-           AlternativeTable(alternatives) +
-           HtmlElement(
-               "p",
-               "Where the search ended from its best starts. The relative "
-               "evidence is exp(-cost above the best): how probable that end "
-               "is compared with the best, given the image. One close to 1 "
-               "with a large difference is an ambiguity that this image leaves "
-               "open; materials that were ranked lower at the start were not "
-               "followed.") +
-           "\n";
-  } else {
-    out += HtmlElement("p", "No other starts were followed.") + "\n";
-  }
-  return out + "</section>\n";
+std::string PosteriorSection(const InverseProblem& inverse,
+                             const Solution& solution) {
+  if (solution.brdf.raw.empty()) return "";
+  return "<section>\n" +
+         HtmlElement("h2", "How well the reflectance is known") + "\n" +
+         LobesInWords(SummariseLobes(inverse, solution)) +
+         ExpectedErrorInWords(solution.spread) +
+         AlternativesInWords(solution.alternatives) + "</section>\n";
 }
 
 }  // namespace ibrdf

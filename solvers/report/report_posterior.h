@@ -1,13 +1,14 @@
 // How well a reflectance is known.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "ibrdf/solvers/estimation/solution.h"
+#include "ibrdf/solvers/problem/inverse_problem.h"
 
 namespace ibrdf {
 
-// Of result.json's `posterior` and of brdf.json: a <section>, empty if `brdf`
-// is null (the reflectance was known).
-std::string PosteriorSection(const nlohmann::ordered_json& posterior,
-                             const nlohmann::ordered_json& brdf);
+// A <section>; empty where the reflectance was known.
+std::string PosteriorSection(const InverseProblem& inverse,
+                             const Solution& solution);
 
 }  // namespace ibrdf

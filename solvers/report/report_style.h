@@ -56,7 +56,7 @@ th { font-weight: 600; overflow-wrap: normal; }
 td:first-child { overflow-wrap: normal; }
 .number { font-variant-numeric: tabular-nums; white-space: nowrap; }
 .plots { display: flex; flex-wrap: wrap; gap: 18px; }
-.plot { flex: 1 1 480px; max-width: 680px; }
+.plot { flex: 1 1 440px; max-width: 511px; }
 svg { display: block; width: 100%; height: auto; }
 footer { margin-top: 2.5em; font-size: 0.85em; }
 @media print {

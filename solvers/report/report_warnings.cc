@@ -1,111 +1,121 @@
 #include "ibrdf/solvers/report/report_warnings.h"
 
 #include <cmath>
+#include <utility>
 
-#include "ibrdf/solvers/report/json_values.h"
+#include "ibrdf/solvers/effects/describe_plan.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
 namespace {
-using Json = nlohmann::ordered_json;
 
 // A misfit above this is more than noise and the lobes' limits explain
 // (experiments/joint_grid).
 constexpr double kLargeMisfit = 0.1;
-// Of the time limit: from here on the last stage was cut short.
+// Share of the time limit from which on the last stage was cut short.
 constexpr double kTimeShare = 0.8;
 // Another reflectance counts as an explanation of its own within a factor of
 // 20 of the evidence and beyond a tenth in the logarithm.
 constexpr double kRivalCost = 3.0;
 constexpr double kRivalDifference = 0.1;
-// Of the expected error: of joint_grid's cases above it three quarters are off
-// by more than 0.6, a quarter of the others.
+// Expected error: of joint_grid's cases above it three quarters are off by more
+// than 0.6, a quarter of the others.
 constexpr double kUncertain = 0.84;
 
-std::string StatusWarning(const std::string& status) {
-  if (status == "no_improvement") {
-    return "The solver could not improve on its start: what is shown is the "
-           "start.";
+std::string StatusWarning(const Status& status) {
+  switch (status.code()) {
+    case StatusCode::kOk:
+      return "";
+    case StatusCode::kNoImprovement:
+      return "The solver could not improve on its initial guess: the result is "
+             "the "
+             "initial guess.";
+    case StatusCode::kInterrupted:
+      return "The solver was stopped early: the result is the best state it "
+             "had reached.";
+    default:
+      return "The solver ended with an error.";
   }
-  if (status == "interrupted") {
-    return "The solver was stopped early: what is shown is the best state it "
-           "had reached.";
-  }
-  return status == "ok" ? "" : "The solver ended with status " + status + ".";
 }
 
-std::string PixelWarning(const Json& result) {
-  const double used = NumberAt(result, "pixels_used");
-  const double all = NumberAt(result, "pixels_of_object");
-  if (!(used < all)) return "";
+bool IsOutOfTime(const SolvedProblem& solved) {
+  return solved.metrics.seconds > kTimeShare * solved.problem.solver.seconds;
+}
+
+std::string TimeWarning(const SolvedProblem& solved) {
+  if (!IsOutOfTime(solved)) return "";
+  return "The time limit of " + ShortNumber(solved.problem.solver.seconds) +
+         " s was nearly used up. With more time (solver.seconds) the result "
+         "may still change.";
+}
+
+std::string MisfitWarning(const SolvedProblem& solved) {
+  const double misfit = solved.metrics.misfit;
+  if (!std::isfinite(misfit)) return "The misfit is not a number.";
+  if (misfit <= kLargeMisfit) return "";
+  return "The estimate does not explain the image: its misfit, the mean "
+         "absolute log error, is " +
+         ShortNumber(misfit) + ", far above usual noise. " +
+         (IsOutOfTime(solved) ? "If more time does not help, check" : "Check") +
+         " the shape, the mask, the camera, and that the image is linear "
+         "radiance.";
+}
+
+std::string PixelWarning(const SolvedProblem& solved) {
+  const auto used = static_cast<double>(solved.solution.pixels_used);
+  const auto all = static_cast<double>(solved.inverse.points.size());
+  if (used >= all) return "";
   return ShortNumber(all - used) + " of the object's " + ShortNumber(all) +
          " pixels took no part: they are not finite and positive in all three "
          "channels.";
 }
 
-std::string UncertainWarning(const Json& result) {
-  const double expected =
-      NumberAt(MemberAt(result, "posterior"), "brdf_log_rmse_expected");
+std::string UncertainWarning(const Solution& solution) {
+  if (!std::isfinite(solution.spread)) return "";
+  const double expected = ExpectError(solution.spread).median;
   if (!(expected > kUncertain)) return "";
-  return "This image does not tell the reflectance well: its logarithm is "
-         "expected to be off by " +
+  return "This image does not tell the reflectance well. The logarithm of the "
+         "estimate is expected to be off by " +
          ShortNumber(expected) + ", a factor of " +
          ShortNumber(std::exp(expected)) +
          " (root mean square over all angles, after the best scale).";
 }
 
-std::string RivalWarning(const Json& result) {
-  const Json alternatives =
-      MemberAt(MemberAt(result, "posterior"), "alternatives");
-  if (!alternatives.is_array()) return "";
-  for (const Json& other : alternatives) {
-    const double cost = NumberAt(other, "cost_above_best");
-    const double difference = NumberAt(other, "brdf_log_difference");
-    if (!(cost < kRivalCost && difference > kRivalDifference)) continue;
-    return "Another reflectance explains the image nearly as well: the one "
-           "found from " +
-           TextAt(other, "start") + " has " + ShortNumber(std::exp(-cost)) +
-           " of the best one's evidence and differs from the estimate by " +
-           ShortNumber(difference) + " in the logarithm.";
+std::string RivalWarning(const std::vector<Alternative>& alternatives) {
+  for (const Alternative& other : alternatives) {
+    const double difference = other.brdf_log_difference;
+    if (!(other.cost < kRivalCost && difference > kRivalDifference)) continue;
+    return "Another reflectance explains the image nearly as well. It is the "
+           "local optimum found from " +
+           other.start + ": it has " + ShortNumber(std::exp(-other.cost)) +
+           " of the best one's evidence, and its logarithm differs from the "
+           "estimate's by " +
+           ShortNumber(difference) + " (root mean square).";
   }
   return "";
 }
 
+// No word of a sphere, which is convex.
+std::string EffectsWarning(const SolvedProblem& solved) {
+  const EffectsPlan& effects = solved.inverse.effects;
+  if (solved.problem.geometry.kind == GeometryKind::kSphere ||
+      effects.visibility) {
+    return "";
+  }
+  return "Effects: " + Describe(effects) + ".";
+}
+
 }  // namespace
 
-std::vector<std::string> ResultWarnings(const Json& result) {
-  const Json problem = MemberAt(result, "problem");
-  const Json metrics = MemberAt(result, "metrics");
+std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
   std::vector<std::string> warnings;
-  const auto add = [&](const std::string& text) {
-    if (!text.empty()) warnings.push_back(text);
-  };
-  add(StatusWarning(TextAt(result, "status")));
-  const double limit = NumberAt(MemberAt(problem, "solver"), "seconds");
-  const bool out_of_time = NumberAt(metrics, "seconds") > kTimeShare * limit;
-  if (out_of_time) {
-    add("The time limit of " + ShortNumber(limit) +
-        " s was nearly used up: with more (solver.seconds) the result may "
-        "still "
-        "change.");
-  }
-  const double misfit = NumberAt(metrics, "misfit");
-  if (!std::isfinite(misfit)) {
-    add("The misfit is not a number.");
-  } else if (misfit > kLargeMisfit) {
-    add("The estimate does not explain the image: its misfit of " +
-        ShortNumber(misfit) + " is far above usual noise. " +
-        (out_of_time ? "If more time does not help, check" : "Check") +
-        " the shape, the mask, the camera, and that the image is linear "
-        "radiance.");
-  }
-  add(PixelWarning(result));
-  add(UncertainWarning(result));
-  add(RivalWarning(result));
-  const std::string effects = TextAt(result, "effects");
-  const Json geometry = MemberAt(problem, "geometry");
-  if (geometry.is_object() && !geometry.contains("sphere") &&
-      effects.compare(0, 4, "none") == 0) {
-    add("Effects: " + effects + ".");
+  for (std::string warning :
+       {StatusWarning(solved.solution.status), TimeWarning(solved),
+        MisfitWarning(solved), PixelWarning(solved),
+        UncertainWarning(solved.solution),
+        RivalWarning(solved.solution.alternatives), EffectsWarning(solved)}) {
+    if (!warning.empty()) warnings.push_back(std::move(warning));
   }
   return warnings;
 }

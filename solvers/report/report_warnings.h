@@ -1,12 +1,13 @@
 // What a reader should know before trusting a result.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "ibrdf/solvers/report/solved_problem.h"
+
 namespace ibrdf {
 
-// Sentences about a document as result.json; none: nothing stands out.
-std::vector<std::string> ResultWarnings(const nlohmann::ordered_json& result);
+// Sentences; none: nothing stands out.
+std::vector<std::string> ResultWarnings(const SolvedProblem& solved);
 
 }  // namespace ibrdf

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "ibrdf/base/format.h"
@@ -9,6 +10,7 @@
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/report/brdf_sphere.h"
 #include "ibrdf/solvers/report/preview.h"
+#include "ibrdf/solvers/report/result_images.h"
 #include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
@@ -16,14 +18,14 @@ namespace {
 
 // Percentile of the reference that is shown as white.
 constexpr double kImageWhite = 99.0;
-constexpr double kMapWhite = 97.0;  // lamps and the sun may burn out
+constexpr double kMapWhite = 97.0;  // bright lights and the sun may burn out
 constexpr int kSphereSize = 96;
 constexpr int kSkyHeight = 64;
 
 using Row = std::vector<PreviewPanel>;
 
-std::string White(double exposure, const char* unit) {
-  return Format("white = %.3g", 1.0 / exposure) + unit;
+std::string White(double exposure) {
+  return Format("white = %.3g", 1.0 / exposure);
 }
 
 PreviewPanel Picture(std::string label, const Image& image, const Mask& mask,
@@ -40,7 +42,7 @@ PreviewPanel Picture(std::string label, const Image& image, const Mask& mask,
 
 Row ImagePanels(const ResultPreviewInput& input) {
   const double exposure = ExposureOf(input.input, input.mask, kImageWhite);
-  Row row = {Picture("Input (" + White(exposure, "") + ", its 99th percentile)",
+  Row row = {Picture("Input (" + White(exposure) + ", its 99th percentile)",
                      input.input, input.mask, exposure)};
   if (input.render.empty()) return row;
   row.push_back(Picture("Render of the estimate (same exposure)", input.render,
@@ -89,19 +91,20 @@ double BrdfScale(const MerlTable& estimate, const MerlTable& reference) {
 }
 
 // Explained by kScaleNote.
-std::string Times(double scale) { return Format(" x%.3g", scale); }
+std::string Times(double scale) { return Format(", times %.3g", scale); }
 constexpr char kScaleNote[] =
-    "xN after an estimate: shown times this factor, the one for all channels "
-    "that brings its mean logarithm to the reference's.";
+    "An estimate beside its reference is shown times the factor in its label: "
+    "one for all channels, which brings its mean logarithm to the reference's.";
 
 Row MapPanels(const ResultPreviewInput& input) {
   if (input.illumination.empty()) return {};
   const auto kind = PreviewPanel::Kind::kMap;
-  if (input.reference_illumination.empty()) {
+  if (input.illumination_known || input.reference_illumination.empty()) {
     const double exposure = ExposureOf(input.illumination, Mask(), kMapWhite);
-    return {Picture("Estimated illumination (" + White(exposure, "") +
-                        ", its 97th percentile)",
-                    input.illumination, Mask(), exposure, kind)};
+    return {Picture(
+        std::string(input.illumination_known ? "Known" : "Estimated") +
+            " illumination (" + White(exposure) + ", its 97th percentile)",
+        input.illumination, Mask(), exposure, kind)};
   }
   const Image reference =
       ResizeMap(input.reference_illumination, input.illumination.height,
@@ -110,13 +113,13 @@ Row MapPanels(const ResultPreviewInput& input) {
   const double scale = MapScale(input.illumination, reference);
   return {Picture("Estimated illumination" + Times(scale), input.illumination,
                   Mask(), scale * exposure, kind),
-          Picture("Reference illumination (" + White(exposure, "") +
+          Picture("Reference illumination (" + White(exposure) +
                       ", its 97th percentile)",
                   reference, Mask(), exposure, kind)};
 }
 
 struct Spheres {
-  Image lamps, sky;
+  Image directional, sky;
 };
 
 Spheres RenderSpheres(const MerlTable& table, int num_threads) {
@@ -151,7 +154,7 @@ Row BrdfPanels(const ResultPreviewInput& input) {
       row.push_back(Picture("BRDF reference, " + light, known, mask, exposure));
     }
   };
-  add(estimate.lamps, reference.lamps, "lamps");
+  add(estimate.directional, reference.directional, "directional lights");
   add(estimate.sky, reference.sky, "sky");
   return row;
 }
@@ -195,6 +198,22 @@ Rgb8Image ComposeOverview(const ResultPanels& rows,
 }
 
 }  // namespace
+
+ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
+  ResultPreviewInput input;
+  input.title = std::filesystem::path(solved.problem.path).filename().string();
+  input.input = solved.inverse.image;
+  input.mask = ObjectMask(solved.inverse);
+  input.render = solved.solution.render;
+  input.illumination = solved.solution.map;
+  input.illumination_known = solved.inverse.known_map.has_value();
+  input.reference_illumination = solved.truth.illumination;
+  input.brdf = solved.solution.brdf;
+  input.reference_brdf = solved.truth.brdf;
+  input.metrics = MetricLines(solved.metrics);
+  input.num_threads = solved.inverse.num_threads;
+  return input;
+}
 
 Rgb8Image MakeOverview(const ResultPreviewInput& input) {
   return ComposeOverview(MakeRows(input), input);

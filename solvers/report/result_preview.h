@@ -8,6 +8,7 @@
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
 #include "ibrdf/solvers/report/preview.h"
+#include "ibrdf/solvers/report/solved_problem.h"
 
 namespace ibrdf {
 
@@ -18,6 +19,7 @@ struct ResultPreviewInput {
   Mask mask;     // of the object, of the input's size; empty: all pixels
   Image render;  // of the input's size
   Image illumination;
+  bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;
   MerlTable brdf;
   MerlTable reference_brdf;
@@ -25,8 +27,10 @@ struct ResultPreviewInput {
   int num_threads = 0;               // <= 0: all
 };
 
+ResultPreviewInput PreviewInput(const SolvedProblem& solved);
+
 // The overview: input, render and residual; the maps; the BRDFs on spheres
-// under the lights of render/brdf_sphere.h, the estimate's beside the
+// under the lights of report/brdf_sphere.h, the estimate's beside the
 // reference's. Input and render share an exposure, and so do each estimate and
 // its reference; an estimate with a reference is first brought to the
 // reference's scale by one factor for all channels, which its label states.
@@ -35,7 +39,7 @@ Rgb8Image MakeOverview(const ResultPreviewInput& input);
 // The overview's rows of panels; empty where there is nothing to show.
 struct ResultPanels {
   std::vector<PreviewPanel> images;   // input, render, residual
-  std::vector<PreviewPanel> maps;     // estimate, reference
+  std::vector<PreviewPanel> maps;     // estimate, reference; or known
   std::vector<PreviewPanel> spheres;  // of each light, estimate and reference
 };
 

@@ -9,6 +9,7 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/solvers/report/html.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 
 namespace ibrdf {
 namespace {
@@ -32,17 +33,8 @@ std::string TickLabel(double value, double step) {
   return Format("%.*f", decimals, value);
 }
 
-// The smallest of 1, 2 and 5 times a power of ten that is >= x > 0.
-double RoundStep(double x) {
-  const double power = std::pow(10.0, std::floor(std::log10(x)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (x <= factor * power * (1.0 + 1e-9)) return factor * power;
-  }
-  return 10.0 * power;
-}
-
 std::vector<AxisTick> LinearTicks(double low, double high) {
-  const double step = RoundStep((high - low) / 6.0);
+  const double step = RoundUp((high - low) / 6.0);
   std::vector<AxisTick> ticks;
   const double slack = 1e-9 * step;
   const double first = std::ceil((low - slack) / step);
@@ -273,8 +265,10 @@ std::string SvgLinePlot(const LinePlot& plot) {
   double top = 0.0;
   out += Legend(plot, &top);
   if (left_out > 0) {
-    out += Text(kWidth - kRight, 18, "end", 12,
-                std::to_string(left_out) + " values cannot be shown");
+    out +=
+        Text(kWidth - kRight, 18, "end", 12,
+             std::to_string(left_out) + (left_out == 1 ? " value" : " values") +
+                 " cannot be shown");
   }
   const Scale to_x(xs.low, xs.high, plot.x.logarithmic, kLeft, kWidth - kRight);
   const Scale to_y(ys.low, ys.high, plot.y.logarithmic, kHeight - kBottom, top);

@@ -5,9 +5,8 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/io/problem.h"
-#include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/problem/inverse_problem.h"
-#include "ibrdf/solvers/problem/truth.h"
+#include "ibrdf/solvers/report/solved_problem.h"
 
 namespace ibrdf {
 
@@ -18,14 +17,11 @@ double PredictWriteSeconds(const InverseProblem& inverse);
 std::vector<std::string> ResultPaths(const Problem& problem,
                                      const std::string& folder);
 
-// Writes result.json, brdf.binary, brdf.json, illumination.exr,
-// illumination_log_std.exr (where a search found it), render.exr, residual.exr,
-// the PNG previews and, last, report.html into `folder`, making it; each file
-// whole or absent. result.json and report.html of an earlier run go first:
-// where one is, all else is of its run. `metrics_text`, where given, receives
-// the metrics, one a line.
-Status WriteResults(const Problem& problem, const InverseProblem& inverse,
-                    const Truth& truth, const Solution& estimate,
-                    const std::string& folder, std::string* metrics_text);
+// Writes brdf.binary, brdf.json, illumination.exr, illumination_log_std.exr
+// (where a search found it), render.exr, residual.exr, the PNG previews,
+// result.json and, last, report.html into `folder`, making it; each file whole
+// or absent. result.json and report.html of an earlier run go first: where one
+// is, all else is of its run.
+Status WriteResults(const SolvedProblem& solved, const std::string& folder);
 
 }  // namespace ibrdf

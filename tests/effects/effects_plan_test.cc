@@ -165,8 +165,11 @@ TEST_F(EffectsPlanTest, SolveUsesShadowsAndReportsThem) {
     ASSERT_TRUE(estimate.ok()) << estimate.status().message();
     misfit[shadows ? 1 : 0] = estimate->misfit;
     if (!shadows) continue;
-    ASSERT_TRUE(WriteResults(*problem, *inverse, {}, *estimate,
-                             dir_.File("out"), nullptr)
+    const Truth truth;
+    const ResultMetrics metrics =
+        MeasureResult(*inverse, truth, *estimate).value();
+    ASSERT_TRUE(WriteResults({*problem, *inverse, truth, *estimate, metrics},
+                             dir_.File("out"))
                     .ok());
     const nlohmann::json result =
         nlohmann::json::parse(ReadBytes(dir_.File("out/result.json")));

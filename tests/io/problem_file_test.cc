@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -359,6 +360,23 @@ TEST_F(ProblemFile, JsonOfABuiltInSceneReadsBack) {
   const StatusOr<Problem> again = Read(json.dump());
   ASSERT_TRUE(again.ok()) << again.status().message();
   EXPECT_EQ(json, ProblemToJson(*again));
+}
+
+TEST_F(ProblemFile, SettingsAreTheLeavesByTheNamesThatSetTakes) {
+  const StatusOr<Problem> read =
+      Read(kLeast, {"effects=[visibility, interreflection]",
+                    "geometry={mesh: m.obj}", "solver.seconds=30"});
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  std::map<std::string, std::string> settings;
+  for (const ProblemSetting& setting : ListSettings(*read)) {
+    settings[setting.key] = setting.value;
+  }
+  EXPECT_EQ("joint", settings["problem"]);
+  EXPECT_EQ("30.0", settings["solver.seconds"]);
+  EXPECT_EQ("auto", settings["likelihood.scale"]);
+  EXPECT_EQ(dir_.File("m.obj"), settings["geometry.mesh"]);
+  EXPECT_EQ("[\"visibility\",\"interreflection\"]", settings["effects"]);
+  EXPECT_EQ(0u, settings.count("geometry"));
 }
 
 }  // namespace

@@ -3,81 +3,100 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
+#include <vector>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/solvers/report/report_plots.h"
 #include "ibrdf/solvers/report/report_warnings.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
 #include "tests/support/base64.h"
 #include "tests/support/markup.h"
+#include "tests/support/tiny_model.h"
 
 namespace ibrdf {
 namespace {
-using Json = nlohmann::ordered_json;
 
-Json Entry(const char* stage, double seconds, double scale, int pixels,
-           double cost) {
-  return {{"stage", stage},
-          {"seconds", seconds},
-          {"scale", scale},
-          {"pixels", pixels},
-          {"cost", cost},
-          {"likelihood", cost},
-          {"reflectance_prior", 0.0},
-          {"illumination_prior", 2.0},
-          {"misfit", 0.1}};
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSpread = 0.21875;
+
+TraceEntry Entry(const char* stage, double seconds, double scale, int pixels,
+                 double cost) {
+  TraceEntry entry;
+  entry.stage = stage;
+  entry.seconds = seconds;
+  entry.scale = scale;
+  entry.pixels = pixels;
+  entry.cost = entry.likelihood = cost;
+  entry.illumination_prior = 2.0;
+  entry.misfit = 0.1;
+  return entry;
 }
 
-// A document as result.json of a joint problem with truth.
-Json JointResult() {
-  return {
-      {"ibrdf_version", "0.1.0"},
-      {"status", "ok"},
-      {"problem",
-       {{"image", {{"file", "a <b> & \"c\".exr"}}},
-        {"geometry", {{"sphere", Json::object()}}},
-        {"problem", "joint"},
-        {"effects", "auto"},
-        {"solver", {{"seconds", 60.0}}}}},
-      {"effects", "none: the sphere is convex"},
-      {"gauge", "least prior cost"},
-      {"start", "gold & silver"},
-      {"posterior",
-       {{"lobes",
-         {{{"code_std", {0.1, 0.2}}, {"log_colour_std", {0.05, 0.2, 1.1}}}}},
-        {"brdf_spread", 0.21875},
-        {"brdf_log_rmse_expected", 0.34375},
-        {"brdf_log_rmse_90", 0.6875},
-        {"alternatives",
-         {{{"start", "gold & silver"},
-           {"cost_above_best", 0.0},
-           {"brdf_log_difference", 0.02}},
-          {{"start", "<chrome>"},
-           {"cost_above_best", 4.0},
-           {"brdf_log_difference", 0.5}}}}}},
-      {"seed", 1},
-      {"pixels_used", 100},
-      {"pixels_of_object", 100},
-      {"likelihood", {{"scale", 0.02}, {"epsilon", 1e-6}}},
-      {"metrics",
-       {{"seconds", 20.0},
-        {"misfit", 0.02},
-        {"brdf_log_rmse", 1.25},
-        {"brdf_log_rmse_aligned", 0.375},
-        {"illumination_relative_log_rmse", 0.3125},
-        {"image_log_rmse", 0.04}}},
-      {"trace",
-       {Entry("rank 9 materials", 1, 0, 100, -50),
-        Entry("coarse map round 1", 2, 0.1, 25, 300),
-        Entry("map round 1", 3, 0.05, 100, 500),
-        Entry("end", 4, 0.05, 100, 400)}}};
+std::vector<TraceEntry> Trace() {
+  return {Entry("rank 9 materials", 1, 0, 100, -50),
+          Entry("coarse map round 1", 2, 0.1, 25, 300),
+          Entry("map round 1", 3, 0.05, 100, 500),
+          Entry("end", 4, 0.05, 100, 400)};
 }
 
-Json Lobes() {
-  return {{"formula", "colour * density"},
-          {"lobes",
-           {{{"code", {0.3, 0.4}}, {"colour_raw_merl", {10.0, 20.0, 30.0}}}}}};
+// One lobe with the deviations 0.1, ..., 0.4 of its code and 0.05, 0.2 and 1.1
+// of its log colours.
+Solution OneLobe() {
+  Solution solution;
+  solution.brdf.raw = {1.0};
+  solution.lobe_parameters = {0.3,          0.4,          0.0,         0.0,
+                              std::log(10), std::log(20), std::log(30)};
+  const double deviations[] = {0.1, 0.2, 0.3, 0.4, 0.05, 0.2, 1.1};
+  solution.lobe_covariance.assign(49, 0.0);
+  for (size_t i = 0; i < 7; ++i) {
+    solution.lobe_covariance[8 * i] = deviations[i] * deviations[i];
+  }
+  solution.spread = kSpread;
+  solution.alternatives = {{"gold & silver", 0.0, 0.02},
+                           {"<chrome>", 4.0, 0.5}};
+  solution.scale = 0.02;
+  solution.epsilon = 1e-6;
+  solution.start = "gold & silver";
+  solution.pixels_used = 100;
+  solution.trace = Trace();
+  return solution;
 }
+
+// A solved joint problem with truth, to be changed.
+struct Example {
+  Example() {
+    problem.path = "folder/red & <plastic>.yaml";
+    problem.image.file = "a <b> & \"c\".exr";
+    problem.solver.seconds = 60.0;
+    inverse.model = std::make_shared<const NeuralBrdfModel>(TinyModel(1));
+    inverse.lobes = 1;
+    inverse.points.resize(100);
+    inverse.solver.estimator = SolverEstimator::kMaximum;
+    solution = OneLobe();
+    metrics.seconds = 20.0;
+    metrics.misfit = 0.02;
+    metrics.brdf.emplace();
+    metrics.brdf->log_rmse = 1.25;
+    metrics.brdf->log_rmse_aligned = 0.375;
+    metrics.illumination.emplace();
+    metrics.illumination->relative_log_rmse = 0.3125;
+    metrics.image.emplace();
+    metrics.image->log_rmse = 0.04;
+  }
+  SolvedProblem Solved() const {
+    return {problem, inverse, truth, solution, metrics};
+  }
+
+  Problem problem;
+  InverseProblem inverse;
+  Truth truth;
+  Solution solution;
+  ResultMetrics metrics;
+};
 
 ReportGroup Pictures() {
   ReportFigure figure;
@@ -92,8 +111,9 @@ ReportGroup Pictures() {
   return {"Image & map", "what to look for", {figure}};
 }
 
-std::string Page(const ReportInput& input) {
-  const StatusOr<std::string> page = ReportPage(input);
+std::string Page(const Example& example,
+                 const std::vector<ReportGroup>& groups = {}) {
+  const StatusOr<std::string> page = ReportPage(example.Solved(), groups);
   EXPECT_TRUE(page.ok()) << page.status().message();
   return page.ok() ? *page : "";
 }
@@ -103,18 +123,22 @@ bool Contains(const std::string& text, const std::string& part) {
 }
 
 TEST(ReportPage, ShowsWhatTheResultHolds) {
-  const std::string page =
-      Page({"red & <plastic>.yaml", JointResult(), Lobes(), {Pictures()}});
+  const std::string page = Page(Example(), {Pictures()});
   EXPECT_EQ("", MarkupError(page));
-  for (const char* part :
-       {"<h1>red &amp; &lt;plastic&gt;.yaml</h1>",
-        "a &lt;b&gt; &amp; &quot;c&quot;.exr", "Image &amp; map",
-        "Input &quot;x&quot; &lt;raw&gt;", "least prior cost", "&lt;chrome&gt;",
-        "0.01832",  // exp(-4)
-        "1.25", "0.375", "0.3125", "solver.seconds",
-        "within a factor of 3.004",  // exp(1.1)
-        "0.2188", "0.3438 at such a spread (a factor of 1.41", "0.6875",
-        "the sphere is convex", "time (s)", "</svg>"}) {
+  const ErrorToExpect error = ExpectError(kSpread);
+  for (const std::string& part : std::vector<std::string>{
+           "<h1>red &amp; &lt;plastic&gt;.yaml</h1>",
+           "a &lt;b&gt; &amp; &quot;c&quot;.exr", "Image &amp; map",
+           "Input &quot;x&quot; &lt;raw&gt;", "least prior cost",
+           "&lt;chrome&gt;",
+           "0.01832",  // exp(-4)
+           "1.25", "0.375", "0.3125", "solver.seconds",
+           "within a factor of 3.004",  // exp(1.1)
+           "0.2188",
+           Format("%.4g at such a spread (a factor of %.3g", error.median,
+                  std::exp(error.median)),
+           Format("%.4g", error.most), "the sphere is convex", "time (s)",
+           "</svg>"}) {
     EXPECT_TRUE(Contains(page, part)) << part;
   }
   EXPECT_FALSE(Contains(page, "<script"));
@@ -127,7 +151,7 @@ TEST(ReportPage, ShowsWhatTheResultHolds) {
 
 TEST(ReportPage, PicturesAreTheFilesOfTheirPixels) {
   const ReportGroup group = Pictures();
-  const std::string page = Page({"p", JointResult(), nullptr, {group}});
+  const std::string page = Page(Example(), {group});
   const std::string prefix = "src=\"data:image/png;base64,";
   const size_t begin = page.find(prefix);
   ASSERT_NE(std::string::npos, begin);
@@ -137,63 +161,83 @@ TEST(ReportPage, PicturesAreTheFilesOfTheirPixels) {
 }
 
 TEST(ReportPage, WithoutTruthItSaysSo) {
-  Json result = JointResult();
-  result["metrics"] = {{"seconds", 1.0}, {"misfit", 0.02}};
-  const std::string page = Page({"p", result, Lobes(), {}});
+  Example example;
+  example.metrics.brdf.reset();
+  example.metrics.illumination.reset();
+  const std::string page = Page(example);
   EXPECT_EQ("", MarkupError(page));
   EXPECT_TRUE(Contains(page, "No truth was given"));
   EXPECT_FALSE(Contains(page, "Against the truth"));
 }
 
 TEST(ReportPage, KnownReflectanceHasNoPosteriorAndNoGauge) {
-  Json result = JointResult();
-  result["problem"]["problem"] = "illumination";
-  result["posterior"] = {{"alternatives", Json::array()}};
-  const std::string page = Page({"p", result, nullptr, {}});
+  Example example;
+  example.problem.kind = ProblemKind::kIllumination;
+  example.solution.brdf.raw.clear();
+  example.solution.alternatives.clear();
+  const std::string page = Page(example);
   EXPECT_EQ("", MarkupError(page));
   EXPECT_FALSE(Contains(page, "How well the reflectance is known"));
   EXPECT_FALSE(Contains(page, "(s R, L / s)"));
 }
 
 TEST(ReportPage, EmptyAndShortTraces) {
-  Json result = JointResult();
-  result["trace"] = Json::array();
-  EXPECT_FALSE(Contains(Page({"p", result, Lobes(), {}}), "<svg"));
-  result["trace"] = {Entry("end", 4, 0.05, 100, 400)};
-  const std::string page = Page({"p", result, Lobes(), {}});
+  Example example;
+  example.solution.trace.clear();
+  EXPECT_FALSE(Contains(Page(example), "<svg"));
+  example.solution.trace = {Entry("end", 4, 0.05, 100, 400)};
+  const std::string page = Page(example);
   EXPECT_EQ("", MarkupError(page));
   EXPECT_TRUE(Contains(page, "<svg"));
 }
 
-// Null and NaN everywhere: of numbers, lists and whole parts.
-TEST(ReportPage, MissingValuesAreShownAsSuch) {
-  Json result = JointResult();
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  result["metrics"]["misfit"] = nullptr;
-  result["metrics"]["brdf_log_rmse"] = nan;
-  result["posterior"]["lobes"][0]["log_colour_std"] = {nan, nullptr, 0.1};
-  result["posterior"]["lobes"][0]["code_std"] = nullptr;
-  result["posterior"]["alternatives"][1]["cost_above_best"] = nullptr;
-  for (Json& entry : result["trace"]) entry["misfit"] = nan;
-  result["trace"][2]["cost"] = nullptr;
-  const std::string page = Page({"p", result, Lobes(), {}});
+TEST(ReportPage, NumbersThatAreNotFiniteAreShownAsSuch) {
+  Example example;
+  example.metrics.misfit = kNan;
+  example.metrics.brdf->log_rmse = kNan;
+  std::vector<double>& covariance = example.solution.lobe_covariance;
+  covariance[0] = covariance[8 * 4] = kNan;  // of the code, of a log colour
+  covariance[8 * 5] = -1.0;
+  example.solution.alternatives[1].cost = kNan;
+  for (TraceEntry& entry : example.solution.trace) entry.misfit = kNan;
+  example.solution.trace[2].cost = kNan;
+  const std::string page = Page(example);
   EXPECT_EQ("", MarkupError(page));
   EXPECT_TRUE(Contains(page, "The misfit is not a number."));
   EXPECT_FALSE(Contains(page, "nan"));
   EXPECT_FALSE(Contains(page, "null"));
-  const Json whole = JointResult();
-  for (const auto& [key, value] : whole.items()) {
-    Json without = whole;
-    without.erase(key);
-    EXPECT_EQ("", MarkupError(Page({"p", without, Lobes(), {}}))) << key;
-    without[key] = nullptr;
-    EXPECT_EQ("", MarkupError(Page({"p", without, Lobes(), {}}))) << key;
+}
+
+TEST(ReportPage, AnyPartMayBeMissing) {
+  const std::vector<std::function<void(Example*)>> removals = {
+      [](Example* e) { e->problem = {}; },
+      [](Example* e) { e->problem.path.clear(); },
+      [](Example* e) { e->inverse.effects = {}; },
+      [](Example* e) { e->inverse.points.clear(); },
+      [](Example* e) { e->solution = {}; },
+      [](Example* e) { e->solution.start.clear(); },
+      [](Example* e) { e->solution.lobe_covariance.clear(); },
+      [](Example* e) { e->solution.lobe_parameters.clear(); },
+      [](Example* e) { e->solution.spread = kNan; },
+      [](Example* e) { e->solution.alternatives.clear(); },
+      [](Example* e) { e->solution.trace.clear(); },
+      [](Example* e) { e->solution.scale = e->solution.epsilon = kNan; },
+      [](Example* e) { e->metrics = {}; },
+      [](Example* e) { e->metrics.brdf.reset(); },
+      [](Example* e) { e->metrics.illumination.reset(); },
+      [](Example* e) { e->metrics.image.reset(); }};
+  Example nothing;
+  for (size_t i = 0; i < removals.size(); ++i) {
+    Example example;
+    removals[i](&example);
+    removals[i](&nothing);
+    EXPECT_EQ("", MarkupError(Page(example))) << i;
   }
-  EXPECT_EQ("", MarkupError(Page({"", nullptr, nullptr, {}})));
+  EXPECT_EQ("", MarkupError(Page(nothing)));
 }
 
 TEST(TracePlots, SeriesHoldWhatCompares) {
-  const std::vector<LinePlot> plots = TracePlots(JointResult()["trace"]);
+  const std::vector<LinePlot> plots = TracePlots(Trace());
   ASSERT_EQ(size_t{3}, plots.size());
   ASSERT_EQ(size_t{3}, plots[0].series.size());  // search, 25 and 100 pixels
   EXPECT_EQ(std::vector<double>({3, 4}), plots[0].series[2].x);
@@ -211,30 +255,38 @@ TEST(TracePlots, SeriesHoldWhatCompares) {
     EXPECT_EQ("time (s)", plot.x.label);
     EXPECT_TRUE(Contains(plot.y.label, "("));  // a unit
   }
-  EXPECT_TRUE(TracePlots(nullptr).empty());
+  EXPECT_TRUE(TracePlots({}).empty());
 }
 
 TEST(ResultWarnings, AreSilentWithoutCause) {
-  EXPECT_TRUE(ResultWarnings(JointResult()).empty());
+  EXPECT_TRUE(ResultWarnings(Example().Solved()).empty());
 }
 
 TEST(ResultWarnings, NameEachCause) {
-  const auto warned = [](const char* pointer, const Json& value,
+  const auto warned = [](const std::function<void(Example*)>& change,
                          const std::string& word) {
-    Json result = JointResult();
-    result[Json::json_pointer(pointer)] = value;
-    const std::vector<std::string> warnings = ResultWarnings(result);
-    ASSERT_EQ(size_t{1}, warnings.size()) << pointer;
+    Example example;
+    change(&example);
+    const std::vector<std::string> warnings = ResultWarnings(example.Solved());
+    ASSERT_EQ(size_t{1}, warnings.size()) << word;
     EXPECT_TRUE(Contains(warnings[0], word)) << warnings[0];
   };
-  warned("/status", "no_improvement", "start");
-  warned("/status", "interrupted", "stopped");
-  warned("/metrics/misfit", 0.5, "does not explain");
-  warned("/metrics/seconds", 55.0, "time limit");
-  warned("/pixels_used", 90, "10 of the object's 100");
-  warned("/posterior/alternatives/1/cost_above_best", 1.0, "<chrome>");
-  warned("/posterior/brdf_log_rmse_expected", 0.9, "a factor of 2.46");
-  warned("/problem/geometry", {{"mesh", "a.obj"}}, "convex");
+  const auto ended = [](StatusCode code) {
+    return [code](Example* e) { e->solution.status = Status(code, "ended"); };
+  };
+  warned(ended(StatusCode::kNoImprovement), "start");
+  warned(ended(StatusCode::kInterrupted), "stopped");
+  warned([](Example* e) { e->metrics.misfit = 0.5; }, "does not explain");
+  warned([](Example* e) { e->metrics.seconds = 55.0; }, "time limit");
+  warned([](Example* e) { e->solution.pixels_used = 90; },
+         "10 of the object's 100");
+  warned([](Example* e) { e->solution.alternatives[1].cost = 1.0; },
+         "<chrome>");
+  // An expected error of 0.9.
+  warned([](Example* e) { e->solution.spread = 0.9 / ExpectError(1.0).median; },
+         "a factor of 2.46");
+  warned([](Example* e) { e->problem.geometry.kind = GeometryKind::kMesh; },
+         "convex");
 }
 
 }  // namespace

@@ -46,6 +46,16 @@ TEST(ResultPreview, ReferencesAddPanels) {
   EXPECT_GT(MakeOverview(input).width, alone.width);
 }
 
+TEST(ResultPreview, AKnownMapIsNoEstimate) {
+  ResultPreviewInput input = SmallInput();
+  input.illumination = input.reference_illumination = ProceduralSky(8, 16);
+  EXPECT_EQ(size_t{2}, MakeResultPanels(input)->maps.size());
+  input.illumination_known = true;
+  const ResultPanels panels = MakeResultPanels(input).value();
+  ASSERT_EQ(size_t{1}, panels.maps.size());
+  EXPECT_EQ(0u, panels.maps[0].label.find("Known illumination"));
+}
+
 // An estimate that differs from its reference by a factor shows the same.
 TEST(ResultPreview, EstimatesAreBroughtToTheReferencesScale) {
   ResultPreviewInput input = SmallInput();

@@ -1,0 +1,190 @@
+#include "ibrdf/solvers/report/result_json.h"
+
+#include <glog/logging.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "ibrdf/base/version.h"
+#include "ibrdf/io/problem_json.h"
+#include "ibrdf/solvers/effects/describe_plan.h"
+#include "ibrdf/solvers/optim/conditioning.h"
+#include "ibrdf/solvers/report/gauge_words.h"
+#include "ibrdf/solvers/report/lobe_summary.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
+
+namespace ibrdf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json Finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+const char* StatusName(const Status& status) {
+  switch (status.code()) {
+    case StatusCode::kOk:
+      return "ok";
+    case StatusCode::kNoImprovement:
+      return "no_improvement";
+    case StatusCode::kInterrupted:
+      return "interrupted";
+    default:
+      return "error";
+  }
+}
+
+Json VisibilityJson(const InverseProblem& inverse) {
+  const EffectsPlan& plan = inverse.effects;
+  Json out = {{"simulated", plan.visibility},
+              {"points_probed", plan.probe.points},
+              {"hidden_mean", plan.probe.hidden_mean},
+              {"hidden_90", plan.probe.hidden_90},
+              {"hidden_max", plan.probe.hidden_max},
+              {"shadowed_share", plan.probe.shadowed_share},
+              {"log_radiance_error_without", plan.omission.unshadowed},
+              {"log_radiance_error_threshold", plan.threshold},
+              {"seconds_predicted", plan.omission.shadow_seconds}};
+  if (const Visibility* rays = inverse.transport.visibility.get()) {
+    out["rays"] = rays->num_rays();
+    out["bytes"] = rays->MemoryBytes();
+  }
+  return out;
+}
+
+Json InterreflectionJson(const InverseProblem& inverse) {
+  const EffectsPlan& plan = inverse.effects;
+  Json out = {{"simulated", plan.bounces > 0},
+              {"bounces", plan.bounces},
+              {"log_radiance_error_by_bounces", plan.omission.bounces},
+              {"log_radiance_error_threshold", plan.threshold},
+              {"seconds_predicted", plan.omission.bounce_seconds}};
+  if (const RadiosityPatches* patches = inverse.transport.patches.get()) {
+    out["emitters"] = patches->count();
+    out["bytes"] = patches->MemoryBytes();
+  }
+  return out;
+}
+
+// What was decided, and the predictions that it follows from.
+Json EffectsJson(const InverseProblem& inverse) {
+  return {{"visibility", VisibilityJson(inverse)},
+          {"interreflection", InterreflectionJson(inverse)},
+          {"log_radiance_error_left_out", inverse.effects.error}};
+}
+
+Json MetricsJson(const ResultMetrics& metrics) {
+  Json out = Json::object();
+  for (const NamedMetric& metric : ListMetrics(metrics)) {
+    out[metric.name] = Finite(metric.value);
+  }
+  return out;
+}
+
+Json TraceJson(const std::vector<TraceEntry>& trace) {
+  Json out = Json::array();
+  for (const TraceEntry& t : trace) {
+    out.push_back({{"stage", t.stage},
+                   {"seconds", t.seconds},
+                   {"scale", t.scale},
+                   {"pixels", t.pixels},
+                   {"cost", Finite(t.cost)},
+                   {"likelihood", Finite(t.likelihood)},
+                   {"reflectance_prior", Finite(t.reflectance_prior)},
+                   {"illumination_prior", Finite(t.illumination_prior)},
+                   {"misfit", Finite(t.misfit)}});
+  }
+  return out;
+}
+
+Json DeviationsJson(const std::vector<LobeSummary>& lobes) {
+  Json out = Json::array();
+  for (const LobeSummary& lobe : lobes) {
+    out.push_back({{"code_std", lobe.deviation->code},
+                   {"log_colour_std", lobe.deviation->log_colour}});
+  }
+  return out;
+}
+
+Json AlternativesJson(const std::vector<Alternative>& alternatives) {
+  Json out = Json::array();
+  for (const Alternative& a : alternatives) {
+    out.push_back({{"start", a.start},
+                   {"cost_above_best", Finite(a.cost)},
+                   {"brdf_log_difference", Finite(a.brdf_log_difference)}});
+  }
+  return out;
+}
+
+// Condition number of the posterior's correlations.
+double CovarianceCondition(const Solution& solution) {
+  const auto side = static_cast<Eigen::Index>(solution.lobe_parameters.size());
+  const double condition = ScaledCondition(Eigen::Map<const Eigen::MatrixXd>(
+      solution.lobe_covariance.data(), side, side));
+  VLOG(1) << "condition of the posterior's correlations " << condition;
+  return condition;
+}
+
+// How well the reflectance is known.
+Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
+  Json out = Json::object();
+  if (!solution.lobe_covariance.empty()) {
+    out["lobes"] = DeviationsJson(SummariseLobes(inverse, solution));
+    out["covariance"] = solution.lobe_covariance;
+    out["condition_number"] = Finite(CovarianceCondition(solution));
+  }
+  if (std::isfinite(solution.spread)) {
+    out["brdf_spread"] = solution.spread;
+    const ErrorToExpect error = ExpectError(solution.spread);
+    out["brdf_log_rmse_expected"] = error.median;
+    out["brdf_log_rmse_90"] = error.most;
+  }
+  out["alternatives"] = AlternativesJson(solution.alternatives);
+  return out;
+}
+
+std::string Text(const Json& document) {
+  // Paths need not be UTF-8.
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string ResultJson(const SolvedProblem& solved) {
+  const InverseProblem& inverse = solved.inverse;
+  const Solution& solution = solved.solution;
+  return Text({{"ibrdf_version", kVersion},
+               {"status", StatusName(solution.status)},
+               {"problem", ProblemToJson(solved.problem)},
+               {"effects", Describe(inverse.effects)},
+               {"effects_plan", EffectsJson(inverse)},
+               {"gauge", GaugeWords(inverse)},
+               {"start", solution.start},
+               {"posterior", PosteriorJson(inverse, solution)},
+               {"seed", inverse.seed},
+               {"pixels_used", solution.pixels_used},
+               {"pixels_of_object", inverse.points.size()},
+               {"likelihood",
+                {{"scale", solution.scale}, {"epsilon", solution.epsilon}}},
+               {"cost",
+                {{"start", Finite(solution.start_cost)},
+                 {"end", Finite(solution.end_cost)}}},
+               {"metrics", MetricsJson(solved.metrics)},
+               {"trace", TraceJson(solution.trace)}});
+}
+
+std::string BrdfJson(const SolvedProblem& solved) {
+  Json lobes = Json::array();
+  for (const LobeSummary& lobe :
+       SummariseLobes(solved.inverse, solved.solution)) {
+    lobes.push_back({{"code", lobe.code}, {"colour_raw_merl", lobe.colour}});
+  }
+  const std::string& model = solved.problem.reflectance.model;
+  return Text({{"model", model.empty() ? "default" : model},
+               {"formula", kLobeFormula},
+               {"exponent", solved.inverse.model->exponent},
+               {"lobes", lobes}});
+}
+
+}  // namespace ibrdf

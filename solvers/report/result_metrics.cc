@@ -1,0 +1,65 @@
+#include "ibrdf/solvers/report/result_metrics.h"
+
+#include <cmath>
+
+#include "ibrdf/base/format.h"
+#include "ibrdf/solvers/report/result_images.h"
+
+namespace ibrdf {
+
+StatusOr<ResultMetrics> MeasureResult(const InverseProblem& inverse,
+                                      const Truth& truth,
+                                      const Solution& solution) {
+  ResultMetrics metrics;
+  metrics.seconds = solution.seconds;
+  metrics.misfit = solution.misfit;
+  if (!truth.brdf.raw.empty() && !solution.brdf.raw.empty()) {
+    const StatusOr<BrdfMetrics> brdf = CompareBrdfs(solution.brdf, truth.brdf);
+    if (!brdf.ok()) return brdf.status();
+    metrics.brdf = *brdf;
+  }
+  if (!truth.illumination.empty() && !inverse.known_map.has_value()) {
+    const StatusOr<IlluminationMetrics> illumination =
+        CompareIlluminations(solution.map, truth.illumination);
+    if (!illumination.ok()) return illumination.status();
+    metrics.illumination = *illumination;
+  }
+  const StatusOr<ImageMetrics> image =
+      CompareImages(solution.render, inverse.image, ObjectMask(inverse));
+  if (image.ok()) metrics.image = *image;
+  return metrics;
+}
+
+std::vector<NamedMetric> ListMetrics(const ResultMetrics& metrics) {
+  std::vector<NamedMetric> list = {{"seconds", metrics.seconds},
+                                   {"misfit", metrics.misfit}};
+  if (const auto& brdf = metrics.brdf) {
+    list.push_back({"brdf_log_rmse", brdf->log_rmse});
+    list.push_back({"brdf_log_rmse_aligned", brdf->log_rmse_aligned});
+    list.push_back({"brdf_log_rmse_below80", brdf->log_rmse_below80});
+  }
+  if (const auto& map = metrics.illumination) {
+    list.push_back({"illumination_relative_log_rmse", map->relative_log_rmse});
+    list.push_back({"illumination_relative_log_rmse_aligned",
+                    map->relative_log_rmse_aligned});
+    list.push_back({"illumination_relative_log_rmse_unweighted",
+                    map->relative_log_rmse_unweighted});
+  }
+  if (const auto& image = metrics.image) {
+    list.push_back({"image_log_rmse", image->log_rmse});
+    list.push_back({"psnr", image->psnr});
+    list.push_back({"dssim", image->dssim});
+  }
+  return list;
+}
+
+std::vector<std::string> MetricLines(const ResultMetrics& metrics) {
+  std::vector<std::string> lines;
+  for (const NamedMetric& metric : ListMetrics(metrics)) {
+    if (!std::isfinite(metric.value)) continue;
+    lines.push_back(Format("%s %.4g", metric.name, metric.value));
+  }
+  return lines;
+}
+
+}  // namespace ibrdf

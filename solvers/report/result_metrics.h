@@ -1,0 +1,44 @@
+// How good a solution is: against the image, and against the truth where the
+// problem names it.
+#pragma once
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/metrics/brdf_metrics.h"
+#include "ibrdf/metrics/illumination_metrics.h"
+#include "ibrdf/metrics/image_metrics.h"
+#include "ibrdf/solvers/estimation/solution.h"
+#include "ibrdf/solvers/problem/inverse_problem.h"
+#include "ibrdf/solvers/problem/truth.h"
+
+namespace ibrdf {
+
+struct ResultMetrics {
+  double seconds = std::numeric_limits<double>::quiet_NaN();
+  double misfit = std::numeric_limits<double>::quiet_NaN();
+  // Against the truth of what was estimated.
+  std::optional<BrdfMetrics> brdf;
+  std::optional<IlluminationMetrics> illumination;
+  std::optional<ImageMetrics> image;  // unset: no pixel compares
+};
+
+// Fails where the truth cannot be compared with; LoadTruth refuses such files.
+StatusOr<ResultMetrics> MeasureResult(const InverseProblem& inverse,
+                                      const Truth& truth,
+                                      const Solution& solution);
+
+struct NamedMetric {
+  const char* name;  // as in result.json
+  double value;      // may be infinite or NaN
+};
+
+// Those that are set, in the order of result.json.
+std::vector<NamedMetric> ListMetrics(const ResultMetrics& metrics);
+
+// "name value" of those that are finite.
+std::vector<std::string> MetricLines(const ResultMetrics& metrics);
+
+}  // namespace ibrdf

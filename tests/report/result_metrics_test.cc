@@ -1,0 +1,82 @@
+#include "ibrdf/solvers/report/result_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/report/brdf_sphere.h"
+#include "ibrdf/solvers/report/result_images.h"
+
+namespace ibrdf {
+namespace {
+
+// An image of 1.5, rendered as 3, in three of its four pixels.
+struct Example {
+  Example() {
+    inverse.image = Image(2, 2);
+    solution.render = Image(2, 2);
+    std::fill(inverse.image.rgb.begin(), inverse.image.rgb.end(), 1.5f);
+    for (const int pixel : {0, 1, 3}) {
+      inverse.points.emplace_back();
+      inverse.points.back().pixel = pixel;
+      for (int c = 0; c < 3; ++c) solution.render.rgb[3 * pixel + c] = 3.0f;
+    }
+    solution.seconds = 12.0;
+    solution.misfit = std::log(2.0);
+    solution.map = ProceduralSky(8, 16);
+  }
+  InverseProblem inverse;
+  Truth truth;
+  Solution solution;
+};
+
+TEST(ResultMetrics, WithoutTruthTheImageIsAllThatCompares) {
+  const Example example;
+  const ResultMetrics metrics =
+      MeasureResult(example.inverse, example.truth, example.solution).value();
+  EXPECT_EQ(12.0, metrics.seconds);
+  EXPECT_FALSE(metrics.brdf.has_value());
+  EXPECT_FALSE(metrics.illumination.has_value());
+  ASSERT_TRUE(metrics.image.has_value());
+  EXPECT_EQ(3, metrics.image->pixels);
+  EXPECT_NEAR(std::log(2.0), metrics.image->log_rmse, 1e-5);
+}
+
+TEST(ResultMetrics, OnlyWhatWasEstimatedIsComparedWithTheTruth) {
+  Example example;
+  example.truth.illumination = example.solution.map;
+  EXPECT_TRUE(MeasureResult(example.inverse, example.truth, example.solution)
+                  ->illumination.has_value());
+  example.inverse.known_map = example.solution.map;
+  EXPECT_FALSE(MeasureResult(example.inverse, example.truth, example.solution)
+                   ->illumination.has_value());
+}
+
+TEST(ResultMetrics, LinesHoldTheFiniteOnesInOrder) {
+  ResultMetrics metrics;
+  metrics.seconds = 2.0;
+  metrics.misfit = 0.0123456;
+  metrics.image.emplace();
+  metrics.image->psnr = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(size_t{5}, ListMetrics(metrics).size());
+  EXPECT_EQ(std::vector<std::string>(
+                {"seconds 2", "misfit 0.01235", "image_log_rmse 0", "dssim 0"}),
+            MetricLines(metrics));
+}
+
+TEST(LogResidual, IsZeroWhereAPixelTookNoPart) {
+  Example example;
+  example.inverse.image.rgb[3] = 0.0f;  // red of pixel 1
+  const Image residual = LogResidual(example.inverse, example.solution);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(std::log(2.0), residual.rgb[c], 1e-6);
+    EXPECT_EQ(0.0f, residual.rgb[3 + c]);
+    EXPECT_EQ(0.0f, residual.rgb[6 + c]);  // outside
+  }
+}
+
+}  // namespace
+}  // namespace ibrdf
