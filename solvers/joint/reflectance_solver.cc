@@ -44,8 +44,7 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
       options.materials != nullptr
           ? static_cast<ceres::CostFunction*>(
                 new MaterialPriorCost(options.materials))
-          : new LobePriorCost(lobes.num_lobes(), lobes.code_size(),
-                              options.prior);
+          : new LobePriorCost(lobes.layout(), options.prior);
   problem.AddResidualBlock(prior, nullptr, parameters->data());
   ceres::Solver::Options o;
   o.linear_solver_type = ceres::DENSE_QR;

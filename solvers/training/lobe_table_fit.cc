@@ -316,7 +316,7 @@ double LobeTableFitter::Refine(const TableColumns& columns, int lobes,
                            static_cast<double>(columns.log_raw.size()),
                        options.num_threads),
       nullptr, parameters->data());
-  problem.AddResidualBlock(new LobePriorCost(lobes, size, prior), nullptr,
+  problem.AddResidualBlock(new LobePriorCost({lobes, size}, prior), nullptr,
                            parameters->data());
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
