@@ -5,6 +5,7 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/io/problem.h"
+#include "ibrdf/io/problem_schema.h"
 
 namespace ibrdf {
 
@@ -15,9 +16,11 @@ namespace ibrdf {
 StatusOr<Problem> ReadProblem(const std::string& path,
                               const std::vector<std::string>& overrides);
 
-// The same of a file's text; messages call it `path`.
-StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
-                               const std::vector<std::string>& overrides);
+// The same for a file's text, which messages call `path`, under a schema.
+StatusOr<Problem> ParseProblem(
+    const std::string& path, const std::string& text,
+    const std::vector<std::string>& overrides,
+    const ProblemSchema& schema = ProblemFileSchema());
 
 // A file that a problem names, and the key that names it.
 struct NamedFile {
