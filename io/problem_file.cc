@@ -7,6 +7,7 @@
 #include "ibrdf/io/atomic_file.h"
 #include "ibrdf/io/image_limits.h"
 #include "ibrdf/io/problem_reader.h"
+#include "ibrdf/io/renamed_keys.h"
 
 namespace ibrdf {
 namespace {
@@ -275,9 +276,13 @@ StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
                                const ProblemSchema& schema) {
   StatusOr<ConfigNode> tree = ParseConfig(path, text);
   if (!tree.ok()) return tree.status();
+  IBRDF_RETURN_IF_ERROR(RenameOldKeys(schema, path, &*tree));
   for (const std::string& text_of_one : overrides) {
-    IBRDF_RETURN_IF_ERROR(ApplyOverride(text_of_one, &*tree));
+    IBRDF_RETURN_IF_ERROR(
+        ApplyOverride(WithNewName(schema, path, text_of_one), &*tree));
   }
+  // An override may have set a whole map.
+  IBRDF_RETURN_IF_ERROR(RenameOldKeys(schema, path, &*tree));
 
   ConfigContext context;
   context.file = path;

@@ -12,7 +12,8 @@ namespace ibrdf {
 // Reads `path`, then applies `overrides` ("key.path=value", as --set; see
 // ApplyOverride in io/config_tree.h), then checks every key, type and range.
 // Relative paths, those of overrides too, are relative to the file's folder.
-// Messages name the file and the full key.
+// Messages name the file and the full key. A key under a former name is taken
+// with a warning in the log.
 StatusOr<Problem> ReadProblem(const std::string& path,
                               const std::vector<std::string>& overrides);
 

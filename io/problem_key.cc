@@ -24,6 +24,8 @@ std::string ProblemKey::Parent() const {
   return dot == std::string::npos ? "" : path.substr(0, dot);
 }
 
+std::string ProblemKey::OldPath() const { return JoinPath(Parent(), old_name); }
+
 std::vector<std::string> ProblemKey::Words() const { return Bare(words); }
 
 std::vector<std::string> ProblemKey::ListWords() const {

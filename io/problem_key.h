@@ -56,12 +56,17 @@ struct ProblemKey {
   // The key is refused without this: "camera.type: perspective" or
   // "geometry.mesh". Empty: nothing.
   std::string needs;
+  // The last word of the path before the key was renamed: still accepted, with
+  // a warning. Empty: never renamed.
+  std::string old_name;
   std::vector<std::string> notes;  // rules between several keys below this one
   std::string example;  // a value for the example file; empty: the default
 
   // The path's last word, and what precedes it: "" at the top.
   std::string Name() const;
   std::string Parent() const;
+  // "camera.fov", the path before the key was renamed.
+  std::string OldPath() const;
 
   std::vector<std::string> Words() const;
   std::vector<std::string> ListWords() const;

@@ -97,6 +97,10 @@ class Row {
     key_.needs = what;
     return *this;
   }
+  Row& Formerly(const std::string& name) {
+    key_.old_name = name;
+    return *this;
+  }
   Row& Notes(std::vector<std::string> notes) {
     key_.notes = std::move(notes);
     return *this;
