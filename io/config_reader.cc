@@ -35,18 +35,14 @@ std::string Text(double value) {
   return stream.str();
 }
 
+bool IsBounded(const Range& r) {
+  return std::isfinite(r.low) && std::isfinite(r.high);
+}
+
 std::string RangeText(const Range& r) {
-  const bool low = std::isfinite(r.low), high = std::isfinite(r.high);
-  if (!low && !high) return "a number";
-  if (low && high) {
-    return "a number in " + std::string(r.low_included ? "[" : "(") +
-           Text(r.low) + ", " + Text(r.high) + (r.high_included ? "]" : ")");
-  }
-  if (low)
-    return "a number " + std::string(r.low_included ? ">= " : "> ") +
-           Text(r.low);
-  return "a number " + std::string(r.high_included ? "<= " : "< ") +
-         Text(r.high);
+  const std::string interval = IntervalText(r);
+  if (interval.empty()) return "a number";
+  return std::string("a number ") + (IsBounded(r) ? "in " : "") + interval;
 }
 
 bool Inside(double v, const Range& r) {
@@ -115,6 +111,20 @@ std::string JoinWords(const std::vector<std::string>& words) {
     text += words[i];
   }
   return text;
+}
+
+std::string IntervalText(const Range& r) {
+  if (IsBounded(r)) {
+    return (r.low_included ? "[" : "(") + Text(r.low) + ", " + Text(r.high) +
+           (r.high_included ? "]" : ")");
+  }
+  if (std::isfinite(r.low)) {
+    return (r.low_included ? ">= " : "> ") + Text(r.low);
+  }
+  if (std::isfinite(r.high)) {
+    return (r.high_included ? "<= " : "< ") + Text(r.high);
+  }
+  return "";
 }
 
 ConfigReader::ConfigReader(ConfigContext* context, const ConfigNode* node,

@@ -27,6 +27,9 @@ struct Range {
   bool high_included = true;
 };
 
+// "(0, 180]", ">= 0"; empty where any number will do.
+std::string IntervalText(const Range& range);
+
 // Reads one map. Each function leaves its output as it is when the key is
 // absent or wrong; the latter is reported to the context.
 class ConfigReader {

@@ -45,6 +45,9 @@ struct ReflectanceSpec {
 };
 
 enum class IlluminationPrior { kUNet, kProcess, kNone };
+// Most texels along a side of an estimate under kProcess, whose MAP estimate
+// takes O(width height^3).
+inline constexpr int kMaxProcessSide = 256;
 
 struct IlluminationSpec {
   // Of the estimate, of the map that a sky is made into, or of what a known map

@@ -5,8 +5,9 @@
 #include <utility>
 
 #include "ibrdf/io/atomic_file.h"
-#include "ibrdf/io/config_reader.h"
 #include "ibrdf/io/image_limits.h"
+#include "ibrdf/io/problem_reader.h"
+#include "ibrdf/io/renamed_keys.h"
 
 namespace ibrdf {
 namespace {
@@ -14,111 +15,49 @@ using Kind = ConfigNode::Kind;
 using Strings = std::vector<std::string>;
 
 constexpr size_t kMaxFileBytes = size_t{1} << 20;
-// A map's far light and the solver's unknowns grow with these.
-constexpr int kMaxMapSide = 8192;
-constexpr int kMaxUnetChannels = 128;
-// A draw of the light's process takes O(width height^3).
-constexpr int kMaxProcessSide = 256;
-constexpr int kMaxLobes = 8;
-constexpr double kMaxSeconds = 1e7;
 
-const Range kPositive{0.0, std::numeric_limits<double>::infinity(), false,
-                      true};
-const Range kNotNegative{0.0, std::numeric_limits<double>::infinity(), true,
-                         true};
-const Range kUnitInterval{0.0, 1.0, true, true};
-const Range kAnyNumber{};
-
-template <typename Enum>
-void ReadChoice(ConfigReader* reader, const std::string& key,
-                const Strings& words, Enum* out) {
-  int index = static_cast<int>(*out);
-  reader->Choice(key, words, &index);
-  *out = static_cast<Enum>(index);
-}
-
-// What problem files call the values 0 to count - 1 of an enumeration.
-template <typename Enum>
-Strings Names(int count, const char* (*name)(Enum)) {
-  Strings names;
-  for (int i = 0; i < count; ++i) {
-    names.emplace_back(name(static_cast<Enum>(i)));
-  }
-  return names;
-}
-
-void ReadAutoNumber(ConfigReader* reader, const std::string& key,
-                    const Range& range, std::optional<double>* out) {
-  if (!reader->Has(key) || reader->IsWord(key, "auto")) return;
-  const ConfigNode* node = reader->Find(key);
-  double value = 0.0;
-  if (node->kind == Kind::kScalar) {
-    reader->Number(key, range, &value);
-    *out = value;
-  } else {
-    reader->FailExpected(key, "auto or a number");
-  }
-}
-
-void ReadImageSpec(ConfigContext* context, const ConfigNode* node,
-                   ImageSpec* image) {
-  ConfigReader reader(context, node, "image",
-                      {"file", "mask", "width", "height"});
-  reader.Path("file", &image->file);
-  reader.Path("mask", &image->mask);
-  reader.Integer("width", 1, static_cast<int>(kMaxImageSide), &image->width);
-  reader.Integer("height", 1, static_cast<int>(kMaxImageSide), &image->height);
+void ReadImageSpec(ProblemReader reader, ImageSpec* image) {
+  reader.Read("file", &image->file);
+  reader.Read("mask", &image->mask);
+  reader.Read("width", &image->width);
+  reader.Read("height", &image->height);
   if (reader.Has("file") == (reader.Has("width") || reader.Has("height"))) {
-    context->Fail("image", reader.Has("file")
-                               ? "expected either file or width and height, "
-                                 "found both"
-                               : "expected file or width and height");
+    reader.Fail(reader.Has("file")
+                    ? "expected either file or width and height, found both"
+                    : "expected file or width and height");
   } else if (reader.Has("width") != reader.Has("height")) {
-    context->Fail("image", "expected both width and height");
+    reader.Fail("expected both width and height");
   } else if (int64_t{image->width} * image->height > kMaxImagePixels) {
-    context->Fail("image", "expected at most " +
-                               std::to_string(kMaxImagePixels) + " pixels");
+    reader.Fail("expected at most " + std::to_string(kMaxImagePixels) +
+                " pixels");
   }
 }
 
-void ReadCamera(ConfigContext* context, const ConfigNode* node,
-                Camera* camera) {
-  ConfigReader reader(context, node, "camera",
-                      {"type", "fov_degrees", "from", "to", "up"});
-  ReadChoice(&reader, "type", {"orthographic", "perspective"}, &camera->type);
-  if (camera->type == CameraType::kOrthographic) {
-    for (const char* key : {"fov_degrees", "from", "to", "up"}) {
-      if (reader.Has(key)) {
-        reader.Fail(key, "expected with camera.type: perspective only");
-      }
-    }
-    return;
+void ReadCamera(ProblemReader reader, Camera* camera) {
+  reader.Read("type", &camera->type);
+  const bool perspective = camera->type == CameraType::kPerspective;
+  for (const char* key : {"fov_degrees", "from", "to", "up"}) {
+    reader.CheckNeeds(key, perspective);
   }
-  reader.Number("fov_degrees", {0.0, 180.0, false, false},
-                &camera->fov_degrees);
-  reader.Triple("from", kAnyNumber, false, &camera->from);
-  reader.Triple("to", kAnyNumber, false, &camera->to);
-  reader.Triple("up", kAnyNumber, false, &camera->up);
+  if (!perspective) return;
+  reader.Read("fov_degrees", &camera->fov_degrees);
+  reader.Read("from", &camera->from);
+  reader.Read("to", &camera->to);
+  reader.Read("up", &camera->up);
   if (!IsValidCamera(*camera)) {
-    context->Fail("camera",
-                  "expected `from` apart from `to` and `up` not parallel to "
-                  "the view");
+    reader.Fail(
+        "expected `from` apart from `to` and `up` not parallel to the view");
   }
 }
 
-void ReadGeometry(ConfigContext* context, const ConfigNode* node,
-                  GeometrySpec* geometry) {
-  ConfigReader reader(context, node, "geometry",
-                      {"sphere", "mesh", "normals", "fit"});
+void ReadGeometry(ProblemReader reader, GeometrySpec* geometry) {
   int found = 0;
   for (const char* key : {"sphere", "mesh", "normals"}) {
     found += reader.Has(key);
   }
   if (found != 1) {
-    context->Fail("geometry",
-                  "expected one of sphere, mesh and normals, "
-                  "found " +
-                      std::to_string(found));
+    reader.Fail("expected one of sphere, mesh and normals, found " +
+                std::to_string(found));
     return;
   }
   if (reader.Has("sphere")) {
@@ -129,265 +68,201 @@ void ReadGeometry(ConfigContext* context, const ConfigNode* node,
     }
   } else if (reader.Has("mesh")) {
     geometry->kind = GeometryKind::kMesh;
-    reader.Path("mesh", &geometry->file);
+    reader.Read("mesh", &geometry->file);
   } else {
     geometry->kind = GeometryKind::kNormals;
-    reader.Path("normals", &geometry->file);
+    reader.Read("normals", &geometry->file);
   }
-  if (reader.Has("fit") && !reader.Has("mesh")) {
-    reader.Fail("fit", "expected with geometry.mesh only");
-  }
-  ReadChoice(&reader, "fit", {"unit_sphere", "none"}, &geometry->fit);
+  reader.CheckNeeds("fit", reader.Has("mesh"));
+  reader.Read("fit", &geometry->fit);
 }
 
-void ReadArray(ConfigReader* reader, const std::string& key, const Range& range,
-               Eigen::Array3d* out) {
-  Eigen::Vector3d value = out->matrix();
-  reader->Triple(key, range, /*one_for_all=*/true, &value);
-  *out = value.array();
-}
-
-void ReadAnalyticBrdf(ConfigContext* context, const ConfigNode* node,
-                      ReflectanceSpec* reflectance) {
-  ConfigReader reader(context, node, "reflectance.known",
-                      {"lambertian", "cook_torrance"});
+void ReadAnalyticBrdf(ProblemReader reader, ReflectanceSpec* reflectance) {
   CookTorrance brdf;
   if (reader.Has("lambertian") == reader.Has("cook_torrance")) {
-    context->Fail("reflectance.known",
-                  "expected a file or one of lambertian and cook_torrance");
+    reader.Fail("expected a file or one of lambertian and cook_torrance");
   } else if (reader.Has("lambertian")) {
     brdf.specular.setZero();
-    ReadArray(&reader, "lambertian", kUnitInterval, &brdf.diffuse);
+    reader.Read("lambertian", &brdf.diffuse);
   } else {
-    ConfigReader lobe(context, reader.Find("cook_torrance"),
-                      "reflectance.known.cook_torrance",
-                      {"diffuse", "specular", "roughness", "f0"});
-    ReadArray(&lobe, "diffuse", kUnitInterval, &brdf.diffuse);
-    ReadArray(&lobe, "specular", kNotNegative, &brdf.specular);
-    ReadArray(&lobe, "roughness", {1e-3, 10.0, true, true}, &brdf.roughness);
-    ReadArray(&lobe, "f0", kUnitInterval, &brdf.f0);
+    ProblemReader lobe = reader.Below("cook_torrance");
+    lobe.Read("diffuse", &brdf.diffuse);
+    lobe.Read("specular", &brdf.specular);
+    lobe.Read("roughness", &brdf.roughness);
+    lobe.Read("f0", &brdf.f0);
   }
   reflectance->analytic = brdf;
 }
 
-void ReadReflectance(ConfigContext* context, const ConfigNode* node,
-                     ReflectanceSpec* reflectance) {
-  ConfigReader reader(context, node, "reflectance",
-                      {"model", "lobes", "prior_sigma", "known"});
-  if (reader.Has("model") && !reader.IsWord("model", "default")) {
-    reader.Path("model", &reflectance->model);
-  }
-  reader.Integer("lobes", 1, kMaxLobes, &reflectance->lobes);
-  reader.Number("prior_sigma", kPositive, &reflectance->prior_sigma);
+void ReadReflectance(ProblemReader reader, ReflectanceSpec* reflectance) {
+  reader.Read("model", &reflectance->model);
+  reader.Read("lobes", &reflectance->lobes);
+  reader.Read("prior_sigma", &reflectance->prior_sigma);
   const ConfigNode* known = reader.Find("known");
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {
-    ReadAnalyticBrdf(context, known, reflectance);
+    ReadAnalyticBrdf(reader.Below("known"), reflectance);
   } else {
-    reader.Path("known", &reflectance->known_file);
+    reader.Read("known", &reflectance->known_file);
   }
 }
 
-void ReadSky(ConfigContext* context, const ConfigNode* node, SkyOptions* sky) {
-  ConfigReader known(context, node, "illumination.known", {"sky"});
+void ReadSky(ProblemReader known, SkyOptions* sky) {
   if (!known.Has("sky")) {
-    context->Fail("illumination.known", "expected a file or sky");
+    known.Fail("expected a file or sky");
     return;
   }
-  ConfigReader reader(
-      context, known.Find("sky"), "illumination.known.sky",
-      {"sun_theta_degrees", "sun_phi_degrees", "sun_radius_degrees",
-       "sun_irradiance", "zenith_radiance", "haze", "clouds", "skyline",
-       "ground_albedo"});
-  reader.Number("sun_theta_degrees", {0.0, 90.0, true, true},
-                &sky->sun_theta_degrees);
-  reader.Number("sun_phi_degrees", {-360.0, 360.0, true, true},
-                &sky->sun_phi_degrees);
-  reader.Number("sun_radius_degrees", {0.1, 30.0, true, true},
-                &sky->sun_radius_degrees);
-  reader.Number("sun_irradiance", kNotNegative, &sky->sun_irradiance);
-  reader.Number("zenith_radiance", kPositive, &sky->zenith_radiance);
-  reader.Number("haze", kUnitInterval, &sky->haze);
-  reader.Number("clouds", kUnitInterval, &sky->clouds);
-  reader.Number("skyline", kUnitInterval, &sky->skyline);
-  reader.Number("ground_albedo", kUnitInterval, &sky->ground_albedo);
+  ProblemReader reader = known.Below("sky");
+  reader.Read("sun_theta_degrees", &sky->sun_theta_degrees);
+  reader.Read("sun_phi_degrees", &sky->sun_phi_degrees);
+  reader.Read("sun_radius_degrees", &sky->sun_radius_degrees);
+  reader.Read("sun_irradiance", &sky->sun_irradiance);
+  reader.Read("zenith_radiance", &sky->zenith_radiance);
+  reader.Read("haze", &sky->haze);
+  reader.Read("clouds", &sky->clouds);
+  reader.Read("skyline", &sky->skyline);
+  reader.Read("ground_albedo", &sky->ground_albedo);
 }
 
-void ReadIllumination(ConfigContext* context, const ConfigNode* node,
-                      IlluminationSpec* illumination) {
-  ConfigReader reader(context, node, "illumination",
-                      {"width", "height", "prior", "unet_channels", "known"});
-  reader.Integer("width", 8, kMaxMapSide, &illumination->width);
-  illumination->sized = reader.Has("width") || reader.Has("height");
-  // One side given: the map stays twice as wide as high.
-  if (reader.Has("width") && !reader.Has("height")) {
+// One side given: the map stays twice as wide as high.
+void ReadMapSize(ProblemReader* reader, IlluminationSpec* illumination) {
+  reader->Read("width", &illumination->width);
+  illumination->sized = reader->Has("width") || reader->Has("height");
+  if (reader->Has("width") && !reader->Has("height")) {
     illumination->height = illumination->width / 2;
   }
-  reader.Integer("height", 4, kMaxMapSide, &illumination->height);
-  if (reader.Has("height") && !reader.Has("width")) {
-    illumination->width = std::min(2 * illumination->height, kMaxMapSide);
+  reader->Read("height", &illumination->height);
+  if (reader->Has("height") && !reader->Has("width")) {
+    const int most = static_cast<int>(reader->Key("width").most);
+    illumination->width = std::min(2 * illumination->height, most);
   }
   if (illumination->width % 2 != 0) {
-    reader.FailExpected("width", "an even number");
+    reader->FailExpected("width", "an even number");
   }
-  ReadChoice(&reader, "prior", {"unet", "process", "none"},
-             &illumination->prior);
-  reader.Integer("unet_channels", 1, kMaxUnetChannels,
-                 &illumination->unet_channels);
-  if (reader.Has("unet_channels") &&
-      illumination->prior != IlluminationPrior::kUNet) {
-    reader.Fail("unet_channels", "expected with illumination.prior: unet only");
-  }
+}
+
+void ReadIllumination(ProblemReader reader, IlluminationSpec* illumination) {
+  ReadMapSize(&reader, illumination);
+  reader.Read("prior", &illumination->prior);
+  reader.Read("unet_channels", &illumination->unet_channels);
+  reader.CheckNeeds("unet_channels",
+                    illumination->prior == IlluminationPrior::kUNet);
   const ConfigNode* known = reader.Find("known");
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {
     illumination->sky.emplace();
-    ReadSky(context, known, &*illumination->sky);
+    ReadSky(reader.Below("known"), &*illumination->sky);
   } else {
-    reader.Path("known", &illumination->known_file);
+    reader.Read("known", &illumination->known_file);
   }
 }
 
-void ReadEffects(ConfigContext* context, const ConfigNode* node,
-                 EffectsSpec* effects) {
-  if (node == nullptr) return;
-  const Strings names = Names(kNumEffects, EffectName);
-  const auto add = [&](const ConfigNode& item) {
-    const auto name = std::find(names.begin(), names.end(), item.scalar);
-    if (item.kind != Kind::kScalar || name == names.end()) {
-      context->Fail(
-          "effects",
-          "expected auto, all, none or a list of " + JoinWords(names) +
-              ", found " + Describe(item) +
-              (item.kind == Kind::kScalar ? "; the nearest known one is " +
-                                                NearestWord(item.scalar, names)
-                                          : ""));
-      return;
-    }
-    const auto effect = static_cast<Effect>(name - names.begin());
-    if (effects->Lists(effect)) {
-      context->Fail("effects", *name + " is listed twice");
-    } else {
-      effects->list.push_back(effect);
-    }
-  };
-  if (node->kind == Kind::kList) {
-    effects->mode = EffectsMode::kList;
-    for (const ConfigNode& item : node->items) add(item);
-    for (const Effect approximation :
-         {Effect::kHarmonics, Effect::kGaussians}) {
-      for (const Effect shadow :
-           {Effect::kVisibility, Effect::kInterreflection}) {
-        if (!effects->Lists(approximation) || !effects->Lists(shadow)) continue;
-        context->Fail("effects",
-                      std::string("expected ") + EffectName(approximation) +
-                          " or " + EffectName(shadow) + ", found both: " +
-                          EffectName(approximation) + " knows no shadows");
-        return;
-      }
-    }
+void ReadLikelihood(ProblemReader reader, LikelihoodSpec* likelihood) {
+  reader.Read("scale", &likelihood->scale);
+  reader.Read("epsilon", &likelihood->epsilon);
+}
+
+// Adds the effect that `item`, of the list or in its place, names.
+void AddEffect(const ConfigNode& item, ProblemReader* root,
+               EffectsSpec* effects) {
+  const ProblemKey& key = root->Key("effects");
+  const Strings names = key.ListWords();
+  const auto name = std::find(names.begin(), names.end(), item.scalar);
+  if (item.kind != Kind::kScalar || name == names.end()) {
+    Strings expected = key.Words();
+    expected.push_back("a list of " + JoinWords(names));
+    root->Fail(
+        "effects",
+        "expected " + JoinWords(expected) + ", found " + Describe(item) +
+            (item.kind == Kind::kScalar ? "; the nearest known one is " +
+                                              NearestWord(item.scalar, names)
+                                        : ""));
     return;
   }
-  const Strings modes = {"auto", "all", "none"};
+  const auto effect = static_cast<Effect>(name - names.begin());
+  if (effects->Lists(effect)) {
+    root->Fail("effects", *name + " is listed twice");
+  } else {
+    effects->list.push_back(effect);
+  }
+}
+
+void CheckEffects(const EffectsSpec& effects, ProblemReader* root) {
+  for (const Effect approximation : {Effect::kHarmonics, Effect::kGaussians}) {
+    for (const Effect shadow :
+         {Effect::kVisibility, Effect::kInterreflection}) {
+      if (!effects.Lists(approximation) || !effects.Lists(shadow)) continue;
+      root->Fail("effects",
+                 std::string("expected ") + EffectName(approximation) + " or " +
+                     EffectName(shadow) + ", found both: " +
+                     EffectName(approximation) + " knows no shadows");
+      return;
+    }
+  }
+}
+
+void ReadEffects(ProblemReader* root, EffectsSpec* effects) {
+  const ConfigNode* node = root->Find("effects");
+  if (node == nullptr) return;
+  if (node->kind == Kind::kList) {
+    effects->mode = EffectsMode::kList;
+    for (const ConfigNode& item : node->items) AddEffect(item, root, effects);
+    CheckEffects(*effects, root);
+    return;
+  }
+  const Strings modes = root->Key("effects").Words();
   const auto mode = std::find(modes.begin(), modes.end(), node->scalar);
   if (node->kind == Kind::kScalar && mode != modes.end()) {
     effects->mode = static_cast<EffectsMode>(mode - modes.begin());
     return;
   }
   effects->mode = EffectsMode::kList;
-  add(*node);
+  AddEffect(*node, root, effects);
 }
 
-void ReadSolver(ConfigContext* context, const ConfigNode* node,
-                ProblemKind kind, SolverSpec* solver) {
-  ConfigReader reader(context, node, "solver",
-                      {"estimator", "method", "quadrature", "gauge", "seconds",
-                       "tolerance", "max_iterations", "seed"});
-  ReadChoice(&reader, "estimator", {"marginal", "maximum"}, &solver->estimator);
-  ReadChoice(&reader, "method", Names(kNumSolverMethods, SolverMethodName),
-             &solver->method);
-  ReadChoice(&reader, "quadrature",
-             Names(kNumQuadratureLevels, QuadratureLevelName),
-             &solver->quadrature);
-  ReadChoice(&reader, "gauge", Names(kNumSolverGauges, SolverGaugeName),
-             &solver->gauge);
-  if (reader.Has("gauge") && kind != ProblemKind::kJoint) {
-    reader.Fail("gauge", "expected with problem: joint only");
+void ReadSolver(ProblemReader reader, ProblemKind kind, SolverSpec* solver) {
+  reader.Read("estimator", &solver->estimator);
+  reader.Read("method", &solver->method);
+  reader.Read("quadrature", &solver->quadrature);
+  reader.Read("gauge", &solver->gauge);
+  reader.CheckNeeds("gauge", kind == ProblemKind::kJoint);
+  reader.Read("seconds", &solver->seconds);
+  reader.Read("tolerance", &solver->tolerance);
+  reader.Read("max_iterations", &solver->max_iterations);
+  reader.Read("seed", &solver->seed);
+}
+
+void ReadTruth(ProblemReader reader, TruthSpec* truth) {
+  reader.Read("brdf", &truth->brdf);
+  reader.Read("illumination", &truth->illumination);
+}
+
+// The first error is the context's.
+void ReadKeys(ProblemReader root, Problem* problem) {
+  for (const char* key : {"image", "geometry"}) {
+    if (!root.Has(key)) root.Fail(key, "expected, found nothing");
   }
-  reader.Number("seconds", {0.0, kMaxSeconds, false, true}, &solver->seconds);
-  reader.Number("tolerance", {0.0, 1.0, true, false}, &solver->tolerance);
-  reader.Integer("max_iterations", 0, 100000000, &solver->max_iterations);
-  if (reader.Has("seed")) {
-    int64_t seed = 0;
-    reader.Integer("seed", int64_t{0}, std::numeric_limits<int64_t>::max(),
-                   &seed);
-    solver->seed = seed;
+  root.Read("problem", &problem->kind);
+  ReadImageSpec(root.Below("image"), &problem->image);
+  ReadCamera(root.Below("camera"), &problem->camera);
+  ReadGeometry(root.Below("geometry"), &problem->geometry);
+  if (problem->geometry.kind == GeometryKind::kNormals &&
+      problem->camera.type == CameraType::kPerspective) {
+    root.Fail("camera.type",
+              "expected orthographic with geometry.normals, found "
+              "'perspective'");
   }
+  ReadReflectance(root.Below("reflectance"), &problem->reflectance);
+  ReadIllumination(root.Below("illumination"), &problem->illumination);
+  ReadLikelihood(root.Below("likelihood"), &problem->likelihood);
+  ReadEffects(&root, &problem->effects);
+  ReadSolver(root.Below("solver"), problem->kind, &problem->solver);
+  ReadTruth(root.Below("truth"), &problem->truth);
+  root.Read("noise", &problem->noise);
+  root.Read("quality", &problem->quality);
 }
 
 }  // namespace
-
-const char* SolverMethodName(SolverMethod method) {
-  switch (method) {
-    case SolverMethod::kAuto:
-      return "auto";
-    case SolverMethod::kAlternating:
-      return "alternating";
-    case SolverMethod::kGaussNewton:
-      return "gauss_newton";
-    case SolverMethod::kLbfgs:
-      return "lbfgs";
-    case SolverMethod::kAdam:
-      return "adam";
-    case SolverMethod::kTrustRegion:
-      return "trust_region";
-  }
-  return "";
-}
-
-const char* QuadratureLevelName(QuadratureLevel level) {
-  switch (level) {
-    case QuadratureLevel::kCoarse:
-      return "coarse";
-    case QuadratureLevel::kStandard:
-      return "standard";
-    case QuadratureLevel::kFine:
-      return "fine";
-  }
-  return "";
-}
-
-const char* SolverGaugeName(SolverGauge gauge) {
-  switch (gauge) {
-    case SolverGauge::kPrior:
-      return "prior";
-    case SolverGauge::kGreyLight:
-      return "grey_light";
-    case SolverGauge::kUnitLight:
-      return "unit_light";
-  }
-  return "";
-}
-
-const char* EffectName(Effect effect) {
-  switch (effect) {
-    case Effect::kVisibility:
-      return "visibility";
-    case Effect::kInterreflection:
-      return "interreflection";
-    case Effect::kReflectanceMap:
-      return "reflectance_map";
-    case Effect::kHarmonics:
-      return "harmonics";
-    case Effect::kGaussians:
-      return "gaussians";
-  }
-  return "";
-}
-
-bool EffectsSpec::Lists(Effect effect) const {
-  return std::find(list.begin(), list.end(), effect) != list.end();
-}
 
 StatusOr<Problem> ReadProblem(const std::string& path,
                               const std::vector<std::string>& overrides) {
@@ -397,53 +272,24 @@ StatusOr<Problem> ReadProblem(const std::string& path,
 }
 
 StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
-                               const std::vector<std::string>& overrides) {
-  StatusOr<ConfigNode> root = ParseConfig(path, text);
-  if (!root.ok()) return root.status();
+                               const std::vector<std::string>& overrides,
+                               const ProblemSchema& schema) {
+  StatusOr<ConfigNode> tree = ParseConfig(path, text);
+  if (!tree.ok()) return tree.status();
+  IBRDF_RETURN_IF_ERROR(RenameOldKeys(schema, path, &*tree));
   for (const std::string& text_of_one : overrides) {
-    IBRDF_RETURN_IF_ERROR(ApplyOverride(text_of_one, &*root));
+    IBRDF_RETURN_IF_ERROR(
+        ApplyOverride(WithNewName(schema, path, text_of_one), &*tree));
   }
+  // An override may have set a whole map.
+  IBRDF_RETURN_IF_ERROR(RenameOldKeys(schema, path, &*tree));
 
   ConfigContext context;
   context.file = path;
   context.folder = std::filesystem::path(path).parent_path().string();
-  ConfigReader reader(
-      &context, &*root, "",
-      {"problem", "image", "camera", "geometry", "reflectance", "illumination",
-       "likelihood", "effects", "solver", "truth", "noise", "quality"});
-  for (const char* key : {"image", "geometry"}) {
-    if (!reader.Has(key)) reader.Fail(key, "expected, found nothing");
-  }
-
   Problem problem;
   problem.path = path;
-  ReadChoice(&reader, "problem", {"joint", "reflectance", "illumination"},
-             &problem.kind);
-  ReadImageSpec(&context, reader.Find("image"), &problem.image);
-  ReadCamera(&context, reader.Find("camera"), &problem.camera);
-  ReadGeometry(&context, reader.Find("geometry"), &problem.geometry);
-  if (problem.geometry.kind == GeometryKind::kNormals &&
-      problem.camera.type == CameraType::kPerspective) {
-    context.Fail("camera.type",
-                 "expected orthographic with geometry.normals, found "
-                 "'perspective'");
-  }
-  ReadReflectance(&context, reader.Find("reflectance"), &problem.reflectance);
-  ReadIllumination(&context, reader.Find("illumination"),
-                   &problem.illumination);
-  ConfigReader likelihood(&context, reader.Find("likelihood"), "likelihood",
-                          {"scale", "epsilon"});
-  ReadAutoNumber(&likelihood, "scale", kPositive, &problem.likelihood.scale);
-  ReadAutoNumber(&likelihood, "epsilon", kNotNegative,
-                 &problem.likelihood.epsilon);
-  ReadEffects(&context, reader.Find("effects"), &problem.effects);
-  ReadSolver(&context, reader.Find("solver"), problem.kind, &problem.solver);
-  ConfigReader truth(&context, reader.Find("truth"), "truth",
-                     {"brdf", "illumination"});
-  truth.Path("brdf", &problem.truth.brdf);
-  truth.Path("illumination", &problem.truth.illumination);
-  reader.Number("noise", {0.0, 1.0, true, true}, &problem.noise);
-  ReadChoice(&reader, "quality", {"preview", "reference"}, &problem.quality);
+  ReadKeys(ProblemReader(&schema, "", &*tree, &context), &problem);
   if (!context.error.ok()) return context.error;
   return problem;
 }

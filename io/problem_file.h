@@ -5,19 +5,23 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/io/problem.h"
+#include "ibrdf/io/problem_schema.h"
 
 namespace ibrdf {
 
 // Reads `path`, then applies `overrides` ("key.path=value", as --set; see
 // ApplyOverride in io/config_tree.h), then checks every key, type and range.
 // Relative paths, those of overrides too, are relative to the file's folder.
-// Messages name the file and the full key.
+// Messages name the file and the full key. A key under a former name is taken
+// with a warning in the log.
 StatusOr<Problem> ReadProblem(const std::string& path,
                               const std::vector<std::string>& overrides);
 
-// The same of a file's text; messages call it `path`.
-StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
-                               const std::vector<std::string>& overrides);
+// The same for a file's text, which messages call `path`, under a schema.
+StatusOr<Problem> ParseProblem(
+    const std::string& path, const std::string& text,
+    const std::vector<std::string>& overrides,
+    const ProblemSchema& schema = ProblemFileSchema());
 
 // A file that a problem names, and the key that names it.
 struct NamedFile {

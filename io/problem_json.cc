@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "ibrdf/io/problem_schema.h"
+
 namespace ibrdf {
 namespace {
 using nlohmann::json;
@@ -28,9 +30,9 @@ json ImageJson(const ImageSpec& image) {
 
 json CameraJson(const Camera& camera) {
   if (camera.type == CameraType::kOrthographic) {
-    return {{"type", "orthographic"}};
+    return {{"type", WordOf("camera.type", camera.type)}};
   }
-  return {{"type", "perspective"},
+  return {{"type", WordOf("camera.type", camera.type)},
           {"fov_degrees", camera.fov_degrees},
           {"from", Triple(camera.from)},
           {"to", Triple(camera.to)},
@@ -43,8 +45,7 @@ json GeometryJson(const GeometrySpec& geometry) {
       break;
     case GeometryKind::kMesh:
       return {{"mesh", geometry.file},
-              {"fit",
-               geometry.fit == MeshFit::kUnitSphere ? "unit_sphere" : "none"}};
+              {"fit", WordOf("geometry.fit", geometry.fit)}};
     case GeometryKind::kNormals:
       return {{"normals", geometry.file}};
   }
@@ -95,31 +96,16 @@ json IlluminationJson(const IlluminationSpec& illumination, bool rendered) {
                            {"ground_albedo", sky.ground_albedo}};
     return out;
   }
-  switch (illumination.prior) {
-    case IlluminationPrior::kUNet:
-      out["prior"] = "unet";
-      out["unet_channels"] = illumination.unet_channels;
-      break;
-    case IlluminationPrior::kProcess:
-      out["prior"] = "process";
-      break;
-    case IlluminationPrior::kNone:
-      out["prior"] = "none";
-      break;
+  out["prior"] = WordOf("illumination.prior", illumination.prior);
+  if (illumination.prior == IlluminationPrior::kUNet) {
+    out["unet_channels"] = illumination.unet_channels;
   }
   return out;
 }
 
 json EffectsJson(const EffectsSpec& effects) {
-  switch (effects.mode) {
-    case EffectsMode::kAuto:
-      return "auto";
-    case EffectsMode::kAll:
-      return "all";
-    case EffectsMode::kNone:
-      return "none";
-    case EffectsMode::kList:
-      break;
+  if (effects.mode != EffectsMode::kList) {
+    return WordOf("effects", effects.mode);
   }
   json list = json::array();
   for (const Effect effect : effects.list) list.push_back(EffectName(effect));
@@ -127,32 +113,18 @@ json EffectsJson(const EffectsSpec& effects) {
 }
 
 json SolverJson(const SolverSpec& solver, ProblemKind kind) {
-  json out = {
-      {"estimator",
-       solver.estimator == SolverEstimator::kMarginal ? "marginal" : "maximum"},
-      {"method", SolverMethodName(solver.method)},
-      {"quadrature", QuadratureLevelName(solver.quadrature)},
-      {"seconds", solver.seconds},
-      {"tolerance", solver.tolerance},
-      {"max_iterations", solver.max_iterations}};
+  json out = {{"estimator", WordOf("solver.estimator", solver.estimator)},
+              {"method", SolverMethodName(solver.method)},
+              {"quadrature", QuadratureLevelName(solver.quadrature)},
+              {"seconds", solver.seconds},
+              {"tolerance", solver.tolerance},
+              {"max_iterations", solver.max_iterations}};
   // Only where both parts are unknown may scale move between them.
   if (kind == ProblemKind::kJoint) {
     out["gauge"] = SolverGaugeName(solver.gauge);
   }
   if (solver.seed.has_value()) out["seed"] = *solver.seed;
   return out;
-}
-
-const char* KindName(ProblemKind kind) {
-  switch (kind) {
-    case ProblemKind::kJoint:
-      return "joint";
-    case ProblemKind::kReflectance:
-      return "reflectance";
-    case ProblemKind::kIllumination:
-      return "illumination";
-  }
-  return "";
 }
 
 void AppendLeaves(const std::string& key, const json& value,
@@ -182,15 +154,14 @@ nlohmann::json ProblemToJson(const Problem& problem) {
       {"illumination", IlluminationJson(problem.illumination, rendered)},
       {"effects", EffectsJson(problem.effects)}};
   if (rendered) {
-    out["quality"] =
-        problem.quality == RenderQuality::kReference ? "reference" : "preview";
+    out["quality"] = WordOf("quality", problem.quality);
     out["noise"] = problem.noise;
     if (problem.solver.seed.has_value()) {
       out["solver"]["seed"] = *problem.solver.seed;  // of the noise
     }
     return out;
   }
-  out["problem"] = KindName(problem.kind);
+  out["problem"] = WordOf("problem", problem.kind);
   out["likelihood"] = {{"scale", AutoOr(problem.likelihood.scale)},
                        {"epsilon", AutoOr(problem.likelihood.epsilon)}};
   out["solver"] = SolverJson(problem.solver, problem.kind);

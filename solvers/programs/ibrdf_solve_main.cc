@@ -12,6 +12,7 @@
 #include "ibrdf/base/stopwatch.h"
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/problem_file.h"
+#include "ibrdf/io/problem_reference.h"
 #include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/optim/blas_memory.h"
 #include "ibrdf/solvers/problem/load_problem.h"
@@ -24,6 +25,11 @@ namespace {
 
 std::atomic<bool> stop_requested{false};
 void RequestStop(int) { stop_requested = true; }
+
+void PrintKeys() {
+  std::fputs(ProblemReference(ProblemFileSchema()).c_str(), stdout);
+  throw CLI::Success();  // as --help does: nothing else is asked for
+}
 
 Status Solve(const std::string& file, const std::vector<std::string>& overrides,
              const std::string& folder, bool explain,
@@ -106,6 +112,9 @@ int Main(int argc, char** argv) {
   bool explain = false;
   app.add_flag("--explain", explain,
                "print which effects would be simulated and why; solve nothing");
+  app.add_flag_callback("--keys", PrintKeys,
+                        "print every key of a problem file with its default, "
+                        "range and meaning, in Markdown; solve nothing");
   return RunProgram(&app, argc, argv, [&] {
     if (verbose) {
       FLAGS_minloglevel = google::GLOG_INFO;

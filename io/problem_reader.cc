@@ -1,0 +1,108 @@
+#include "ibrdf/io/problem_reader.h"
+
+#include <glog/logging.h>
+
+namespace ibrdf {
+
+ProblemReader::ProblemReader(const ProblemSchema* schema,
+                             const std::string& map, const ConfigNode* node,
+                             ConfigContext* context)
+    : schema_(schema),
+      map_(map),
+      context_(context),
+      reader_(context, node, map, schema->NamesBelow(map)) {}
+
+ProblemReader ProblemReader::Below(const std::string& name) const {
+  return {schema_, JoinPath(map_, name), Find(name), context_};
+}
+
+const ConfigNode* ProblemReader::Find(const std::string& name) const {
+  return reader_.Find(name);
+}
+
+const ProblemKey& ProblemReader::Key(const std::string& name) const {
+  return schema_->Key(JoinPath(map_, name));
+}
+
+const ProblemKey& ProblemReader::Typed(const std::string& name,
+                                       ValueType type) const {
+  const ProblemKey& key = Key(name);
+  CHECK(key.type == type) << key.path;
+  return key;
+}
+
+void ProblemReader::Read(const std::string& name, double* out) {
+  reader_.Number(name, Typed(name, ValueType::kNumber).range, out);
+}
+
+void ProblemReader::Read(const std::string& name, int* out) {
+  const ProblemKey& key = Typed(name, ValueType::kInteger);
+  reader_.Integer(name, static_cast<int>(key.least), static_cast<int>(key.most),
+                  out);
+}
+
+void ProblemReader::Read(const std::string& name, std::optional<int64_t>* out) {
+  const ProblemKey& key = Typed(name, ValueType::kInteger);
+  if (!Has(name)) return;
+  int64_t value = out->value_or(0);
+  reader_.Integer(name, key.least, key.most, &value);
+  *out = value;
+}
+
+void ProblemReader::Read(const std::string& name, std::string* path) {
+  const ProblemKey& key = Key(name);
+  CHECK(key.type == ValueType::kPath || key.type == ValueType::kPathOrMap)
+      << key.path;
+  const bool by_default =
+      !key.default_value.empty() && reader_.IsWord(name, key.default_value);
+  if (!by_default) reader_.Path(name, path);
+}
+
+void ProblemReader::Read(const std::string& name, Eigen::Vector3d* out) {
+  reader_.Triple(name, Typed(name, ValueType::kTriple).range,
+                 /*one_for_all=*/false, out);
+}
+
+void ProblemReader::Read(const std::string& name, Eigen::Array3d* out) {
+  Eigen::Vector3d value = out->matrix();
+  reader_.Triple(name, Typed(name, ValueType::kOneOrTriple).range,
+                 /*one_for_all=*/true, &value);
+  *out = value.array();
+}
+
+void ProblemReader::Read(const std::string& name, std::optional<double>* out) {
+  const ProblemKey& key = Typed(name, ValueType::kAutoOrNumber);
+  const ConfigNode* node = Find(name);
+  if (node == nullptr || reader_.IsWord(name, "auto")) return;
+  if (node->kind != ConfigNode::Kind::kScalar) {
+    reader_.FailExpected(name, "auto or a number");
+    return;
+  }
+  double value = 0.0;
+  reader_.Number(name, key.range, &value);
+  *out = value;
+}
+
+void ProblemReader::ReadChoice(const std::string& name, int* index) {
+  reader_.Choice(name, Typed(name, ValueType::kChoice).Words(), index);
+}
+
+void ProblemReader::Fail(const std::string& name, const std::string& what) {
+  reader_.Fail(name, what);
+}
+
+void ProblemReader::Fail(const std::string& what) {
+  context_->Fail(map_, what);
+}
+
+void ProblemReader::FailExpected(const std::string& name,
+                                 const std::string& expected) {
+  reader_.FailExpected(name, expected);
+}
+
+void ProblemReader::CheckNeeds(const std::string& name, bool met) {
+  if (met || !Has(name)) return;
+  Fail(name, "expected with " + Key(name).needs + " only");
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,64 @@
+// Typed values from one map of a problem file, as its schema has them.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+#include "ibrdf/io/config_reader.h"
+#include "ibrdf/io/problem_schema.h"
+
+namespace ibrdf {
+
+// Reports to the context what the schema does not allow, as ConfigReader does.
+class ProblemReader {
+ public:
+  // `map`: path of the map, "" for the file. `node` null or absent: an empty
+  // map. The three pointers are kept.
+  ProblemReader(const ProblemSchema* schema, const std::string& map,
+                const ConfigNode* node, ConfigContext* context);
+  // The map that a key holds.
+  ProblemReader Below(const std::string& name) const;
+
+  bool Has(const std::string& name) const { return reader_.Has(name); }
+  // Null when absent.
+  const ConfigNode* Find(const std::string& name) const;
+  const ProblemKey& Key(const std::string& name) const;
+
+  // Each leaves its output as it is when the key is absent or wrong.
+  void Read(const std::string& name, double* out);
+  void Read(const std::string& name, int* out);
+  void Read(const std::string& name, std::string* path);
+  void Read(const std::string& name, Eigen::Vector3d* out);
+  void Read(const std::string& name, Eigen::Array3d* out);
+  // The word auto leaves it unset.
+  void Read(const std::string& name, std::optional<double>* out);
+  void Read(const std::string& name, std::optional<int64_t>* out);
+  template <typename Enum,
+            typename = std::enable_if_t<std::is_enum<Enum>::value>>
+  void Read(const std::string& name, Enum* out) {
+    int index = static_cast<int>(*out);
+    ReadChoice(name, &index);
+    *out = static_cast<Enum>(index);
+  }
+
+  // What is wrong with a key, or with the map itself.
+  void Fail(const std::string& name, const std::string& what);
+  void Fail(const std::string& what);
+  // "expected <expected>, found <the value>".
+  void FailExpected(const std::string& name, const std::string& expected);
+  // Fails where the key is there but not what it needs (ProblemKey::needs).
+  void CheckNeeds(const std::string& name, bool met);
+
+ private:
+  const ProblemKey& Typed(const std::string& name, ValueType type) const;
+  void ReadChoice(const std::string& name, int* index);
+
+  const ProblemSchema* schema_;
+  std::string map_;
+  ConfigContext* context_;
+  ConfigReader reader_;
+};
+
+}  // namespace ibrdf

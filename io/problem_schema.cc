@@ -1,0 +1,577 @@
+#include "ibrdf/io/problem_schema.h"
+
+#include <glog/logging.h>
+
+#include <limits>
+#include <utility>
+
+#include "ibrdf/io/image_limits.h"
+#include "ibrdf/io/problem.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Range kPositive{0.0, kInfinity, false, true};
+const Range kNotNegative{0.0, kInfinity, true, true};
+const Range kUnitInterval{0.0, 1.0, true, true};
+const Range kAnyNumber{};
+
+// A map's far light and the solver's unknowns grow with these.
+constexpr int kMaxMapSide = 8192;
+constexpr int kMaxUnetChannels = 128;
+constexpr int kMaxLobes = 8;
+constexpr double kMaxSeconds = 1e7;
+constexpr int64_t kMaxIterations = 100000000;
+
+constexpr unsigned kUnknownReflectance = kUsedByJoint | kUsedByReflectance;
+constexpr unsigned kUnknownLight = kUsedByJoint | kUsedByIllumination;
+constexpr unsigned kKnownReflectance = kUsedByIllumination | kUsedByRender;
+constexpr unsigned kKnownLight = kUsedByReflectance | kUsedByRender;
+
+using Words = std::vector<ProblemWord>;
+using Keys = std::vector<ProblemKey>;
+
+// Puts a key together. Type first, then what else there is to say.
+class Row {
+ public:
+  Row(const std::string& path, const std::string& meaning) {
+    key_.path = path;
+    key_.meaning = meaning;
+  }
+  operator ProblemKey() const { return key_; }  // NOLINT
+
+  Row& Number(const Range& range, const std::string& default_value) {
+    key_.range = range;
+    return Type(ValueType::kNumber, default_value);
+  }
+  Row& AutoOrNumber(const Range& range) {
+    key_.range = range;
+    return Type(ValueType::kAutoOrNumber, "auto");
+  }
+  Row& Integer(int64_t least, int64_t most, const std::string& default_value) {
+    key_.least = least;
+    key_.most = most;
+    return Type(ValueType::kInteger, default_value);
+  }
+  Row& Triple(const Range& range, const std::string& default_value) {
+    key_.range = range;
+    return Type(ValueType::kTriple, default_value);
+  }
+  Row& OneOrTriple(const Range& range, const std::string& default_value) {
+    key_.range = range;
+    return Type(ValueType::kOneOrTriple, default_value);
+  }
+  Row& Choice(const std::string& default_value, Words words) {
+    key_.words = std::move(words);
+    return Type(ValueType::kChoice, default_value);
+  }
+  Row& WordOrList(const std::string& default_value, Words words, Words listed) {
+    key_.words = std::move(words);
+    key_.list_words = std::move(listed);
+    return Type(ValueType::kWordOrList, default_value);
+  }
+  Row& Path(const std::string& files, const std::string& default_value = "") {
+    key_.files = files;
+    return Type(ValueType::kPath, default_value);
+  }
+  Row& PathOrMap(const std::string& files) {
+    key_.files = files;
+    return Type(ValueType::kPathOrMap, "");
+  }
+  Row& EmptyMap() { return Type(ValueType::kEmptyMap, ""); }
+
+  Row& Unit(const std::string& unit) {
+    key_.unit = unit;
+    return *this;
+  }
+  Row& Without(const std::string& text) {
+    key_.without = text;
+    return *this;
+  }
+  Row& UsedBy(unsigned uses) {
+    key_.used_by = uses;
+    return *this;
+  }
+  Row& Needs(const std::string& what) {
+    key_.needs = what;
+    return *this;
+  }
+  Row& Formerly(const std::string& name) {
+    key_.old_name = name;
+    return *this;
+  }
+  Row& Notes(std::vector<std::string> notes) {
+    key_.notes = std::move(notes);
+    return *this;
+  }
+  Row& Example(const std::string& value) {
+    key_.example = value;
+    return *this;
+  }
+
+ private:
+  Row& Type(ValueType type, const std::string& default_value) {
+    key_.type = type;
+    key_.default_value = default_value;
+    return *this;
+  }
+
+  ProblemKey key_;
+};
+
+Keys KindKeys() {
+  return {
+      Row("problem", "What is unknown, and so estimated.")
+          .Choice("joint",
+                  {{"joint", "Reflectance and illumination are both unknown."},
+                   {"reflectance",
+                    "The illumination is known, so `illumination.known` is "
+                    "needed."},
+                   {"illumination",
+                    "The reflectance is known, so `reflectance.known` is "
+                    "needed."}})
+          .UsedBy(kUsedBySolve)};
+}
+
+Keys ImageKeys() {
+  return {
+      Row("image", "The image to explain, or the size of the image to render.")
+          .Without("needed")
+          .Notes({"A solve needs `file`. A render needs `width` and `height`. "
+                  "One problem cannot have both.",
+                  "An image has at most " + std::to_string(kMaxImagePixels) +
+                      " pixels."}),
+      Row("image.file",
+          "Image of linear radiance, up to one factor that may be unknown.")
+          .Path(".exr, .hdr")
+          .Unit("W/(m² sr)")
+          .Without("needed by a solve")
+          .UsedBy(kUsedBySolve)
+          .Example("photo.exr"),
+      Row("image.mask",
+          "White pixels are the object. Without a mask, all pixels whose "
+          "centre sees the geometry are.")
+          .Path(".png")
+          .UsedBy(kUsedBySolve)
+          .Example("mask.png"),
+      Row("image.width", "Width of the rendered image.")
+          .Integer(1, kMaxImageSide, "")
+          .Unit("pixels")
+          .Without("needed by a render")
+          .UsedBy(kUsedByRender),
+      Row("image.height", "Height of the rendered image.")
+          .Integer(1, kMaxImageSide, "")
+          .Unit("pixels")
+          .Without("needed by a render")
+          .UsedBy(kUsedByRender)};
+}
+
+Keys CameraKeys() {
+  const std::string pinhole = "camera.type: perspective";
+  return {
+      Row("camera",
+          "The camera that took the image. "
+          "[Conventions](conventions.md#frames) "
+          "has its frame."),
+      Row("camera.type", "How the camera projects.")
+          .Choice("orthographic",
+                  {{"orthographic",
+                    "Looks along -z. The shorter side of the image spans "
+                    "[-1, 1], the longer one proportionally more."},
+                   {"perspective", "A pinhole at `camera.from`."}}),
+      Row("camera.fov_degrees", "Full vertical angle of view.")
+          .Number({0.0, 180.0, false, false}, "30")
+          .Unit("degrees")
+          .Needs(pinhole),
+      Row("camera.from", "Position of the camera. It differs from `camera.to`.")
+          .Triple(kAnyNumber, "[0, 0, 4]")
+          .Unit("scene units")
+          .Needs(pinhole),
+      Row("camera.to", "The point that is seen in the middle of the image.")
+          .Triple(kAnyNumber, "[0, 0, 0]")
+          .Unit("scene units")
+          .Needs(pinhole),
+      Row("camera.up", "Upward direction, not parallel to the view.")
+          .Triple(kAnyNumber, "[0, 1, 0]")
+          .Needs(pinhole)};
+}
+
+Keys GeometryKeys() {
+  return {
+      Row("geometry",
+          "The shape of the object: exactly one of `sphere`, `mesh` and "
+          "`normals`.")
+          .Without("needed"),
+      Row("geometry.sphere", "The unit sphere at the origin.")
+          .EmptyMap()
+          .Example("{}"),
+      Row("geometry.mesh",
+          "A mesh of polygons. It shadows and lights itself where that matters "
+          "(`effects`).")
+          .Path(".obj, .ply"),
+      Row("geometry.normals",
+          "One unit normal per pixel, in the frame of the orthographic camera; "
+          "zero is outside. Without positions there are no shadows.")
+          .Path(".exr"),
+      Row("geometry.fit", "How a mesh is placed before the camera sees it.")
+          .Choice("unit_sphere",
+                  {{"unit_sphere",
+                    "Its bounding box is centred at the origin, and its "
+                    "farthest vertex is scaled to distance 1."},
+                   {"none", "Its vertices stay as they are."}})
+          .Needs("geometry.mesh")};
+}
+
+Keys ReflectanceKeys() {
+  const std::string lobe = "reflectance.known.cook_torrance";
+  return {
+      Row("reflectance",
+          "The BRDF of the object: a trained model where it is unknown, else "
+          "`known`."),
+      Row("reflectance.model",
+          "Trained model of unknown BRDFs, from `ibrdf_train`. `default` is "
+          "the "
+          "one that comes with the programs.")
+          .Path(".ibrdf", "default")
+          .UsedBy(kUnknownReflectance),
+      Row("reflectance.lobes",
+          "Number of lobes. Each has a code of the embedding and an RGB "
+          "colour.")
+          .Integer(1, kMaxLobes, "2")
+          .UsedBy(kUnknownReflectance),
+      Row("reflectance.prior_sigma",
+          "Standard deviation of the Gaussian prior of codes. It holds for "
+          "lobes "
+          "that the model has no fits of, and for all with `solver.estimator: "
+          "maximum`.")
+          .Number(kPositive, "0.5")
+          .UsedBy(kUnknownReflectance),
+      Row("reflectance.known",
+          "The known BRDF: a MERL table, or one of `lambertian` and "
+          "`cook_torrance`.")
+          .PathOrMap(".binary")
+          .Without("needed")
+          .UsedBy(kKnownReflectance),
+      Row("reflectance.known.lambertian", "Albedo of a matte surface.")
+          .OneOrTriple(kUnitInterval, "")
+          .UsedBy(kKnownReflectance),
+      Row(lobe,
+          "A Lambertian part and one microfacet lobe (Cook and Torrance 1982).")
+          .UsedBy(kKnownReflectance),
+      Row(lobe + ".diffuse", "Albedo of the Lambertian part.")
+          .OneOrTriple(kUnitInterval, "0.3")
+          .UsedBy(kKnownReflectance),
+      Row(lobe + ".specular", "Factor of the microfacet lobe.")
+          .OneOrTriple(kNotNegative, "1")
+          .UsedBy(kKnownReflectance),
+      Row(lobe + ".roughness", "Root mean square slope of the microfacets.")
+          .OneOrTriple({1e-3, 10.0, true, true}, "0.1")
+          .UsedBy(kKnownReflectance),
+      Row(lobe + ".f0", "Reflectance of a microfacet at normal incidence.")
+          .OneOrTriple(kUnitInterval, "0.04")
+          .UsedBy(kKnownReflectance)};
+}
+
+Keys IlluminationKeys() {
+  return {
+      Row("illumination",
+          "The environment map: its size and prior where it is unknown, else "
+          "`known`.")
+          .Notes(
+              {"One side alone sets the other: the map is twice as wide as "
+               "high.",
+               "Without a size, a solve resamples a known map to 128x64, or to "
+               "256x128 if it has as many texels and no shadows are simulated.",
+               "A render takes the map of a file as it is.",
+               "`prior: process` takes at most " +
+                   std::to_string(kMaxProcessSide) + " texels a side.",
+               "A solve needs sides that can be halved often. Powers of two "
+               "always can."}),
+      Row("illumination.width", "Width of the map, an even number.")
+          .Integer(8, kMaxMapSide, "128")
+          .Unit("texels"),
+      Row("illumination.height", "Height of the map.")
+          .Integer(4, kMaxMapSide, "64")
+          .Unit("texels"),
+      Row("illumination.prior", "What is taken as natural light.")
+          .Choice(
+              "unet",
+              {{"unet",
+                "The map is a network's output, begun at the MAP estimate of a "
+                "Gaussian process. That estimate stays where the network fits "
+                "less well."},
+               {"process", "The map is that MAP estimate itself."},
+               {"none",
+                "Texels are independent of each other. It is there for "
+                "comparison."}})
+          .UsedBy(kUnknownLight),
+      Row("illumination.unet_channels",
+          "Feature maps of every layer of the network but its skip branches. "
+          "Its weights grow with their square, as does most of its time.")
+          .Integer(1, kMaxUnetChannels, "32")
+          .Needs("illumination.prior: unet")
+          .UsedBy(kUnknownLight),
+      Row("illumination.known",
+          "The known illumination: an environment map, or `sky`.")
+          .PathOrMap(".exr, .hdr")
+          .Without("needed")
+          .UsedBy(kKnownLight)};
+}
+
+Keys SkyKeys() {
+  const std::string sky = "illumination.known.sky";
+  Keys keys = {
+      Row(sky,
+          "An artificial map of sun, sky, clouds, buildings and ground. "
+          "`{sky: {}}` takes all its defaults."),
+      Row(sky + ".sun_theta_degrees",
+          "Angle between the sun and the zenith (+y).")
+          .Number({0.0, 90.0, true, true}, "40")
+          .Unit("degrees"),
+      Row(sky + ".sun_phi_degrees", "Azimuth of the sun, from +z towards +x.")
+          .Number({-360.0, 360.0, true, true}, "60")
+          .Unit("degrees"),
+      Row(sky + ".sun_radius_degrees",
+          "Where the sun's radiance has fallen to 1/e of its peak.")
+          .Number({0.1, 30.0, true, true}, "1.5")
+          .Unit("degrees"),
+      Row(sky + ".sun_irradiance",
+          "Irradiance by the sun on a surface that faces it.")
+          .Number(kNotNegative, "3")
+          .Unit("W/m²"),
+      Row(sky + ".zenith_radiance", "Radiance of the clear sky overhead.")
+          .Number(kPositive, "0.35")
+          .Unit("W/(m² sr)"),
+      Row(sky + ".haze", "A whiter horizon, and a wider glow around the sun.")
+          .Number(kUnitInterval, "0.4"),
+      Row(sky + ".clouds", "Strength of the clouds.")
+          .Number(kUnitInterval, "0.6"),
+      Row(sky + ".skyline", "Height of the buildings and of their windows.")
+          .Number(kUnitInterval, "0.7"),
+      Row(sky + ".ground_albedo", "Albedo of the ground.")
+          .Number(kUnitInterval, "0.2")};
+  for (ProblemKey& key : keys) key.used_by = kKnownLight;
+  return keys;
+}
+
+Keys LikelihoodKeys() {
+  return {
+      Row("likelihood",
+          "How far the render may differ from the image: log(render + epsilon) "
+          "- log(image + epsilon) has a Laplacian distribution.")
+          .Notes({"With `solver.estimator: marginal`, the search for the "
+                  "reflectance estimates its own noise. `scale` then serves "
+                  "the map."})
+          .UsedBy(kUsedBySolve),
+      Row("likelihood.scale",
+          "Scale b of the Laplacian. `auto` lets it fall to the misfit, one "
+          "outer iteration after another.")
+          .AutoOrNumber(kPositive)
+          .Unit("natural log")
+          .UsedBy(kUsedBySolve),
+      Row("likelihood.epsilon",
+          "Radiance that is added before the logarithm. `auto` is 1e-5 of the "
+          "object's mean radiance.")
+          .AutoOrNumber(kNotNegative)
+          .Unit("that of the image")
+          .UsedBy(kUsedBySolve)};
+}
+
+Keys EffectsKeys() {
+  return {
+      Row("effects",
+          "What is simulated beyond distant light without shadows: a word, or "
+          "a "
+          "list of effects.")
+          .WordOrList(
+              "auto",
+              {{"auto",
+                "Predicts by how much leaving out shadows or bounces would "
+                "change the image, and simulates what matters."},
+               {"all", "Shadows, and light of up to four bounces."},
+               {"none", "None of the effects below."}},
+              {{"visibility", "Shadows that a mesh casts on itself."},
+               {"interreflection",
+                "Light that a mesh throws on itself, up to four bounces. It "
+                "implies `visibility`."},
+               {"reflectance_map",
+                "Some normals are rendered, and the rest interpolated. It "
+                "needs "
+                "an orthographic camera and no shadows.",
+                kUsedByRender},
+               {"harmonics",
+                "The map in spherical harmonics. It is fast where the "
+                "reflectance is not mirror-like.",
+                kUsedByRender},
+               {"gaussians",
+                "The map as a mixture of spherical Gaussians. It is fast where "
+                "the reflectance is not mirror-like.",
+                kUsedByRender}})
+          .Notes(
+              {"Effects that are listed are simulated whether or not they "
+               "matter. A single one needs no brackets.",
+               "`harmonics` and `gaussians` know no shadows: neither goes with "
+               "`visibility` or `interreflection`.",
+               "A normal map has no positions, so it takes neither "
+               "`visibility` nor `interreflection`.",
+               "[Settings](settings.md#shadows-and-bounces) says when `auto` "
+               "simulates what."})};
+}
+
+Row SolverMethodKey() {
+  return Row("solver.method",
+             "Optimiser of the map, or of both unknowns with `estimator: "
+             "maximum`. Before a network, the Gaussian process is always "
+             "optimised by `gauss_newton`.")
+      .Choice("auto",
+              {{"auto",
+                "`gauss_newton` for a map, `alternating` for both unknowns."},
+               {"alternating",
+                "`gauss_newton` for the map and Ceres' trust region for the "
+                "lobes, in turns."},
+               {"gauss_newton",
+                "Gauss-Newton by conjugate gradients, without a matrix."},
+               {"lbfgs", "L-BFGS of Ceres."},
+               {"adam", "The published schedule, as a reference."},
+               {"trust_region",
+                "Trust region of Ceres with dense matrices, for small maps "
+                "only."}})
+      .UsedBy(kUnknownLight);
+}
+
+Row QuadratureKey() {
+  return Row("solver.quadrature",
+             "How finely the integral over light directions is taken.")
+      .Choice("standard",
+              {{"coarse",
+                "Half as many half-vectors about the highlight as `standard`, "
+                "and blocks of the map twice as wide."},
+               {"standard",
+                "The map is summed in blocks, at most 64 along its width."},
+               {"fine",
+                "Twice as many half-vectors as `standard`, and blocks half as "
+                "wide."}})
+      .UsedBy(kUsedBySolve);
+}
+
+Keys SolverKeys() {
+  return {
+      Row("solver",
+          "How the estimate is computed. "
+          "[Settings](settings.md) says what each setting costs."),
+      Row("solver.estimator", "What the reflectance maximises.")
+          .Choice("marginal",
+                  {{"marginal",
+                    "Its posterior with the light integrated out. The map is "
+                    "then the MAP estimate given it."},
+                   {"maximum",
+                    "The posterior of both at once, as published (Chen et al. "
+                    "2020, Eq. 8). It is there for comparison."}})
+          .UsedBy(kUsedByJoint),
+      SolverMethodKey(),
+      QuadratureKey(),
+      Row("solver.gauge",
+          "What sets the scale between reflectance and light, which no image "
+          "tells ([conventions](conventions.md#scale)).")
+          .Choice("prior",
+                  {{"prior",
+                    "The priors: the level is that of the training materials, "
+                    "the hue the most probable one."},
+                   {"grey_light",
+                    "The light's mean over the sphere is grey. Its level is "
+                    "that of `prior`."},
+                   {"unit_light",
+                    "The light's mean over the sphere is 1 in every channel."}})
+          .Needs("problem: joint")
+          .UsedBy(kUsedByJoint),
+      Row("solver.seconds",
+          "Time limit of the whole program, from reading files to writing "
+          "results. It may end earlier.")
+          .Number({0.0, kMaxSeconds, false, true}, "120")
+          .Unit("s")
+          .UsedBy(kUsedBySolve),
+      Row("solver.tolerance",
+          "An optimiser stops when a step lowers the cost by a smaller share "
+          "than this.")
+          .Number({0.0, 1.0, true, false}, "1e-4")
+          .UsedBy(kUsedBySolve),
+      Row("solver.max_iterations",
+          "Limit of outer iterations, beside the time. 0 keeps the initial "
+          "guess.")
+          .Integer(0, kMaxIterations, "1000")
+          .UsedBy(kUsedBySolve),
+      Row("solver.seed",
+          "Seed of all random numbers, such as a render's noise.")
+          .Integer(0, std::numeric_limits<int64_t>::max(), "")
+          .Without("that of `--seed`")};
+}
+
+Keys TruthKeys() {
+  return {Row("truth",
+              "The truth, where it is known. The results then have metrics "
+              "against it.")
+              .UsedBy(kUsedBySolve),
+          Row("truth.brdf", "True BRDF, a MERL table.")
+              .Path(".binary")
+              .UsedBy(kUsedBySolve)
+              .Example("true_brdf.binary"),
+          Row("truth.illumination", "True environment map.")
+              .Path(".exr, .hdr")
+              .UsedBy(kUsedBySolve)
+              .Example("true_map.exr")};
+}
+
+Keys RenderKeys() {
+  return {
+      Row("noise",
+          "Standard deviation of the log-normal noise that a render is "
+          "multiplied by.")
+          .Number(kUnitInterval, "0")
+          .Unit("natural log")
+          .UsedBy(kUsedByRender),
+      Row("quality", "How exactly the image is rendered.")
+          .Choice(
+              "reference",
+              {{"preview",
+                "One sample per pixel, four where neighbours differ, and a "
+                "coarser quadrature."},
+               {"reference", "Four samples per pixel and a fine quadrature."}})
+          .UsedBy(kUsedByRender)};
+}
+
+ProblemSchema MakeSchema() {
+  ProblemSchema schema;
+  for (const auto& section :
+       {KindKeys(), ImageKeys(), CameraKeys(), GeometryKeys(),
+        ReflectanceKeys(), IlluminationKeys(), SkyKeys(), LikelihoodKeys(),
+        EffectsKeys(), SolverKeys(), TruthKeys(), RenderKeys()}) {
+    schema.keys.insert(schema.keys.end(), section.begin(), section.end());
+  }
+  return schema;
+}
+
+}  // namespace
+
+const ProblemKey& ProblemSchema::Key(const std::string& path) const {
+  for (const ProblemKey& key : keys) {
+    if (key.path == path) return key;
+  }
+  LOG(FATAL) << "no key " << path;
+}
+
+std::vector<std::string> ProblemSchema::NamesBelow(
+    const std::string& map) const {
+  std::vector<std::string> names;
+  for (const ProblemKey& key : keys) {
+    if (key.Parent() == map) names.push_back(key.Name());
+  }
+  return names;
+}
+
+const ProblemSchema& ProblemFileSchema() {
+  static const ProblemSchema schema = MakeSchema();
+  return schema;
+}
+
+}  // namespace ibrdf
