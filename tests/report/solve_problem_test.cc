@@ -93,7 +93,7 @@ TEST_F(SolveProblemTest, LoadsWhatTheFileNames) {
   EXPECT_EQ(ProblemKind::kJoint, p->kind);
   EXPECT_EQ(12, p->image.width);
   EXPECT_EQ(10, p->image.height);
-  EXPECT_EQ(6, p->model.num_codes());
+  EXPECT_EQ(6, p->model->num_codes());
   EXPECT_EQ(uint64_t{5}, p->seed);
   EXPECT_FALSE(p->known_map.has_value());
   EXPECT_FALSE(p->known_brdf.has_value());
