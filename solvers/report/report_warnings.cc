@@ -27,8 +27,8 @@ std::string StatusWarning(const Status& status) {
     case StatusCode::kOk:
       return "";
     case StatusCode::kNoImprovement:
-      return "The solver could not improve on its start: the result is the "
-             "initial guess.";
+      return "The solver could not improve on its initial guess: the result is "
+             "that guess.";
     case StatusCode::kInterrupted:
       return "The solver was stopped early: the result is the best state it "
              "had reached.";
