@@ -29,8 +29,7 @@ std::string StatusWarning(const Status& status) {
       return "";
     case StatusCode::kNoImprovement:
       return "The solver could not improve on its initial guess: the result is "
-             "the "
-             "initial guess.";
+             "that guess.";
     case StatusCode::kInterrupted:
       return "The solver was stopped early: the result is the best state it "
              "had reached.";

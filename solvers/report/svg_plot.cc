@@ -21,7 +21,7 @@ constexpr double kTitleLine = 24, kLegendLine = 19;
 constexpr double kLetter = 6.6;  // mean width of the legend's letters
 constexpr double kMarker = 3.2;
 
-// Of middling lightness: readable on white and on black.
+// Their middling lightness is readable on white and on black.
 constexpr std::array<const char*, 5> kColours = {
     "#2f7fc1", "#d2691e", "#2f9460", "#a463c4", "#8c8c3c"};
 

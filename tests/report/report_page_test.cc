@@ -274,7 +274,7 @@ TEST(ResultWarnings, NameEachCause) {
   const auto ended = [](StatusCode code) {
     return [code](Example* e) { e->solution.status = Status(code, "ended"); };
   };
-  warned(ended(StatusCode::kNoImprovement), "start");
+  warned(ended(StatusCode::kNoImprovement), "initial guess");
   warned(ended(StatusCode::kInterrupted), "stopped");
   warned([](Example* e) { e->metrics.misfit = 0.5; }, "does not explain");
   warned([](Example* e) { e->metrics.seconds = 55.0; }, "time limit");
