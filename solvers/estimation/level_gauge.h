@@ -19,8 +19,8 @@ class LevelGauge {
   LevelGauge(const NeuralBrdfModel& model, const MaterialPrior& prior,
              int num_threads);
 
-  // Adds the same to the log colours of all lobes and channels of `parameters`
-  // [lobes * (code + 3)] and returns it; finite for any finite parameters.
+  // Adds the same to the log colours of all lobes and channels of `parameters`,
+  // a LobeMixture's, and returns it; finite for any finite parameters.
   double Fix(double* parameters) const;
 
  private:
