@@ -55,9 +55,8 @@ std::vector<MaterialPrior::Material> FittedMaterials(
 
 // Appends a lobe like the last but fainter, its code no longer than `longest`.
 void AddLobe(int code_size, double longest, Eigen::VectorXd* parameters) {
-  LobeLayout layout = {0, code_size};
-  const int last = static_cast<int>(parameters->size()) / layout.lobe_size();
-  layout.num_lobes = last + 1;
+  LobeLayout layout = LobeLayout::OfSize(parameters->size(), code_size);
+  const int last = layout.num_lobes++;
   parameters->conservativeResize(layout.num_parameters());
   const MutableLobeMixture lobes(layout, parameters->data());
   lobes.lobe(last) = lobes.lobe(last - 1);

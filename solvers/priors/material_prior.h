@@ -24,8 +24,10 @@ struct MaterialPrior {
   double wall = 30.0;
 
   int num_parameters() const { return static_cast<int>(mean.size()); }
-  int num_lobes() const { return num_parameters() / (code_size + 3); }
-  LobeLayout layout() const { return {num_lobes(), code_size}; }
+  LobeLayout layout() const {
+    return LobeLayout::OfSize(mean.size(), code_size);
+  }
+  int num_lobes() const { return layout().num_lobes; }
 
   // 1/2 |factor^-1 (x - mean)|^2 + 1/2 wall^2 sum_k max(0, |z_k| - 1)^2;
   // gradient (may be null) is added to.

@@ -149,11 +149,9 @@ class LobeTableFitter::Search {
   }
 
  private:
-  // Of as many lobes as `parameters` has.
   LobeLayout LayoutOf(const std::vector<double>& parameters) const {
-    LobeLayout layout = {0, fitter_.model_.shape.code_size()};
-    layout.num_lobes = static_cast<int>(parameters.size()) / layout.lobe_size();
-    return layout;
+    return LobeLayout::OfSize(parameters.size(),
+                              fitter_.model_.shape.code_size());
   }
 
   // log of the sum of lobes [3][n]; -inf where there are none.

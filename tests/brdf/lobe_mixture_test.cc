@@ -23,6 +23,8 @@ class LobeMixtureTest : public ::testing::Test {
 TEST_F(LobeMixtureTest, ViewsAreThePartsOfTheLayout) {
   EXPECT_EQ(7, kLayout.lobe_size());
   EXPECT_EQ(14, kLayout.num_parameters());
+  EXPECT_EQ(2, LobeLayout::OfSize(14, 4).num_lobes);
+  EXPECT_EQ(0, LobeLayout::OfSize(0, 4).num_lobes);
   EXPECT_EQ(Eigen::VectorXd(lobes_.code(1)),
             (Eigen::Vector4d(0.5, 0.1, 0.3, -0.2)));
   EXPECT_TRUE((lobes_.log_colour(0) == Eigen::Array3d(4.0, 4.3, 3.8)).all());

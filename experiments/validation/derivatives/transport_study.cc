@@ -221,7 +221,7 @@ void StudyTransport(const StudyOptions& options, ErrorTable* table) {
   const std::vector<ShadingPoint> sphere = testing::SpherePoints(side);
   std::vector<ShadingPoint> grazing;
   for (const double degrees : {89.0, 89.9, 89.94, 89.9427}) {
-    grazing.push_back(PointAt(degrees * testing::kPi / 180, 40));
+    grazing.push_back(PointAt(degrees * kPi / 180, 40));
   }
   const BrdfGrid matte =
       BrdfGrid::FromFunction(testing::Glossy(0.3, 0.2, 20), SmallGrid());

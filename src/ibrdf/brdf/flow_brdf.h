@@ -19,15 +19,15 @@ using BrdfBatch = std::function<std::vector<Eigen::Array3d>(
 // A function taken one by one.
 BrdfBatch BatchOf(BrdfFunction brdf);
 
-// The parameters [3][code_size + 3] of LobeModel with three lobes that stand
-// for a material of the embedding: one lobe a channel, of its own code, with
-// no colour in the others. first_code: that of the red channel.
+// The parameters of a LobeMixture of three lobes that stand for a material of
+// the embedding: one lobe a channel, of its own code, with no colour in the
+// others. first_code: that of the red channel.
 std::vector<double> MaterialLobes(const NeuralBrdfModel& model, int first_code);
 
 // Immutable; safe to share between threads.
 class FlowBrdf {
  public:
-  // parameters: [num_lobes][code_size + 3] as of LobeModel, copied.
+  // parameters: of a LobeMixture of num_lobes, copied.
   FlowBrdf(const NeuralBrdfModel& model, const double* parameters,
            int num_lobes, int num_threads);
 

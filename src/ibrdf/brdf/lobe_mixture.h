@@ -1,6 +1,7 @@
 // Codes and log colours of a sum of coloured lobes.
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 
 namespace ibrdf {
 
@@ -18,6 +19,12 @@ double RawLobeColour(double log_colour);
 // code z_k [code_size], then the log colours a_k [3].
 struct LobeLayout {
   int num_lobes = 0, code_size = 0;
+
+  // Of as many lobes as the parameters make.
+  static LobeLayout OfSize(size_t num_parameters, int code_size) {
+    const LobeLayout one = {1, code_size};
+    return {static_cast<int>(num_parameters) / one.lobe_size(), code_size};
+  }
 
   int lobe_size() const { return code_size + 3; }
   int num_parameters() const { return num_lobes * lobe_size(); }
