@@ -134,7 +134,7 @@ TEST(LightGauge, LightThatHasNoMeanMovesNothing) {
 // 1/2 sum of squared residuals of the prior.
 double LobePriorCostValue(const LobeModel& lobes, const LobePrior& prior,
                           const std::vector<double>& parameters) {
-  const LobePriorCost cost(lobes.num_lobes(), lobes.code_size(), prior);
+  const LobePriorCost cost(lobes.layout(), prior);
   std::vector<double> residuals(cost.num_residuals());
   const double* blocks[] = {parameters.data()};
   cost.Evaluate(blocks, residuals.data(), nullptr);

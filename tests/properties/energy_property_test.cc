@@ -27,7 +27,6 @@
 
 namespace ibrdf {
 namespace {
-using testing::kPi;
 
 // Diffuse and specular shares that add to at most 1; often they are all of it.
 CookTorrance AnyPassiveCookTorrance(double least_roughness) {

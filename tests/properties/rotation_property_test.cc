@@ -14,7 +14,6 @@
 
 namespace ibrdf {
 namespace {
-using testing::kPi;
 
 // Radiance from a direction, smooth and > 0.
 using Light = std::function<double(const Eigen::Vector3d&)>;

@@ -10,7 +10,6 @@
 
 namespace ibrdf {
 namespace {
-using testing::kPi;
 
 TriangleMesh SphereMesh(int rows, int columns) {
   TriangleMesh mesh;

@@ -10,7 +10,6 @@
 namespace ibrdf {
 namespace {
 using testing::Glossy;
-using testing::kPi;
 using testing::Lambertian;
 
 // Lobes exp(-tan^2 / (2 w^2)) fall to half at tan = w sqrt(2 log 2).

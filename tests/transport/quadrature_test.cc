@@ -8,7 +8,6 @@
 
 namespace ibrdf {
 namespace {
-using testing::kPi;
 
 TEST(Quadrature, NearShareIsASmoothStep) {
   const QuadratureOptions options;
