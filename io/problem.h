@@ -91,8 +91,8 @@ struct EffectsSpec {
 };
 
 // What minimises the map, under SolverEstimator::kMaximum map and reflectance.
-// With IlluminationPrior::kUNet it is the network's: the draw before it is
-// found by kGaussNewton. kAuto: the program decides.
+// With IlluminationPrior::kUNet it is the network's: the MAP estimate under
+// the Gaussian process before it is found by kGaussNewton. kAuto: the program decides.
 enum class SolverMethod {
   kAuto,
   kAlternating,

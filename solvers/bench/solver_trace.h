@@ -26,7 +26,8 @@ StatusOr<std::vector<TraceLine>> DecodeTrace(const std::string& path,
 StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json);
 
 // Steps of the optimiser of the map, or of both unknowns, that lowered the
-// cost: lines "STAGE round N". With Adam each is one round of its schedule.
+// cost: lines "STAGE iteration N". With Adam each is one alternation of
+// its schedule.
 int CountIterations(const std::vector<TraceLine>& trace);
 
 // The last line with a map before the end, whose misfit is of all pixels; null:
@@ -34,7 +35,7 @@ int CountIterations(const std::vector<TraceLine>& trace);
 const TraceLine* LastIteration(const std::vector<TraceLine>& trace);
 
 // Seconds until a map and a reflectance had at most the misfit of a line on as
-// many pixels: joined ones have less noise. None: never.
+// many pixels: binned ones have less noise. None: never.
 std::optional<double> SecondsToMisfit(const std::vector<TraceLine>& trace,
                                       const TraceLine& of);
 

@@ -1,4 +1,4 @@
-// Many materials on the sphere of render/brdf_sphere.h, under one sky.
+// Many materials on the sphere of report/brdf_sphere.h, under one sky.
 #pragma once
 #include <memory>
 #include <vector>

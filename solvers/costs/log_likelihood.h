@@ -17,14 +17,14 @@ struct Observations {
 Observations MakeObservations(const std::vector<double>& radiance);
 
 // Per value of L_o, 0 where the point takes no part:
-//   residual_i = RobustResidual((log(E_i + eps) - log(I_i + eps)) / b),
+//   residual_i = RobustResidual((log(L_o_i + eps) - log(I_i + eps)) / b),
 // so that sum residual^2 / 2 is the likelihood. Negative L_o counts as 0, and 0
 // without epsilon as 1e-100, both without slope.
 struct LikelihoodDerivatives {
   std::vector<double> residual;
   std::vector<double> d_residual;  // d residual / dL_o
   // Of the iteratively reweighted squares that touch the likelihood at L_o with
-  // its slope: sum weight_i dE_i^2 / 2 has the curvature of a Gauss-Newton
+  // its slope: sum weight_i dL_o_i^2 / 2 has the curvature of a Gauss-Newton
   // step.
   std::vector<double> weight;
 };

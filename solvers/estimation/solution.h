@@ -17,7 +17,7 @@ struct TraceEntry {
   std::string stage;
   double seconds = 0.0;     // with those spent before
   double scale = 0.0;       // b of the likelihood then
-  int64_t pixels = 0;       // that took part, joined ones as one
+  int64_t pixels = 0;       // that took part; a bin counts as one
   double cost = 0.0;        // likelihood + priors, nats
   double likelihood = 0.0;  // sum |log L_o - log I| / b, smoothed
   double reflectance_prior = 0.0;

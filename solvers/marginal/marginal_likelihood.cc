@@ -471,7 +471,7 @@ void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
     out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
   }
 
-  // tr(A^-1 J K1 J^T), K1 what the amplitude hyperparameters: A less D and the
+  // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the
   // rest.
   double trace = 3.0 * static_cast<double>(P) -
                  inverse.diagonal().dot(weight.cwiseInverse());

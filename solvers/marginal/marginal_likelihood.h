@@ -40,7 +40,7 @@ struct MarginalValue {
 };
 
 // Laplace's approximation of -log of
-//   integral N(y; log L_o(l), D) N(l; 0, K) dl,  E_c = T_c exp(m + l_c):
+//   integral N(y; log L_o(l), D) N(l; 0, K) dl,  L_o_c = T_c exp(m + l_c):
 //   (y - log L_o)^T D^-1 (y - log L_o) / 2 + l^T K^-1 l / 2
 //   + log det(D + J K J^T) / 2  at the mode of l,
 // J = d log L_o / d l, in the space of the data, so that K needs no inverse.
@@ -114,7 +114,7 @@ class MarginalLikelihood {
 
  private:
   struct Point {
-    Eigen::VectorXd L;         // radiance [3 * texels]
+    Eigen::VectorXd L;         // radiance [3 * sources]
     Eigen::VectorXd L_o;       // [3 * points]
     Eigen::VectorXd residual;  // y - log L_o
   };
@@ -148,7 +148,7 @@ class MarginalLikelihood {
                              const Eigen::VectorXd& g) const;
   // Of its step at the horizon.
   Eigen::VectorXd ApplyHorizon(const Eigen::VectorXd& g) const;
-  // J K_lamps J^T, channels c and d.
+  // J K_d J^T, K_d the covariance of the directional lights, channels c and d.
   RowMatrix DirectionalLightBlock(const Linearisation& linear, int c,
                                   int d) const;
   // J K0 J^T, K0 what the amplitude does not scale: level, horizon, directional

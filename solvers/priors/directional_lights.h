@@ -28,8 +28,7 @@ Eigen::Vector3d MovedDirectionalLight(const Eigen::Vector3d& directional_light,
 // A texel of a map [H, W] in which a directional light may be.
 struct DirectionalLightTexel {
   int texel = 0;  // row * W + column
-  double weight =
-      0.0;  // in (0, 1]: of LightProcess::Directional light's deviations
+  double weight = 0.0;  // in (0, 1], of LightProcess::DirectionalLight
 };
 
 // Those around directional lights whose directions are known to some degrees,

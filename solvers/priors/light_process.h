@@ -64,8 +64,8 @@ struct LightProcess {
   double chroma_variance = 0.12;
   double level_variance = 4.0;
   double level_chroma_variance = 0.12;
-  // Of a directional light's log radiance besides (light_lamps.h); no amplitude
-  // hyperparameters it.
+  // Variances of a directional light's log radiance beside those above
+  // (directional_lights.h). The amplitude does not scale them.
   double directional_light_variance = 6.25;
   double directional_light_chroma_variance = 0.25;
 
@@ -75,8 +75,8 @@ struct LightProcess {
 
   Eigen::Matrix3d Local() const;  // M
   Eigen::Matrix3d Level() const;  // B
-  Eigen::Matrix3d DirectionalLight()
-      const;  // of a directional light, besides B
+  // Of a directional light, beside B.
+  Eigen::Matrix3d DirectionalLight() const;
 
   // The first two parts of C between unit directions, without shares and
   // roughness.
@@ -85,7 +85,7 @@ struct LightProcess {
 };
 
 // Rows: grey, then two axes of chroma; orthonormal. They diagonalise Local(),
-// Level() and Directional light().
+// Level() and DirectionalLight().
 Eigen::Matrix3d ColourAxes();
 
 // Weights of log_roughness in the rows of a map, [bands][rows].

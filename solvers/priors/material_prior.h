@@ -49,8 +49,9 @@ MaterialPrior GaussianPrior(std::vector<MaterialPrior::Material> materials,
 
 // GaussianPrior of the materials' lobes (NeuralBrdfModel::lobe_fits): how
 // the codes of two lobes and the colours of both go together. Lobes beyond
-// those of the fits, and all of a model without fits, are independent: codes
-// N(0, code_sigma^2 I), colours as the embedding's.
+// those of the fits are independent: codes N(0, code_sigma^2 I), colours as the
+// embedding's. Without fits, the first lobe has the Gaussian of the materials'
+// mean codes, or that one where there are fewer than three materials.
 MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
                                  double code_sigma);
 
