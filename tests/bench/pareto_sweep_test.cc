@@ -32,7 +32,7 @@ class ParetoSweepTest : public testing::SweepTest {
     };
     WriteSolver(R"({"metrics": {"misfit": )" + std::to_string(misfit) +
                     R"(, "illumination_relative_log_rmse": 0.5}, "trace": [)" +
-                    line("coarse round 1", seconds, 4, misfit) + ", " +
+                    line("coarse iteration 1", seconds, 4, misfit) + ", " +
                     line("end", seconds + 10.0, 9, 3.0 * misfit) + "]}",
                 0);
   }
