@@ -24,7 +24,7 @@ CONSTANT_MAP = "constant_map_relative_log_rmse_aligned"
 # Label, column, colour.
 CURVES = (("joint estimate", BRDF, "tab:red"),
           ("Cook-Torrance given the true map", COOK_TORRANCE, "0.45"))
-CASE = ("material", "map", "geometry", "lobes", "method", "model")
+CASE = ("material", "map", "geometry", "lobes", "method", "model", "prior")
 NUM_WORST = 10
 WORST_COLUMNS = 5
 
@@ -34,7 +34,7 @@ def overview(row, cases):
     name = f"{row['material']}_{row['map']}"
     if row["geometry"] != "sphere":
         name += f"_{row['geometry']}"
-    estimate = f"estimate_{row['lobes']}_{row['method']}"
+    estimate = f"estimate_{row['prior']}_{row['lobes']}_{row['method']}"
     if row["model"] != "default":
         estimate += "_" + row["model"].replace("/", "-")
     return Path(cases) / name / estimate / "overview.png"

@@ -51,7 +51,7 @@ def pareto_row(material, setting, seconds, error, **cells):
 
 def joint_row(material, error, **cells):
     row = dict(material=material, map="m", geometry="sphere", lobes=2,
-               method="auto", model="fold0/m.ibrdf", misfit=0.02, status="ok",
+               method="auto", model="fold0/m.ibrdf", prior="unet", misfit=0.02, status="ok",
                brdf_log_rmse_aligned=error,
                illumination_relative_log_rmse_aligned=error / 10,
                cook_torrance_brdf_log_rmse_aligned=0.5,
@@ -181,10 +181,10 @@ class JointGrid(unittest.TestCase):
 
     def test_folders_are_those_of_the_sweep(self):
         self.assertEqual(
-            Path("c/a_m/estimate_2_auto_fold0-m.ibrdf/overview.png"),
+            Path("c/a_m/estimate_unet_2_auto_fold0-m.ibrdf/overview.png"),
             joint_grid.overview(joint_row("a", 1), "c"))
         self.assertEqual(
-            Path("c/a_m_bunny/estimate_2_auto/overview.png"),
+            Path("c/a_m_bunny/estimate_unet_2_auto/overview.png"),
             joint_grid.overview(
                 joint_row("a", 1, geometry="bunny", model="default"), "c"))
 

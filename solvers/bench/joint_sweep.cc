@@ -4,10 +4,23 @@
 #include "ibrdf/solvers/bench/sphere_columns.h"
 
 namespace ibrdf {
+namespace {
+
+std::string ProblemText(const JointSweepOptions& options, const SweepCase& c,
+                        const ChosenModel& model, const std::string& prior) {
+  return "problem: joint\n" + ImageYaml(options) +
+         "reflectance: " + ReflectanceYaml(model, options.lobes) +
+         "illumination: {width: " + std::to_string(kSweepMapWidth) +
+         ", height: " + std::to_string(kSweepMapHeight) + ", prior: " + prior +
+         "}\n" + SolverYaml(options) + JointTruthYaml(c);
+}
+
+}  // namespace
 
 const std::vector<std::string>& JointColumns() {
   static const std::vector<std::string> columns =
-      ModelSweepColumns({"seconds",
+      ModelSweepColumns({"prior",
+                         "seconds",
                          "peak_mb",
                          "misfit",
                          "brdf_log_rmse",
@@ -34,17 +47,16 @@ StatusOr<SolverSweep> JointSweep(const JointSweepOptions& options) {
   SolverSweep sweep;
   sweep.title = "Joint estimation";
   sweep.columns = &JointColumns();
-  sweep.key_columns = kModelSweepKeys;
-  IBRDF_RETURN_IF_ERROR(AddModelRuns(
-      options, "joint", "estimate",
-      [&](const SweepCase& c, const ChosenModel& model) {
-        return "problem: joint\n" + ImageYaml(options) +
-               "reflectance: " + ReflectanceYaml(model, options.lobes) +
-               "illumination: {width: " + std::to_string(kSweepMapWidth) +
-               ", height: " + std::to_string(kSweepMapHeight) + "}\n" +
-               SolverYaml(options) + JointTruthYaml(c);
-      },
-      &sweep));
+  sweep.key_columns = kModelSweepKeys + 1;
+  IBRDF_RETURN_IF_ERROR(ForEachModelCase(
+      options, [&](const SweepCase& c, const ChosenModel& model) {
+        for (const std::string& prior : options.priors) {
+          sweep.runs.push_back(ModelRun(options, c, model, "joint_" + prior,
+                                        ProblemText(options, c, model, prior),
+                                        "estimate_" + prior, *sweep.columns));
+          sweep.runs.back().row.Set("prior", prior);
+        }
+      }));
   sweep.finish = [options](const SolverRun& run, const std::string& folder,
                            bool solved, NamedRow* row) {
     IBRDF_RETURN_IF_ERROR(SetJointBaselines(options, run.of, row));

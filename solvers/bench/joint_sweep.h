@@ -9,14 +9,17 @@
 
 namespace ibrdf {
 
-struct JointSweepOptions : ModelSweepOptions {};
+struct JointSweepOptions : ModelSweepOptions {
+  // Priors of the light, by their names in problem files: a run each.
+  std::vector<std::string> priors = {"unet"};
+};
 
-// Columns of its results.csv, in order; the first six name the run.
+// Columns of its results.csv, in order; the first seven name the run.
 const std::vector<std::string>& JointColumns();
 
-// For RunSolverSweep. A case's folder also receives joint.yaml,
-// estimate_LOBES_METHOD[_MODEL]/ and cook_torrance.json (see
-// joint_baselines.h). Fails on a material, map or model that is not there.
+// For RunSolverSweep. A case's folder also receives
+// joint_PRIOR.yaml, estimate_PRIOR_LOBES_METHOD[_MODEL]/ and cook_torrance.json
+// (see joint_baselines.h). Fails on a material, map or model that is not there.
 StatusOr<SolverSweep> JointSweep(const JointSweepOptions& options);
 
 }  // namespace ibrdf

@@ -1,6 +1,6 @@
 // The sweep `known-brdf` (Chen et al. 2020, Fig. 4 and supplement, Table 2):
-// illumination from one image of a known material, with the deep illumination
-// prior and without.
+// illumination from one image of a known material, with the priors of the light
+// and without.
 #pragma once
 #include <string>
 #include <vector>

@@ -17,16 +17,17 @@ StatusOr<SolverSweep> KnownLightSweep(const KnownLightSweepOptions& options) {
   sweep.title = "Reflectance under known light";
   sweep.columns = &KnownLightColumns();
   sweep.key_columns = kModelSweepKeys;
-  IBRDF_RETURN_IF_ERROR(AddModelRuns(
-      options, "known_light", "known_light",
-      [&](const SweepCase& c, const ChosenModel& model) {
-        return "problem: reflectance\n" + ImageYaml(options) +
-               "reflectance: " + ReflectanceYaml(model, options.lobes) +
-               "illumination: {known: " + Quoted(c.map_path) + "}\n" +
-               SolverYaml(options) + "truth: {brdf: " + Quoted(c.brdf_path) +
-               "}\n";
-      },
-      &sweep));
+  IBRDF_RETURN_IF_ERROR(ForEachModelCase(
+      options, [&](const SweepCase& c, const ChosenModel& model) {
+        const std::string problem =
+            "problem: reflectance\n" + ImageYaml(options) +
+            "reflectance: " + ReflectanceYaml(model, options.lobes) +
+            "illumination: {known: " + Quoted(c.map_path) + "}\n" +
+            SolverYaml(options) + "truth: {brdf: " + Quoted(c.brdf_path) +
+            "}\n";
+        sweep.runs.push_back(ModelRun(options, c, model, "known_light", problem,
+                                      "known_light", *sweep.columns));
+      }));
   sweep.finish = [options](const SolverRun& run, const std::string& folder,
                            bool solved, NamedRow* row) {
     return solved ? SetRelit(options, run, folder, row) : OkStatus();

@@ -26,23 +26,18 @@ Status ForEachModelCase(
   return OkStatus();
 }
 
-Status AddModelRuns(const ModelSweepOptions& options, const std::string& name,
-                    const std::string& estimate,
-                    const std::function<std::string(
-                        const SweepCase& c, const ChosenModel& model)>& problem,
-                    SolverSweep* sweep) {
+SolverRun ModelRun(const ModelSweepOptions& options, const SweepCase& c,
+                   const ChosenModel& model, const std::string& name,
+                   const std::string& problem, const std::string& estimate,
+                   const std::vector<std::string>& columns) {
   const std::string lobes = std::to_string(options.lobes);
-  return ForEachModelCase(
-      options, [&](const SweepCase& c, const ChosenModel& model) {
-        NamedRow row = CaseRow(options, c, *sweep->columns);
-        row.Set("lobes", lobes);
-        row.Set("method", options.method);
-        row.Set("model", model.label);
-        sweep->runs.push_back({c, name + ".yaml", problem(c, model),
-                               estimate + "_" + lobes + "_" + options.method +
-                                   model.folder_suffix(),
-                               row});
-      });
+  NamedRow row = CaseRow(options, c, columns);
+  row.Set("lobes", lobes);
+  row.Set("method", options.method);
+  row.Set("model", model.label);
+  return {c, name + ".yaml", problem,
+          estimate + "_" + lobes + "_" + options.method + model.folder_suffix(),
+          row};
 }
 
 }  // namespace ibrdf

@@ -27,13 +27,12 @@ Status ForEachModelCase(
     const std::function<void(const SweepCase& c, const ChosenModel& model)>&
         add);
 
-// Adds a run of every such case to `sweep`, whose columns are of
-// ModelSweepColumns: the problem file NAME.yaml with the text that `problem`
-// makes, the folder ESTIMATE_LOBES_METHOD[_MODEL].
-Status AddModelRuns(const ModelSweepOptions& options, const std::string& name,
-                    const std::string& estimate,
-                    const std::function<std::string(
-                        const SweepCase& c, const ChosenModel& model)>& problem,
-                    SolverSweep* sweep);
+// A run of such a case, for a sweep whose columns are of ModelSweepColumns: the
+// problem file NAME.yaml with the text `problem`, results in the folder
+// ESTIMATE_LOBES_METHOD[_MODEL].
+SolverRun ModelRun(const ModelSweepOptions& options, const SweepCase& c,
+                   const ChosenModel& model, const std::string& name,
+                   const std::string& problem, const std::string& estimate,
+                   const std::vector<std::string>& columns);
 
 }  // namespace ibrdf

@@ -51,14 +51,26 @@ Options* AddSolverExperiment(CLI::App* app, BenchSession* session,
   return &flags->options;
 }
 
+void AddPriorsFlag(CLI::App* experiment, std::vector<std::string>* priors) {
+  experiment
+      ->add_option("--priors", *priors,
+                   "priors of the light, comma-separated, of unet, process and "
+                   "none; a run of each case with each")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"unet", "process", "none"}))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void AddSolverExperiments(CLI::App* app, BenchSession* session) {
   CLI::App* experiment = nullptr;
-  AddSolverExperiment(app, session, "joint",
-                      "Reflectance and illumination from one image: makes "
-                      "images, estimates, baselines.",
-                      JointSweep, &experiment);
+  JointSweepOptions* joint =
+      AddSolverExperiment(app, session, "joint",
+                          "Reflectance and illumination from one image: makes "
+                          "images, estimates, baselines.",
+                          JointSweep, &experiment);
+  AddPriorsFlag(experiment, &joint->priors);
   AddSolverExperiment(app, session, "known-light",
                       "Reflectance from one image under known light (Chen et "
                       "al. 2020, Fig. 3).",
@@ -68,12 +80,7 @@ void AddSolverExperiments(CLI::App* app, BenchSession* session) {
       "Illumination from one image of a known material, with the prior and "
       "without (Chen et al. 2020, Fig. 4).",
       KnownBrdfSweep, &experiment);
-  experiment
-      ->add_option("--priors", known_brdf->priors,
-                   "comma-separated, of unet and none")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"unet", "none"}))
-      ->capture_default_str();
+  AddPriorsFlag(experiment, &known_brdf->priors);
   ParetoSweepOptions* pareto = AddSolverExperiment(
       app, session, "pareto",
       "What accuracy costs in time: joint estimates with one setting of the "

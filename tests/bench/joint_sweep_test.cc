@@ -56,7 +56,7 @@ TEST_F(JointSweepTest, WritesRowsAndResumes) {
   EXPECT_NEAR(0.0, std::stod(Cell(row, "relit_log_rmse")), 1e-4);
   EXPECT_NEAR(0.0, std::stod(Cell(row, "relit_dssim")), 1e-4);
   const std::string folder = options_.out + "/cases/paint_b/";
-  for (const char* file : {"input.exr", "mask.png", "joint.yaml"}) {
+  for (const char* file : {"input.exr", "mask.png", "joint_unet.yaml"}) {
     EXPECT_TRUE(std::filesystem::exists(folder + file)) << file;
   }
   EXPECT_NE(std::string::npos,
@@ -68,6 +68,19 @@ TEST_F(JointSweepTest, WritesRowsAndResumes) {
   ASSERT_TRUE(Run().ok());
   EXPECT_EQ(2u, Calls());
   EXPECT_EQ(1u, Rows().size());
+}
+
+TEST_F(JointSweepTest, RunsEachCaseWithEachPrior) {
+  options_.map_names = {"a", "b"};
+  options_.priors = {"process", "none"};
+  const std::vector<SolverRun> runs = JointSweep(options_).value().runs;
+  ASSERT_EQ(4u, runs.size());
+  EXPECT_EQ("paint_a", runs[1].of.name);
+  EXPECT_EQ("joint_none.yaml", runs[1].problem_name);
+  EXPECT_NE(std::string::npos, runs[1].problem.find("prior: none}"));
+  EXPECT_EQ("estimate_none_2_auto", runs[1].estimate);
+  EXPECT_EQ("process", Cell(runs[2].row.cells(), "prior"));
+  EXPECT_EQ("estimate_process_2_auto", runs[2].estimate);
 }
 
 TEST_F(JointSweepTest, FailuresGoToStatusAndInterruptsEndTheSweep) {
