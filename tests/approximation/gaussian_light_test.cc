@@ -12,6 +12,18 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
+// L at a unit direction.
+Eigen::Array3d EvaluateGaussians(const std::vector<SphericalGaussian>& lobes,
+                                 const GaussianColours& amplitudes,
+                                 const Eigen::Vector3d& direction) {
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  for (size_t k = 0; k < lobes.size(); ++k) {
+    sum += std::exp(lobes[k].sharpness * (lobes[k].axis.dot(direction) - 1.0)) *
+           amplitudes.row(static_cast<Eigen::Index>(k)).transpose().array();
+  }
+  return sum;
+}
+
 Eigen::Array3d Flux(const std::vector<SphericalGaussian>& lobes,
                     const GaussianColours& amplitudes) {
   Eigen::Array3d flux = Eigen::Array3d::Zero();

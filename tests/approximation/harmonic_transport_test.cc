@@ -121,7 +121,7 @@ TEST(HarmonicTransport, BothGradientsAreTransposes) {
   transport.Render(grid, map.data(), L_o.data());
   std::vector<float> by_grid(grid.values.size());
   transport.GridGradient(map.data(), adjoint.data(), by_grid.data());
-  transport.MapGradient(grid, adjoint.data(), by_map.data());
+  transport.ByLight(grid).ApplyTranspose(adjoint.data(), by_map.data());
   const auto dot = [](const auto& a, const auto& b) {
     double sum = 0.0;
     for (size_t k = 0; k < a.size(); ++k) sum += double{a[k]} * b[k];
@@ -150,7 +150,7 @@ TEST(HarmonicTransport, SameBitsForAnyNumberOfThreads) {
     by_map[k].resize(map.rgb.size());
     transport.Render(grid, map.rgb.data(), L_o[k].data());
     transport.GridGradient(map.rgb.data(), adjoint.data(), by_grid[k].data());
-    transport.MapGradient(grid, adjoint.data(), by_map[k].data());
+    transport.ByLight(grid).ApplyTranspose(adjoint.data(), by_map[k].data());
   }
   EXPECT_EQ(L_o[0], L_o[1]);
   EXPECT_EQ(by_grid[0], by_grid[1]);

@@ -7,8 +7,10 @@
 #include <string>
 #include <tuple>
 
+#include "ibrdf/render/reference_radiance.h"
 #include "ibrdf/render/reference_renderer.h"
 #include "ibrdf/transport/transport.h"
+#include "tests/support/function_renderer.h"
 #include "tests/support/render_testing.h"
 
 namespace ibrdf {
@@ -22,15 +24,6 @@ ReferenceOptions QuickReference() {
   options.near_ring_samples = 48;
   options.far_width = 32;
   return options;
-}
-
-PointRenderer Reference(const ReferenceRenderer& renderer,
-                        const BrdfFunction& brdf) {
-  return
-      [&renderer, brdf](const std::vector<ShadingPoint>& points, double* L_o) {
-        renderer.Render(points, brdf, L_o);
-        return true;
-      };
 }
 
 // As documented in ReflectanceMapOptions, but for the mean, which is of all
@@ -73,14 +66,14 @@ TEST_P(ReflectanceMapCases, MeetsTheErrorAskedForAndSavesWork) {
   const std::vector<ShadingPoint> points = SpherePoints(128);
   const ReferenceRenderer renderer(
       test.sun ? SunMap(16, 32) : SmoothMap(16, 32), QuickReference());
-  const PointRenderer render = Reference(renderer, test.brdf);
+  const ReferenceRadiance render(renderer, test.brdf);
   std::vector<double> direct(3 * points.size()), L_o(direct.size());
-  render(points, direct.data());
+  ASSERT_TRUE(render.Render(points, {}, direct.data()));
   for (const double asked : {1e-2, 1e-3}) {
     ReflectanceMapOptions options;
     options.log_error = asked;
     const StatusOr<ReflectanceMapReport> report =
-        RenderByNormal(points, render, options, L_o.data());
+        RenderByNormal(points, render, {}, options, L_o.data());
     ASSERT_TRUE(report.ok());
     EXPECT_LE(MeanLogError(L_o, direct), asked);
     EXPECT_LE(report->log_error + 2.0 * report->standard_error, asked);
@@ -110,16 +103,17 @@ TEST(ReflectanceMap, WorksForTransportToo) {
   const BrdfGrid grid =
       BrdfGrid::FromFunction(Glossy(0.2, 0.4, 15), options.grid);
   const Image map = SmoothMap(16, 32);
-  const auto render = [&](const std::vector<ShadingPoint>& some, double* L_o) {
-    Transport(some, 16, 32, options).Render(grid, map.rgb.data(), L_o);
-    return true;
-  };
+  const FunctionRenderer render(
+      [&](const std::vector<ShadingPoint>& some, double* L_o) {
+        Transport(some, 16, 32, options).Render(grid, map.rgb.data(), L_o);
+        return true;
+      });
   std::vector<double> direct(3 * points.size()), L_o(direct.size());
-  render(points, direct.data());
+  ASSERT_TRUE(render.Render(points, {}, direct.data()));
   ReflectanceMapOptions coarse;
   coarse.log_error = 0.01;
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, render, coarse, L_o.data());
+      RenderByNormal(points, render, {}, coarse, L_o.data());
   ASSERT_TRUE(report.ok());
   EXPECT_GT(report->interpolated, 0);
   EXPECT_LE(MeanLogError(L_o, direct), 0.01);
@@ -127,7 +121,7 @@ TEST(ReflectanceMap, WorksForTransportToo) {
 
 TEST(ReflectanceMap, AnyViewDirectionAndRoughNormals) {
   const ReferenceRenderer renderer(SmoothMap(16, 32), QuickReference());
-  const PointRenderer render = Reference(renderer, Glossy(0.1, 0.5, 10));
+  const ReferenceRadiance render(renderer, Glossy(0.1, 0.5, 10));
   std::mt19937 rng(5);
   std::normal_distribution<double> g;
   std::vector<ShadingPoint> points;
@@ -140,11 +134,11 @@ TEST(ReflectanceMap, AnyViewDirectionAndRoughNormals) {
     if (p.normal.dot(p.wo) >= kMinViewCosine) points.push_back(p);
   }
   std::vector<double> direct(3 * points.size()), L_o(direct.size());
-  render(points, direct.data());
+  ASSERT_TRUE(render.Render(points, {}, direct.data()));
   ReflectanceMapOptions options;
   options.log_error = 3e-3;
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, render, options, L_o.data());
+      RenderByNormal(points, render, {}, options, L_o.data());
   ASSERT_TRUE(report.ok());
   EXPECT_GT(report->interpolated, 3000);
   EXPECT_LE(MeanLogError(L_o, direct), 3e-3);
@@ -152,18 +146,19 @@ TEST(ReflectanceMap, AnyViewDirectionAndRoughNormals) {
 
 TEST(ReflectanceMap, NoiseOfTheNormalDoesNotPayAndIsRenderedDirectly) {
   // No two normals have related radiance: nothing can be interpolated.
-  const auto noise = [](const std::vector<ShadingPoint>& points, double* L_o) {
+  const FunctionRenderer noise([](const std::vector<ShadingPoint>& points,
+                                  double* L_o) {
     for (size_t i = 0; i < points.size(); ++i) {
       const double x = 1e4 * points[i].normal.x() + 7e4 * points[i].normal.y();
       for (int c = 0; c < 3; ++c) L_o[3 * i + c] = 1.5 + std::sin(x * (c + 1));
     }
     return true;
-  };
+  });
   const std::vector<ShadingPoint> points = SpherePoints(128);
   std::vector<double> direct(3 * points.size()), L_o(direct.size());
-  noise(points, direct.data());
+  ASSERT_TRUE(noise.Render(points, {}, direct.data()));
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, noise, {}, L_o.data());
+      RenderByNormal(points, noise, {}, {}, L_o.data());
   ASSERT_TRUE(report.ok());
   EXPECT_EQ(0, report->interpolated);
   EXPECT_EQ(direct, L_o);
@@ -172,17 +167,18 @@ TEST(ReflectanceMap, NoiseOfTheNormalDoesNotPayAndIsRenderedDirectly) {
 }
 
 TEST(ReflectanceMap, BlackAndFewPointsAreExact) {
-  const auto black = [](const std::vector<ShadingPoint>& points, double* L_o) {
-    std::fill_n(L_o, 3 * points.size(), 0.0);
-    return true;
-  };
+  const FunctionRenderer black(
+      [](const std::vector<ShadingPoint>& points, double* L_o) {
+        std::fill_n(L_o, 3 * points.size(), 0.0);
+        return true;
+      });
   for (const int size : {1, 2, 8, 64}) {
     const std::vector<ShadingPoint> points = SpherePoints(size);
     std::vector<double> L_o(3 * points.size(), 1.0);
-    ASSERT_TRUE(RenderByNormal(points, black, {}, L_o.data()).ok());
+    ASSERT_TRUE(RenderByNormal(points, black, {}, {}, L_o.data()).ok());
     for (const double e : L_o) EXPECT_EQ(0.0, e);
   }
-  EXPECT_TRUE(RenderByNormal({}, black, {}, nullptr).ok());
+  EXPECT_TRUE(RenderByNormal({}, black, {}, {}, nullptr).ok());
 }
 
 TEST(ReflectanceMap, RefusesSeveralViewDirections) {
@@ -192,12 +188,12 @@ TEST(ReflectanceMap, RefusesSeveralViewDirections) {
       FindShadingPoints(Scene::UnitSphere(), camera, 16, 16, Mask(), 1).value();
   std::vector<double> L_o(3 * points.size());
   int calls = 0;
-  const auto count = [&](const std::vector<ShadingPoint>&, double*) {
+  const FunctionRenderer count([&](const std::vector<ShadingPoint>&, double*) {
     ++calls;
     return true;
-  };
+  });
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, count, {}, L_o.data());
+      RenderByNormal(points, count, {}, {}, L_o.data());
   ASSERT_FALSE(report.ok());
   EXPECT_EQ(StatusCode::kInvalidInput, report.status().code());
   EXPECT_EQ(0, calls);
@@ -208,20 +204,34 @@ TEST(ReflectanceMap, StopsWhenTheRendererDoes) {
   std::vector<double> L_o(3 * points.size());
   for (int last = 0; last < 3; ++last) {
     int calls = 0;
-    const auto render = [&](const std::vector<ShadingPoint>& some,
-                            double* out) {
-      for (size_t i = 0; i < some.size(); ++i) {
-        const double x = some[i].normal.x();
-        for (int c = 0; c < 3; ++c) out[3 * i + c] = 1.1 + std::sin(30 * x);
-      }
-      return ++calls <= last;
-    };
+    const FunctionRenderer render(
+        [&](const std::vector<ShadingPoint>& some, double* out) {
+          for (size_t i = 0; i < some.size(); ++i) {
+            const double x = some[i].normal.x();
+            for (int c = 0; c < 3; ++c) out[3 * i + c] = 1.1 + std::sin(30 * x);
+          }
+          return ++calls <= last;
+        });
     const StatusOr<ReflectanceMapReport> report =
-        RenderByNormal(points, render, {}, L_o.data());
+        RenderByNormal(points, render, {}, {}, L_o.data());
     ASSERT_FALSE(report.ok());
     EXPECT_EQ(StatusCode::kInterrupted, report.status().code());
     EXPECT_EQ(last + 1, calls);
   }
+}
+
+// The renderer reports its progress in each call to whoever started the image.
+TEST(ReflectanceMap, HandsProgressOn) {
+  const std::vector<ShadingPoint> points = SpherePoints(64);
+  const ReferenceRenderer renderer(SmoothMap(16, 32), QuickReference());
+  const ReferenceRadiance render(renderer, Lambertian(0.5));
+  std::vector<double> L_o(3 * points.size());
+  int calls = 0;
+  const StatusOr<ReflectanceMapReport> report = RenderByNormal(
+      points, render, [&calls](double) { return ++calls < 2; }, {}, L_o.data());
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(StatusCode::kInterrupted, report.status().code());
+  EXPECT_EQ(2, calls);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "ibrdf/approximation/reflectance_map.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/sample_merl.h"
+#include "ibrdf/render/reference_radiance.h"
 #include "ibrdf/render/reference_renderer.h"
 
 namespace ibrdf {
@@ -49,13 +50,8 @@ class Tiers {
   void ByNormal(const std::vector<ShadingPoint>& points, double* L_o) const {
     ReflectanceMapOptions options;
     options.log_error = kPreviewError;
-    RenderByNormal(
-        points,
-        [&](const std::vector<ShadingPoint>& some, double* out) {
-          Quadrature(some, out);
-          return true;
-        },
-        options, L_o)
+    RenderByNormal(points, ReferenceRadiance(*preview_, table_), {}, options,
+                   L_o)
         .value();
   }
   void Harmonics(int order, const std::vector<ShadingPoint>& points,

@@ -81,7 +81,9 @@ void HarmonicStudy(const std::string&) {
       least(0, [&] { direct.Render(grid, map, L_o.data()); });
       least(1, [&] { harmonic.Render(grid, map, L_o.data()); });
       least(2, [&] { harmonic.GridGradient(map, L_o.data(), by_grid.data()); });
-      least(3, [&] { harmonic.MapGradient(grid, L_o.data(), by_map.data()); });
+      least(3, [&] {
+        harmonic.ByLight(grid).ApplyTranspose(L_o.data(), by_map.data());
+      });
     }
     const std::string name = "sphere 128 order " + std::to_string(order);
     Row("harmonics", name, "transport_render_ms", 1e3 * seconds[0]);

@@ -7,6 +7,7 @@
 #include "experiments/benchmarks/render_speed/scenes.h"
 #include "experiments/benchmarks/render_speed/studies.h"
 #include "ibrdf/approximation/reflectance_map.h"
+#include "ibrdf/render/reference_radiance.h"
 #include "ibrdf/render/reference_renderer.h"
 
 namespace ibrdf {
@@ -42,13 +43,8 @@ void Compare(const std::string& name, const std::vector<ShadingPoint>& points,
   ReflectanceMapReport report;
   render_steps(0, some / 2);
   by_normal = Seconds([&] {
-    report = RenderByNormal(
-                 points,
-                 [&](const std::vector<ShadingPoint>& p, double* out) {
-                   renderer.Render(p, table, out);
-                   return true;
-                 },
-                 {}, L_o.data())
+    report = RenderByNormal(points, ReferenceRadiance(renderer, table), {}, {},
+                            L_o.data())
                  .value();
   });
   render_steps(some / 2, some);

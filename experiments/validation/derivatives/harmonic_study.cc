@@ -22,6 +22,7 @@ void AddOrder(const std::string& kind, const std::vector<ShadingPoint>& points,
   options.order = order;
   options.grid = grid.shape;
   const HarmonicTransport transport(points, map.height, map.width, options);
+  const HarmonicOperator by_light = transport.ByLight(grid);
   const ReferenceHarmonics reference(points, map.height, map.width, options);
   const size_t nodes = grid.shape.num_nodes(), texels = map.num_pixels();
   for (size_t i = 0; i < points.size(); ++i) {
@@ -29,7 +30,7 @@ void AddOrder(const std::string& kind, const std::vector<ShadingPoint>& points,
     std::vector<double> adjoint(3 * points.size(), 0.0);
     std::fill_n(&adjoint[3 * i], 3, 1.0);
     std::vector<float> by_map(3 * texels), by_grid(3 * nodes);
-    transport.MapGradient(grid, adjoint.data(), by_map.data());
+    by_light.ApplyTranspose(adjoint.data(), by_map.data());
     transport.GridGradient(map.rgb.data(), adjoint.data(), by_grid.data());
     std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
     for (size_t c = 0; c < 3; ++c) {

@@ -60,17 +60,6 @@ double GaussianIntegral(double sharpness) {
              : -2.0 * kPi * std::expm1(-2.0 * sharpness) / sharpness;
 }
 
-Eigen::Array3d EvaluateGaussians(const std::vector<SphericalGaussian>& lobes,
-                                 const GaussianColours& amplitudes,
-                                 const Eigen::Vector3d& direction) {
-  Eigen::Array3d sum = Eigen::Array3d::Zero();
-  for (size_t k = 0; k < lobes.size(); ++k) {
-    sum += std::exp(lobes[k].sharpness * (lobes[k].axis.dot(direction) - 1.0)) *
-           amplitudes.row(static_cast<Eigen::Index>(k)).transpose().array();
-  }
-  return sum;
-}
-
 GaussianLight::GaussianLight(const Image& map,
                              const GaussianFitOptions& options)
     : height_(map.height),
@@ -107,69 +96,95 @@ std::vector<GaussianLight::Overlap> GaussianLight::Overlaps(
   return out;
 }
 
-void GaussianLight::FindSpots(const Image& map,
-                              const GaussianFitOptions& options) {
-  const auto texels = static_cast<int>(map.num_pixels());
-  std::vector<double> level(texels);
+// What FindSpots has not taken yet.
+struct GaussianLight::SpotSearch {
+  double radius, reach;       // of a spot and of its surroundings, radians
+  std::vector<double> level;  // mean radiance of each texel
+  std::vector<char> done;     // texels that are no peak any more
   double flux = 0.0;
-  for (int t = 0; t < texels; ++t) {
-    level[t] = MeanOfChannels(&map.rgb[size_t{3} * t]);
-    flux += level[t] * TexelSolidAngle(t / width_, height_, width_);
-  }
-  const double least = options.least_flux * flux;
-  const double radius = options.peak_radius_degrees * kPi / 180.0;
-  const double spot_cosine = std::cos(radius);
-  const double reach = std::min(kSurroundings * radius, kPi);
-  const double reach_cosine = std::cos(reach);
-  std::vector<char> done(texels, 0);
-  const int tries = kTriesEach * options.most_peaks;
-  for (int k = 0; k < tries && num_peaks() < options.most_peaks; ++k) {
+
+  // The brightest texel; -1: none is left.
+  int Peak() const {
     int peak = -1;
-    for (int t = 0; t < texels; ++t) {
+    for (int t = 0; t < static_cast<int>(level.size()); ++t) {
       if (done[t] == 0 && (peak < 0 || level[t] > level[peak])) peak = t;
     }
-    if (peak < 0 || !(level[peak] > options.contrast * flux / (4.0 * kPi))) {
+    return peak;
+  }
+};
+
+void GaussianLight::FindSpots(const Image& map,
+                              const GaussianFitOptions& options) {
+  SpotSearch search;
+  search.radius = options.peak_radius_degrees * kPi / 180.0;
+  search.reach = std::min(kSurroundings * search.radius, kPi);
+  const auto texels = static_cast<int>(map.num_pixels());
+  search.done.resize(texels, 0);
+  for (int t = 0; t < texels; ++t) {
+    search.level.push_back(MeanOfChannels(&map.rgb[size_t{3} * t]));
+    search.flux += search.level[t] * Area(t);
+  }
+  const double least = options.least_flux * search.flux;
+  const int tries = kTriesEach * options.most_peaks;
+  for (int k = 0; k < tries && num_peaks() < options.most_peaks; ++k) {
+    const int peak = search.Peak();
+    if (peak < 0 ||
+        !(search.level[peak] > options.contrast * search.flux / (4.0 * kPi))) {
       return;
     }
-    const int row = peak / width_;
-    const Eigen::Vector3d centre =
-        MapDirection(row + 0.5, peak % width_ + 0.5, height_, width_);
-    const int near_rows = static_cast<int>(reach / kPi * height_) + 1;
-    std::vector<int> inside;
-    double around = 0.0, around_area = 0.0;
-    for (int r = std::max(row - near_rows, 0);
-         r <= std::min(row + near_rows, height_ - 1); ++r) {
-      const double area = TexelSolidAngle(r, height_, width_);
-      for (int c = 0; c < width_; ++c) {
-        const double cosine =
-            centre.dot(MapDirection(r + 0.5, c + 0.5, height_, width_));
-        const int t = r * width_ + c;
-        if (t == peak || cosine >= spot_cosine) {
-          if (done[t] == 0) inside.push_back(t);
-        } else if (cosine >= reach_cosine) {
-          around += area * level[t];
-          around_area += area;
-        }
-      }
-    }
-    const double background = around_area > 0.0 ? around / around_area : 0.0;
-    std::vector<SpotTexel> spot;
-    double spot_flux = 0.0;
-    for (const int t : inside) {
-      if (!(level[t] > kAbove * background)) continue;
-      spot.push_back({t, count(), 1.0 - background / level[t]});
-      spot_flux += spot.back().share * level[t] *
-                   TexelSolidAngle(t / width_, height_, width_);
-    }
-    done[peak] = 1;
-    if (spot_flux < least || spot.empty()) continue;
-    AddSpot(map, spot);
-    flux -= spot_flux;
+    double background = 0.0;
+    const std::vector<SpotTexel> spot = SpotAround(search, peak, &background);
+    double flux = 0.0;
     for (const SpotTexel& s : spot) {
-      done[s.texel] = 1;
-      level[s.texel] = background;
+      flux += s.share * search.level[s.texel] * Area(s.texel);
+    }
+    search.done[peak] = 1;
+    if (flux < least || spot.empty()) continue;
+    AddSpot(map, spot);
+    search.flux -= flux;
+    for (const SpotTexel& s : spot) {
+      search.done[s.texel] = 1;
+      search.level[s.texel] = background;
     }
   }
+}
+
+double GaussianLight::Area(int texel) const {
+  return TexelSolidAngle(texel / width_, height_, width_);
+}
+
+std::vector<GaussianLight::SpotTexel> GaussianLight::SpotAround(
+    const SpotSearch& search, int peak, double* background) const {
+  const double spot_cosine = std::cos(search.radius);
+  const double reach_cosine = std::cos(search.reach);
+  const int row = peak / width_;
+  const Eigen::Vector3d centre =
+      MapDirection(row + 0.5, peak % width_ + 0.5, height_, width_);
+  const int near_rows = static_cast<int>(search.reach / kPi * height_) + 1;
+  std::vector<int> inside;
+  double around = 0.0, around_area = 0.0;
+  for (int r = std::max(row - near_rows, 0);
+       r <= std::min(row + near_rows, height_ - 1); ++r) {
+    const double area = TexelSolidAngle(r, height_, width_);
+    for (int c = 0; c < width_; ++c) {
+      const double cosine =
+          centre.dot(MapDirection(r + 0.5, c + 0.5, height_, width_));
+      const int t = r * width_ + c;
+      if (t == peak || cosine >= spot_cosine) {
+        if (search.done[t] == 0) inside.push_back(t);
+      } else if (cosine >= reach_cosine) {
+        around += area * search.level[t];
+        around_area += area;
+      }
+    }
+  }
+  *background = around_area > 0.0 ? around / around_area : 0.0;
+  std::vector<SpotTexel> spot;
+  for (const int t : inside) {
+    if (!(search.level[t] > kAbove * *background)) continue;
+    spot.push_back({t, count(), 1.0 - *background / search.level[t]});
+  }
+  return spot;
 }
 
 void GaussianLight::AddSpot(const Image& map,

@@ -18,13 +18,8 @@ struct SphericalGaussian {
 // Amplitudes of red, green and blue; one row a Gaussian.
 using GaussianColours = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-// Of amplitude 1 over the sphere, sr.
+// The integral over the sphere of a Gaussian of amplitude 1, sr.
 double GaussianIntegral(double sharpness);
-
-// L at a unit direction.
-Eigen::Array3d EvaluateGaussians(const std::vector<SphericalGaussian>& lobes,
-                                 const GaussianColours& amplitudes,
-                                 const Eigen::Vector3d& direction);
 
 struct GaussianFitOptions {
   // Equal Gaussians on axes evenly spread over the sphere, beside a constant.
@@ -93,7 +88,13 @@ class GaussianLight {
 
   static std::vector<Overlap> Overlaps(const std::vector<double>& cells,
                                        const std::vector<double>& lines);
+  struct SpotSearch;
   void FindSpots(const Image& map, const GaussianFitOptions& options);
+  // The texels around a peak that are brighter than what surrounds them, its
+  // mean radiance.
+  std::vector<SpotTexel> SpotAround(const SpotSearch& search, int peak,
+                                    double* background) const;
+  double Area(int texel) const;  // sr
   // Adds the lobe of texels that take `share` of their radiance.
   void AddSpot(const Image& map, const std::vector<SpotTexel>& texels);
   void PrepareFit(double ridge);

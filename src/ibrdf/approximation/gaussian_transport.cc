@@ -44,47 +44,54 @@ GaussianTransport::GaussianTransport(std::vector<SphericalGaussian> lobes,
   CHECK_GE(options.view_angles, 4);
   CHECK_GE(options.broad, 8.0);
   for (int k = 0; k < num_lobes(); ++k) {
-    const SphericalGaussian& lobe = lobes_[k];
-    CHECK(std::isfinite(lobe.sharpness) && lobe.sharpness >= 0.0);
-    if (lobe.sharpness <= options.broad) {
-      int level = 0;
-      while (level < num_tables() &&
-             levels_[level].sharpness != lobe.sharpness) {
-        ++level;
-      }
-      if (level == num_tables()) {
-        const int rows = std::min(
-            static_cast<int>(
-                std::ceil(options.axis_steps *
-                          std::sqrt(kCosineSharpness + lobe.sharpness))),
-            kMostRows);
-        levels_.push_back({lobe.sharpness, rows, 2 * rows});
-      }
+    CHECK(std::isfinite(lobes_[k].sharpness) && lobes_[k].sharpness >= 0.0);
+    if (lobes_[k].sharpness <= options.broad) {
       broad_.push_back(k);
-      level_of_.push_back(level);
-      continue;
-    }
-    const Eigen::Vector3d t = lobe.axis.unitOrthogonal();
-    const Eigen::Vector3d b = lobe.axis.cross(t);
-    for (int ring = 0; ring < 2; ++ring) {
-      const double cosine =
-          std::max(1.0 - kLaguerreNode[ring] / lobe.sharpness, -1.0);
-      const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
-      for (int spoke = 0; spoke < kSpokes; ++spoke) {
-        const double phi = 2.0 * kPi * (spoke + 0.5 * ring) / kSpokes;
-        rays_.push_back(
-            {cosine * lobe.axis +
-                 sine * (std::cos(phi) * t + std::sin(phi) * b),
-             kLaguerreWeight[ring] * GaussianIntegral(lobe.sharpness) / kSpokes,
-             k});
-      }
+      level_of_.push_back(LevelFor(lobes_[k].sharpness));
+    } else {
+      AddRays(k);
     }
   }
+  if (!levels_.empty()) SampleViews();
+}
 
-  if (levels_.empty()) return;
-  const int far_rows = options.quadrature.far_width / 2;
+int GaussianTransport::LevelFor(double sharpness) {
+  int level = 0;
+  while (level < num_tables() && levels_[level].sharpness != sharpness) {
+    ++level;
+  }
+  if (level == num_tables()) {
+    const int rows = std::min(
+        static_cast<int>(std::ceil(options_.axis_steps *
+                                   std::sqrt(kCosineSharpness + sharpness))),
+        kMostRows);
+    levels_.push_back({sharpness, rows, 2 * rows});
+  }
+  return level;
+}
+
+void GaussianTransport::AddRays(int lobe) {
+  const Eigen::Vector3d& axis = lobes_[lobe].axis;
+  const double sharpness = lobes_[lobe].sharpness;
+  const Eigen::Vector3d t = axis.unitOrthogonal();
+  const Eigen::Vector3d b = axis.cross(t);
+  for (int ring = 0; ring < 2; ++ring) {
+    const double cosine = std::max(1.0 - kLaguerreNode[ring] / sharpness, -1.0);
+    const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+    for (int spoke = 0; spoke < kSpokes; ++spoke) {
+      const double phi = 2.0 * kPi * (spoke + 0.5 * ring) / kSpokes;
+      rays_.push_back(
+          {cosine * axis + sine * (std::cos(phi) * t + std::sin(phi) * b),
+           kLaguerreWeight[ring] * GaussianIntegral(sharpness) / kSpokes,
+           lobe});
+    }
+  }
+}
+
+void GaussianTransport::SampleViews() {
+  const int far_rows = options_.quadrature.far_width / 2;
   const std::vector<FarCell> cells =
-      MapCells(far_rows, options.quadrature.far_width, 1);
+      MapCells(far_rows, options_.quadrature.far_width, 1);
   // The map's pole is the normal, so that the horizon is an edge of cells.
   const auto local = [](const Eigen::Vector3d& w) {
     return Eigen::Vector3f(w.cast<float>()[2], w.cast<float>()[0],
@@ -92,16 +99,16 @@ GaussianTransport::GaussianTransport(std::vector<SphericalGaussian> lobes,
   };
   // None below it count.
   const size_t above =
-      size_t{1} * ((far_rows + 1) / 2) * options.quadrature.far_width;
+      size_t{1} * ((far_rows + 1) / 2) * options_.quadrature.far_width;
   far_directions_.resize(3, static_cast<Eigen::Index>(above));
   for (size_t k = 0; k < above; ++k) {
     far_directions_.col(static_cast<Eigen::Index>(k)) =
         local(cells[k].direction);
   }
-  const PointQuadrature quadrature(cells, options.quadrature);
-  views_.resize(options.view_angles);
-  const double step = MaxViewAngle() / (options.view_angles - 1);
-  ParallelFor(options.view_angles, options.num_threads, [&](int64_t v, int) {
+  const PointQuadrature quadrature(cells, options_.quadrature);
+  views_.resize(options_.view_angles);
+  const double step = MaxViewAngle() / (options_.view_angles - 1);
+  ParallelFor(options_.view_angles, options_.num_threads, [&](int64_t v, int) {
     const double angle = static_cast<double>(v) * step;
     PointSamples samples;
     quadrature.Sample(Eigen::Vector3d::UnitY(),
@@ -304,112 +311,136 @@ void GaussianTransport::Render(const std::vector<ShadingPoint>& points,
   });
 }
 
+// The gradient in what Render reads: entries of the tables and, by nodes of
+// the grid, what sharp lobes reflect.
+struct GaussianTransport::GradientSums {
+  std::vector<std::vector<double>> by_entry;  // by level, as Tables
+  std::vector<double> by_node;                // [3, nodes]
+
+  void Add(const GradientSums& other) {
+    for (size_t k = 0; k < by_node.size(); ++k) by_node[k] += other.by_node[k];
+    for (size_t l = 0; l < by_entry.size(); ++l) {
+      for (size_t k = 0; k < by_entry[l].size(); ++k) {
+        by_entry[l][k] += other.by_entry[l][k];
+      }
+    }
+  }
+};
+
 void GaussianTransport::GridGradient(const std::vector<ShadingPoint>& points,
                                      const GaussianColours& amplitudes,
                                      const double* adjoint,
                                      float* gradient) const {
   CHECK_EQ(amplitudes.rows(), num_lobes());
-  const size_t nodes = options_.grid.num_nodes();
-  // Of each chunk: by table entry, and by node what sharp lobes add.
-  std::vector<std::vector<std::vector<double>>> by_entry(kChunks);
-  std::vector<std::vector<double>> by_node(kChunks);
-  const auto spread = [&](double theta_h, double theta_d, double phi_d,
-                          const Eigen::Vector3d& share,
-                          std::vector<double>* sums) {
-    const BrdfGridTaps taps =
-        GridTaps(options_.grid, ToUnitCube(theta_h, theta_d, phi_d));
-    for (int c = 0; c < 3; ++c) {
-      for (int j = 0; j < 8; ++j) {
-        (*sums)[c * nodes + taps.node[j]] += taps.weight[j] * share[c];
-      }
-    }
-  };
+  std::vector<GradientSums> partial(kChunks);
   ParallelFor(kChunks, options_.num_threads, [&](int64_t chunk, int) {
+    GradientSums& sums = partial[chunk];
     for (const Level& level : levels_) {
-      by_entry[chunk].emplace_back(TableSize(level), 0.0);
+      sums.by_entry.emplace_back(TableSize(level), 0.0);
     }
-    by_node[chunk].assign(3 * nodes, 0.0);
+    sums.by_node.assign(size_t{3} * options_.grid.num_nodes(), 0.0);
     const int64_t end = ChunkBegin(chunk + 1, points.size());
     for (int64_t i = ChunkBegin(chunk, points.size()); i < end; ++i) {
-      const Frame frame = FrameOf(points[i]);
-      const Eigen::Map<const Eigen::Vector3d> a(adjoint + 3 * i);
-      for (size_t k = 0; k < broad_.size(); ++k) {
-        Taps taps;
-        if (!TapsOf(frame, static_cast<int>(k), &taps)) continue;
-        const Eigen::Vector3d share =
-            amplitudes.row(broad_[k]).transpose().cwiseProduct(a);
-        double* const table = by_entry[chunk][level_of_[k]].data();
-        for (int j = 0; j < 4; ++j) {
-          for (int v = 0; v < 4; ++v) {
-            const double w = double{taps.weight[j]} * frame.view_weight[v];
-            for (int c = 0; c < 3; ++c) {
-              table[taps.offset[j] + 4 * v + c] += w * share[c];
-            }
-          }
-        }
-      }
-      ForRays(frame, [&](double theta_h, double theta_d, double phi_d,
-                         double weight, int lobe) {
-        spread(theta_h, theta_d, phi_d,
-               weight * amplitudes.row(lobe).transpose().cwiseProduct(a),
-               &by_node[chunk]);
-      });
+      AddPointGradient(FrameOf(points[i]), amplitudes, adjoint + 3 * i, &sums);
     }
   });
-  std::vector<double>& sums = by_node[0];
   for (int64_t chunk = 1; chunk < kChunks; ++chunk) {
-    for (size_t k = 0; k < sums.size(); ++k) sums[k] += by_node[chunk][k];
-    for (size_t l = 0; l < levels_.size(); ++l) {
-      for (size_t k = 0; k < by_entry[0][l].size(); ++k) {
-        by_entry[0][l][k] += by_entry[chunk][l][k];
+    partial[0].Add(partial[chunk]);
+  }
+  std::vector<double>& by_node = partial[0].by_node;
+  AddTableGradient(partial[0].by_entry, &by_node);
+  for (size_t k = 0; k < by_node.size(); ++k) {
+    gradient[k] = static_cast<float>(by_node[k]);
+  }
+}
+
+void GaussianTransport::AddPointGradient(const Frame& frame,
+                                         const GaussianColours& amplitudes,
+                                         const double* adjoint,
+                                         GradientSums* sums) const {
+  const Eigen::Map<const Eigen::Vector3d> a(adjoint);
+  for (size_t k = 0; k < broad_.size(); ++k) {
+    Taps taps;
+    if (!TapsOf(frame, static_cast<int>(k), &taps)) continue;
+    const Eigen::Vector3d share =
+        amplitudes.row(broad_[k]).transpose().cwiseProduct(a);
+    double* const table = sums->by_entry[level_of_[k]].data();
+    for (int j = 0; j < 4; ++j) {
+      for (int v = 0; v < 4; ++v) {
+        const double w = double{taps.weight[j]} * frame.view_weight[v];
+        for (int c = 0; c < 3; ++c) {
+          table[taps.offset[j] + 4 * v + c] += w * share[c];
+        }
       }
     }
   }
-
-  // From the tables to the quadrature's directions, a view angle at a time.
-  const int views = options_.view_angles;
-  std::vector<Eigen::MatrixX3d> near(views), far(views);
-  ParallelFor(views, options_.num_threads, [&](int64_t v, int) {
-    const View& view = views_[v];
-    near[v].setZero(static_cast<Eigen::Index>(view.near.size()), 3);
-    far[v].setZero(far_directions_.cols(), 3);
-    for (size_t l = 0; l < levels_.size(); ++l) {
-      const Level& level = levels_[l];
-      for (int r = 0; r <= level.rows; ++r) {
-        Eigen::MatrixX3d row(level.columns, 3);
-        for (int c = 0; c < level.columns; ++c) {
-          row.row(c) = Eigen::Map<const Eigen::RowVector3d>(
-              &by_entry[0][l]
-                       [size_t{4} *
-                        ((size_t{1} * r * level.columns + c) * views + v)]);
-        }
-        if (row.isZero(0.0)) continue;
-        near[v].noalias() += RowOfGaussians(level, r, view.near_directions)
-                                 .transpose()
-                                 .cast<double>() *
-                             row;
-        far[v].noalias() += RowOfGaussians(level, r, far_directions_)
-                                .transpose()
-                                .cast<double>() *
-                            row;
-      }
-    }
+  ForRays(frame, [&](double theta_h, double theta_d, double phi_d,
+                     double weight, int lobe) {
+    AddToNodes({theta_h, theta_d, phi_d, weight},
+               amplitudes.row(lobe).transpose().cwiseProduct(a),
+               &sums->by_node);
   });
+}
+
+void GaussianTransport::AddToNodes(const Sample& sample,
+                                   const Eigen::Vector3d& share,
+                                   std::vector<double>* by_node) const {
+  const size_t nodes = options_.grid.num_nodes();
+  const BrdfGridTaps taps = GridTaps(
+      options_.grid, ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
+  for (int c = 0; c < 3; ++c) {
+    for (int j = 0; j < 8; ++j) {
+      (*by_node)[c * nodes + taps.node[j]] +=
+          taps.weight[j] * (sample.weight * share[c]);
+    }
+  }
+}
+
+void GaussianTransport::AddTableGradient(
+    const std::vector<std::vector<double>>& by_entry,
+    std::vector<double>* by_node) const {
+  std::vector<Eigen::MatrixX3d> near(views_.size()), far(views_.size());
+  ParallelFor(static_cast<int64_t>(views_.size()), options_.num_threads,
+              [&](int64_t v, int) {
+                ToDirections(by_entry, static_cast<int>(v), &near[v], &far[v]);
+              });
   for (size_t v = 0; v < views_.size(); ++v) {
     const View& view = views_[v];
-    const auto add = [&](const Sample& s, const Eigen::RowVector3d& share) {
-      spread(s.theta_h, s.theta_d, s.phi_d, s.weight * share.transpose(),
-             &sums);
-    };
     for (size_t k = 0; k < view.near.size(); ++k) {
-      add(view.near[k], near[v].row(static_cast<Eigen::Index>(k)));
+      AddToNodes(view.near[k], near[v].row(static_cast<Eigen::Index>(k)),
+                 by_node);
     }
     for (size_t k = 0; k < view.far.size(); ++k) {
-      add(view.far[k], far[v].row(view.cells[k]));
+      AddToNodes(view.far[k], far[v].row(view.cells[k]), by_node);
     }
   }
-  for (size_t k = 0; k < sums.size(); ++k) {
-    gradient[k] = static_cast<float>(sums[k]);
+}
+
+void GaussianTransport::ToDirections(
+    const std::vector<std::vector<double>>& by_entry, int v,
+    Eigen::MatrixX3d* near, Eigen::MatrixX3d* far) const {
+  const View& view = views_[v];
+  near->setZero(static_cast<Eigen::Index>(view.near.size()), 3);
+  far->setZero(far_directions_.cols(), 3);
+  for (size_t l = 0; l < levels_.size(); ++l) {
+    const Level& level = levels_[l];
+    for (int r = 0; r <= level.rows; ++r) {
+      Eigen::MatrixX3d row(level.columns, 3);
+      for (int c = 0; c < level.columns; ++c) {
+        row.row(c) = Eigen::Map<const Eigen::RowVector3d>(
+            &by_entry[l][size_t{4} * ((size_t{1} * r * level.columns + c) *
+                                          options_.view_angles +
+                                      v)]);
+      }
+      if (row.isZero(0.0)) continue;
+      near->noalias() += RowOfGaussians(level, r, view.near_directions)
+                             .transpose()
+                             .cast<double>() *
+                         row;
+      far->noalias() +=
+          RowOfGaussians(level, r, far_directions_).transpose().cast<double>() *
+          row;
+    }
   }
 }
 

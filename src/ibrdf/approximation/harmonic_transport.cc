@@ -26,60 +26,70 @@ HarmonicTransport::HarmonicTransport(const std::vector<ShadingPoint>& points,
              options.quadrature.far_width),
       rotation_(options.order) {
   CHECK_GE(options.view_angles, 4);
-  const double step = MaxViewAngle() / (options.view_angles - 1);
-  Eigen::Vector3f pole = Eigen::Vector3f::Zero();
+  Eigen::Vector3f last_wo = Eigen::Vector3f::Zero();
   for (const ShadingPoint& p : points) {
-    const Eigen::Vector3d n = p.normal.cast<double>().normalized();
-    const Eigen::Vector3d wo = p.wo.cast<double>().normalized();
-    if (points_.empty() || p.wo != pole) {
-      pole = p.wo;
-      poles_.push_back(HarmonicRotation::PoleAt(wo));
-    }
-    Point point{};
-    point.pole = static_cast<int>(poles_.size()) - 1;
-    Eigen::Vector3d t, b;
-    ViewFrame(n, wo, &t, &b);
-    const double sine = std::max(wo.dot(t), 0.0), cosine = n.dot(wo);
-    // From wo towards n, at right angles to wo.
-    point.turn =
-        HarmonicRotation::AngleOf(poles_.back(), sine * n - cosine * t);
-    const double at = std::min(std::atan2(sine, cosine), MaxViewAngle()) / step;
-    point.first =
-        std::clamp(static_cast<int>(at) - 1, 0, options.view_angles - 4);
-    CubicWeights(at - point.first, point.weight);
-    points_.push_back(point);
+    AddPoint(p.normal.cast<double>().normalized(),
+             p.wo.cast<double>().normalized(),
+             points_.empty() || p.wo != last_wo);
+    last_wo = p.wo;
   }
-
   const PointQuadrature quadrature(MapCells(options.quadrature.far_width / 2,
                                             options.quadrature.far_width, 1),
                                    options.quadrature);
   pairs_.resize(options.view_angles);
   ParallelFor(options.view_angles, options.num_threads, [&](int64_t k, int) {
-    // The point's frame is the map's: the view along +y.
-    const double angle = static_cast<double>(k) * step;
-    const Eigen::Vector3d n(0.0, std::cos(angle), std::sin(angle));
-    PointSamples samples;
-    quadrature.Sample(n, Eigen::Vector3d::UnitY(), &samples);
-    const auto add = [&](const auto& sample, int cell,
-                         const Eigen::Vector3d& direction) {
-      Pair pair{};
-      const BrdfGridTaps taps =
-          GridTaps(options_.grid,
-                   ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
-      for (int corner = 0; corner < 8; ++corner) {
-        pair.node[corner] = taps.node[corner];
-        pair.weight[corner] = static_cast<float>(taps.weight[corner]);
-      }
-      pair.cell = cell;
-      pair.share = sample.weight;
-      pair.direction = direction;
-      pairs_[k].push_back(pair);
-    };
-    for (const NearSample& s : samples.near) add(s, -1, s.wi);
-    for (const FarSample& s : samples.far) {
-      add(s, s.cell, Eigen::Vector3d::Zero());
-    }
+    AddPairs(quadrature, static_cast<double>(k) * ViewStep(), &pairs_[k]);
   });
+}
+
+double HarmonicTransport::ViewStep() const {
+  return MaxViewAngle() / (options_.view_angles - 1);
+}
+
+void HarmonicTransport::AddPoint(const Eigen::Vector3d& n,
+                                 const Eigen::Vector3d& wo, bool is_new_pole) {
+  if (is_new_pole) poles_.push_back(HarmonicRotation::PoleAt(wo));
+  Point point{};
+  point.pole = static_cast<int>(poles_.size()) - 1;
+  Eigen::Vector3d t, b;
+  ViewFrame(n, wo, &t, &b);
+  const double sine = std::max(wo.dot(t), 0.0), cosine = n.dot(wo);
+  // From wo towards n, at right angles to wo.
+  point.turn = HarmonicRotation::AngleOf(poles_.back(), sine * n - cosine * t);
+  const double at =
+      std::min(std::atan2(sine, cosine), MaxViewAngle()) / ViewStep();
+  point.first =
+      std::clamp(static_cast<int>(at) - 1, 0, options_.view_angles - 4);
+  CubicWeights(at - point.first, point.weight);
+  points_.push_back(point);
+}
+
+void HarmonicTransport::AddPairs(const PointQuadrature& quadrature,
+                                 double view_angle,
+                                 std::vector<Pair>* pairs) const {
+  // The point's frame is the map's: the view along +y.
+  const Eigen::Vector3d n(0.0, std::cos(view_angle), std::sin(view_angle));
+  PointSamples samples;
+  quadrature.Sample(n, Eigen::Vector3d::UnitY(), &samples);
+  const auto add = [&](const auto& sample, int cell,
+                       const Eigen::Vector3d& direction) {
+    Pair pair{};
+    const BrdfGridTaps taps =
+        GridTaps(options_.grid,
+                 ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
+    for (int corner = 0; corner < 8; ++corner) {
+      pair.node[corner] = taps.node[corner];
+      pair.weight[corner] = static_cast<float>(taps.weight[corner]);
+    }
+    pair.cell = cell;
+    pair.share = sample.weight;
+    pair.direction = direction;
+    pairs->push_back(pair);
+  };
+  for (const NearSample& s : samples.near) add(s, -1, s.wi);
+  for (const FarSample& s : samples.far) {
+    add(s, s.cell, Eigen::Vector3d::Zero());
+  }
 }
 
 void HarmonicTransport::PairHarmonics(const Pair& pair, double* Y) const {
@@ -92,10 +102,10 @@ void HarmonicTransport::PairHarmonics(const Pair& pair, double* Y) const {
   for (int k = 0; k < basis_.count(); ++k) Y[k] *= pair.share;
 }
 
-std::vector<HarmonicColours> HarmonicTransport::Slices(
+HarmonicTransport::Slices HarmonicTransport::SlicesOf(
     const BrdfGrid& grid) const {
   CHECK(grid.shape == options_.grid);
-  std::vector<HarmonicColours> slices(pairs_.size());
+  Slices slices(pairs_.size());
   ParallelFor(static_cast<int64_t>(pairs_.size()), options_.num_threads,
               [&](int64_t k, int) {
                 slices[k] = HarmonicColours::Zero(basis_.count(), 3);
@@ -115,8 +125,8 @@ std::vector<HarmonicColours> HarmonicTransport::Slices(
   return slices;
 }
 
-HarmonicColours HarmonicTransport::SliceAt(
-    const std::vector<HarmonicColours>& slices, const Point& point) const {
+HarmonicColours HarmonicTransport::SliceAt(const Slices& slices,
+                                           const Point& point) const {
   HarmonicColours S = point.weight[0] * slices[point.first];
   for (int j = 1; j < 4; ++j) S += point.weight[j] * slices[point.first + j];
   return S;
@@ -144,7 +154,24 @@ void HarmonicTransport::ForLight(const float* map, const Use& use) const {
 
 void HarmonicTransport::Render(const BrdfGrid& grid, const float* map,
                                double* L_o) const {
-  const std::vector<HarmonicColours> slices = Slices(grid);
+  RenderSlices(SlicesOf(grid), map, L_o);
+}
+
+HarmonicOperator HarmonicTransport::ByLight(const BrdfGrid& grid) const {
+  return HarmonicOperator(*this, grid);
+}
+
+void HarmonicOperator::ApplyLinear(const float* map, double* L_o) const {
+  transport_.RenderSlices(slices_, map, L_o);
+}
+
+void HarmonicOperator::ApplyTranspose(const double* adjoint,
+                                      float* gradient) const {
+  transport_.MapGradient(slices_, adjoint, gradient);
+}
+
+void HarmonicTransport::RenderSlices(const Slices& slices, const float* map,
+                                     double* L_o) const {
   ForLight(map, [&](int64_t, int64_t i, const HarmonicColours& light) {
     const Eigen::RowVector3d radiance =
         SliceAt(slices, points_[i]).cwiseProduct(light).colwise().sum();
@@ -197,9 +224,8 @@ void HarmonicTransport::GridGradient(const float* map, const double* adjoint,
   }
 }
 
-void HarmonicTransport::MapGradient(const BrdfGrid& grid, const double* adjoint,
+void HarmonicTransport::MapGradient(const Slices& slices, const double* adjoint,
                                     float* gradient) const {
-  const std::vector<HarmonicColours> slices = Slices(grid);
   const HarmonicColours zero = HarmonicColours::Zero(basis_.count(), 3);
   std::vector<HarmonicColours> partial(kChunks, zero);
   ParallelFor(kChunks, options_.num_threads, [&](int64_t chunk, int) {
@@ -233,7 +259,7 @@ std::vector<double> HarmonicTransport::PredictLogErrors(
   double mean = 0.0;
   for (const double e : L_o) mean += e / static_cast<double>(L_o.size());
   if (!(mean > 0.0)) return errors;
-  const std::vector<HarmonicColours> slices = Slices(grid);
+  const Slices slices = SlicesOf(grid);
   const HarmonicColours light = map_.Project(map);
   for (size_t i = 0; i < points_.size(); ++i) {
     const HarmonicColours S = SliceAt(slices, points_[i]);

@@ -50,8 +50,13 @@ struct Cell {
 class NormalGrid {
  public:
   NormalGrid(const std::vector<ShadingPoint>& points,
-             const PointRenderer& render, const ReflectanceMapOptions& options)
-      : points_(points), render_(render), options_(options) {
+             const RadianceRenderer& renderer,
+             const RadianceRenderer::Progress& progress,
+             const ReflectanceMapOptions& options)
+      : points_(points),
+        renderer_(renderer),
+        progress_(progress),
+        options_(options) {
     wo_ = points[0].wo.cast<double>().normalized();
     t_ = wo_.unitOrthogonal();
     b_ = wo_.cross(t_);
@@ -59,9 +64,37 @@ class NormalGrid {
     for (const ShadingPoint& p : points) places_.push_back(PlaceOf(p));
   }
 
-  StatusOr<ReflectanceMapReport> Render(double* L_o);
+  // False: the renderer stopped.
+  bool Render(double* L_o);
+  const ReflectanceMapReport& report() const { return report_; }
 
  private:
+  // Points of the image that are rendered in any case: the error is measured
+  // there.
+  struct HeldOut {
+    std::vector<int> index;     // into points_
+    std::vector<double> truth;  // [index, 3]
+  };
+
+  // The steps of Render, in order; those that may stop return false.
+  bool RenderHeldOut(HeldOut* held_out);
+  // Cuts the visible normals for the first time, where that may pay, and each
+  // cell into its parts.
+  bool MakeCells(size_t num_held_out);
+  // Cuts cells until the error at held-out points, of those whose cells meet
+  // the tolerance, is within the requested one. Sets the tolerance; 0: it was
+  // never within, and nothing may be interpolated.
+  bool FindTolerance(const HeldOut& held_out, double* tolerance);
+  void MeasureError(const HeldOut& held_out, double tolerance);
+  void InterpolateCells(double tolerance, double* L_o);
+  bool RenderRest(double* L_o);
+  bool IsGood(const Cell& cell, double tolerance) const {
+    return cell.leaf && !(cell.error > tolerance);
+  }
+  bool RenderPoints(const std::vector<ShadingPoint>& points, double* L_o) {
+    return renderer_.Render(points, progress_, L_o);
+  }
+
   Place PlaceOf(const ShadingPoint& point) const {
     const Eigen::Vector3d n = point.normal.cast<double>();
     const double x = n.dot(t_), y = n.dot(b_);
@@ -97,7 +130,7 @@ class NormalGrid {
     if (waiting_.empty()) return true;
     const size_t first = radiance_.size();
     radiance_.resize(first + 3 * waiting_.size());
-    const bool go_on = render_(waiting_, &radiance_[first]);
+    const bool go_on = RenderPoints(waiting_, &radiance_[first]);
     waiting_.clear();
     return go_on;
   }
@@ -135,7 +168,8 @@ class NormalGrid {
   bool Refine(double tolerance);
 
   const std::vector<ShadingPoint>& points_;
-  const PointRenderer& render_;
+  const RadianceRenderer& renderer_;
+  const RadianceRenderer::Progress& progress_;
   const ReflectanceMapOptions& options_;
   Eigen::Vector3d wo_, t_, b_;
   std::vector<Place> places_;
@@ -144,6 +178,8 @@ class NormalGrid {
   std::vector<double> radiance_;  // [node, 3]
   Eigen::Array3d dark_ = Eigen::Array3d::Ones();
   std::vector<Cell> cells_;
+  std::vector<char> done_;  // [points]
+  ReflectanceMapReport report_;
 };
 
 void NormalGrid::FindDark() {
@@ -247,114 +283,150 @@ bool NormalGrid::Refine(double tolerance) {
   }
 }
 
-StatusOr<ReflectanceMapReport> NormalGrid::Render(double* L_o) {
-  const Status interrupted(StatusCode::kInterrupted, "interrupted");
-  ReflectanceMapReport report;
+bool NormalGrid::RenderHeldOut(HeldOut* held_out) {
   const size_t count = points_.size();
   const size_t tests =
       std::min(count, static_cast<size_t>(std::max(options_.held_out, 1)));
-  // Rendered in any case.
-  std::vector<int> given;
-  std::vector<ShadingPoint> given_points;
+  std::vector<ShadingPoint> points;
   for (size_t k = 0; k < tests; ++k) {
-    given.push_back(static_cast<int>((2 * k + 1) * count / (2 * tests)));
-    given_points.push_back(points_[given.back()]);
+    held_out->index.push_back(
+        static_cast<int>((2 * k + 1) * count / (2 * tests)));
+    points.push_back(points_[held_out->index.back()]);
   }
-  std::vector<double> truth(3 * tests);
-  if (!render_(given_points, truth.data())) return interrupted;
-  report.rendered = static_cast<int>(tests);
+  held_out->truth.resize(3 * tests);
+  report_.rendered = static_cast<int>(tests);
+  return RenderPoints(points, held_out->truth.data());
+}
 
+bool NormalGrid::MakeCells(size_t num_held_out) {
+  if (points_.size() <
+      num_held_out + size_t{kRows} * kColumns * kWorthCutting) {
+    return true;
+  }
   std::vector<std::vector<int>> first(size_t{kRows} * kColumns);
-  for (size_t i = 0; i < count; ++i) {
+  for (size_t i = 0; i < points_.size(); ++i) {
     const int r =
         std::min(static_cast<int>(places_[i].row / kCellSteps), kRows - 1);
     const int c = std::min(static_cast<int>(places_[i].column / kCellSteps),
                            kColumns - 1);
     first[size_t{kColumns} * r + c].push_back(static_cast<int>(i));
   }
-  const bool enough = count >= tests + size_t{kRows} * kColumns * kWorthCutting;
-  for (int k = 0; enough && k < kRows * kColumns; ++k) {
+  for (int k = 0; k < kRows * kColumns; ++k) {
     if (first[k].empty()) continue;
     // The error of a first cell is not known: as if a cut would just do.
     cells_.push_back({k / kColumns * kCellSteps, k % kColumns * kCellSteps, 0,
                       0.0, std::move(first[k])});
     AskForParts(cells_.back());
   }
-  if (!RenderNodes()) return interrupted;
+  if (!RenderNodes()) return false;
   FindDark();
   for (size_t k = 0, end = cells_.size(); k < end; ++k) {
     Cut(k, ErrorAtParts(cells_[k]));
   }
+  return true;
+}
 
-  // Of held-out points, by cell.
-  std::vector<int> test_of(count, -1);
-  for (size_t k = 0; k < tests; ++k) test_of[given[k]] = static_cast<int>(k);
-  double tolerance = kFirstTolerance * options_.log_error;
-  bool good = false;
-  for (int round = 0; enough && !good && round < kRounds; ++round) {
-    if (!Refine(tolerance)) return interrupted;
-    double sum = 0.0, squares = 0.0;
-    for (const Cell& cell : cells_) {
-      if (!cell.leaf || cell.error > tolerance) continue;
-      for (const int i : cell.points) {
-        if (test_of[i] < 0) continue;
-        const Eigen::Array3d guess = Interpolate(cell, places_[i]);
-        double error = 0.0;
-        for (int c = 0; c < 3; ++c) {
-          error += std::abs(guess[c] - Log(truth[3 * test_of[i] + c], c)) / 3.0;
-        }
-        sum += error;
-        squares += error * error;
-      }
+bool NormalGrid::FindTolerance(const HeldOut& held_out, double* tolerance) {
+  double tried = kFirstTolerance * options_.log_error;
+  for (int round = 0; !cells_.empty() && round < kRounds; ++round) {
+    if (!Refine(tried)) return false;
+    MeasureError(held_out, tried);
+    if (report_.log_error + 2.0 * report_.standard_error <=
+        options_.log_error) {
+      *tolerance = tried;
+      return true;
     }
-    const auto n = static_cast<double>(tests);
-    report.log_error = sum / n;
-    report.standard_error =
-        std::sqrt(std::max(squares / n - std::pow(sum / n, 2), 0.0) / n);
-    good = report.log_error + 2.0 * report.standard_error <= options_.log_error;
-    if (!good) tolerance /= 2.0;
+    tried /= 2.0;
   }
+  *tolerance = 0.0;
+  return true;
+}
 
-  std::vector<int> direct;
-  std::vector<char> done(count, 0);
-  for (size_t k = 0; k < tests; ++k) {
-    std::copy_n(&truth[3 * k], 3, &L_o[size_t{3} * given[k]]);
-    done[given[k]] = 1;
+void NormalGrid::MeasureError(const HeldOut& held_out, double tolerance) {
+  std::vector<int> test_of(points_.size(), -1);
+  for (size_t k = 0; k < held_out.index.size(); ++k) {
+    test_of[held_out.index[k]] = static_cast<int>(k);
   }
+  double sum = 0.0, squares = 0.0;
   for (const Cell& cell : cells_) {
-    if (!good || !cell.leaf || cell.error > tolerance) continue;
+    if (!IsGood(cell, tolerance)) continue;
     for (const int i : cell.points) {
-      if (done[i] != 0) continue;
+      if (test_of[i] < 0) continue;
+      const Eigen::Array3d guess = Interpolate(cell, places_[i]);
+      double error = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        const double truth = held_out.truth[3 * test_of[i] + c];
+        error += std::abs(guess[c] - Log(truth, c)) / 3.0;
+      }
+      sum += error;
+      squares += error * error;
+    }
+  }
+  const auto n = static_cast<double>(held_out.index.size());
+  report_.log_error = sum / n;
+  report_.standard_error =
+      std::sqrt(std::max(squares / n - std::pow(sum / n, 2), 0.0) / n);
+}
+
+void NormalGrid::InterpolateCells(double tolerance, double* L_o) {
+  for (const Cell& cell : cells_) {
+    if (tolerance == 0.0 || !IsGood(cell, tolerance)) continue;
+    for (const int i : cell.points) {
+      if (done_[i] != 0) continue;
       const Eigen::Array3d log_radiance = Interpolate(cell, places_[i]);
       for (int c = 0; c < 3; ++c) {
         L_o[size_t{3} * i + c] =
             std::max(std::exp(log_radiance[c]) - dark_[c], 0.0);
       }
-      done[i] = 1;
-      ++report.interpolated;
+      done_[i] = 1;
+      ++report_.interpolated;
     }
   }
-  if (report.interpolated == 0) report.log_error = report.standard_error = 0.0;
+  if (report_.interpolated == 0) {
+    report_.log_error = report_.standard_error = 0.0;
+  }
+}
+
+bool NormalGrid::RenderRest(double* L_o) {
+  std::vector<int> direct;
   std::vector<ShadingPoint> rest;
-  for (size_t i = 0; i < count; ++i) {
-    if (done[i] != 0) continue;
+  for (size_t i = 0; i < points_.size(); ++i) {
+    if (done_[i] != 0) continue;
     direct.push_back(static_cast<int>(i));
     rest.push_back(points_[i]);
   }
   std::vector<double> rendered(3 * rest.size());
-  if (!rest.empty() && !render_(rest, rendered.data())) return interrupted;
+  if (!rest.empty() && !RenderPoints(rest, rendered.data())) return false;
   for (size_t k = 0; k < rest.size(); ++k) {
     std::copy_n(&rendered[3 * k], 3, &L_o[size_t{3} * direct[k]]);
   }
-  report.nodes = static_cast<int>(nodes_.size());
-  report.rendered += report.nodes + static_cast<int>(rest.size());
-  return report;
+  report_.rendered += static_cast<int>(rest.size());
+  return true;
+}
+
+bool NormalGrid::Render(double* L_o) {
+  HeldOut held_out;
+  double tolerance = 0.0;
+  if (!RenderHeldOut(&held_out) || !MakeCells(held_out.index.size()) ||
+      !FindTolerance(held_out, &tolerance)) {
+    return false;
+  }
+  done_.assign(points_.size(), 0);
+  for (size_t k = 0; k < held_out.index.size(); ++k) {
+    std::copy_n(&held_out.truth[3 * k], 3, &L_o[size_t{3} * held_out.index[k]]);
+    done_[held_out.index[k]] = 1;
+  }
+  InterpolateCells(tolerance, L_o);
+  report_.nodes = static_cast<int>(nodes_.size());
+  report_.rendered += report_.nodes;
+  return RenderRest(L_o);
 }
 
 }  // namespace
 
 StatusOr<ReflectanceMapReport> RenderByNormal(
-    const std::vector<ShadingPoint>& points, const PointRenderer& render,
+    const std::vector<ShadingPoint>& points, const RadianceRenderer& renderer,
+    const RadianceRenderer::Progress& progress,
     const ReflectanceMapOptions& options, double* L_o) {
   CHECK_GT(options.log_error, 0.0);
   if (points.empty()) return ReflectanceMapReport();
@@ -365,7 +437,9 @@ StatusOr<ReflectanceMapReport> RenderByNormal(
                           "orthographic camera)");
     }
   }
-  return NormalGrid(points, render, options).Render(L_o);
+  NormalGrid grid(points, renderer, progress, options);
+  if (!grid.Render(L_o)) return Status(StatusCode::kInterrupted, "interrupted");
+  return grid.report();
 }
 
 }  // namespace ibrdf

@@ -9,18 +9,13 @@
 // lies beyond the last nodes, and around the view the cells are only narrower
 // than they need be.
 #pragma once
-#include <functional>
 #include <vector>
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/scene/scene.h"
+#include "ibrdf/transport/radiance_renderer.h"
 
 namespace ibrdf {
-
-// Radiance [points, 3], >= 0, of unshadowed points in any number and order: of
-// ReferenceRenderer, Transport or another. false: stop.
-using PointRenderer =
-    std::function<bool(const std::vector<ShadingPoint>& points, double* L_o)>;
 
 struct ReflectanceMapOptions {
   // Mean |log L_o - log L_o rendered| over the points and channels, in nats,
@@ -46,10 +41,12 @@ struct ReflectanceMapReport {
 };
 
 // L_o [points, 3]. Fails where two points differ in wo (a perspective camera),
-// and with kInterrupted where `render` stops. The caller knows that no point is
-// shadowed and that `render` depends on normal and wo alone.
+// and with kInterrupted where `progress`, which every call of the renderer is
+// given, stops it. The caller knows that no point is shadowed and that the
+// renderer's radiance depends on normal and wo alone.
 StatusOr<ReflectanceMapReport> RenderByNormal(
-    const std::vector<ShadingPoint>& points, const PointRenderer& render,
+    const std::vector<ShadingPoint>& points, const RadianceRenderer& renderer,
+    const RadianceRenderer::Progress& progress,
     const ReflectanceMapOptions& options, double* L_o);
 
 }  // namespace ibrdf

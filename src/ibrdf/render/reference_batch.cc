@@ -82,83 +82,123 @@ struct ReferenceBatch::Scratch {
   std::vector<VisibilityGrid::Bits> hidden;
 };
 
-ReferenceBatch::Light ReferenceBatch::GatherLight(
-    const std::vector<const Image*>& maps, int stride, int far_width) {
-  const int height = maps[0]->height, width = maps[0]->width;
-  const int block = FarBlockSize(height, width, far_width);
-  const std::vector<FarCell> texels = MapCells(height, width, 1);
-  const size_t count = maps.size();
-  const auto power = [&](size_t map, size_t texel) {
-    const float* const rgb = &maps[map]->rgb[3 * texel];
-    return Eigen::Array3d(Eigen::Array3d(rgb[0], rgb[1], rgb[2]) *
-                          texels[texel].solid_angle);
-  };
-  std::vector<double> bright(count, 0.0);  // a texel's least
-  for (size_t l = 0; l < count; ++l) {
-    for (size_t t = 0; t < texels.size(); ++t) {
-      bright[l] += power(l, t).abs().sum();
-    }
-    bright[l] *= kBrightTexel / static_cast<double>(texels.size());
+// Sorts the light of all maps into blocks and texels that stay apart.
+class ReferenceBatch::LightGatherer {
+ public:
+  LightGatherer(const std::vector<const Image*>& maps, int stride,
+                int far_width)
+      : maps_(maps),
+        height_(maps[0]->height),
+        width_(maps[0]->width),
+        stride_(stride),
+        block_(FarBlockSize(height_, width_, far_width)),
+        texels_(MapCells(height_, width_, 1)) {
+    light_.height = height_ / block_;
+    light_.width = width_ / block_;
+    light_.blocks = MapCells(height_, width_, block_);
+    sums_.resize(light_.blocks.size() * stride, 0.0);
+    for (size_t l = 0; l < maps_.size(); ++l) bright_.push_back(BrightOf(l));
   }
 
-  Light light;
-  light.height = height / block;
-  light.width = width / block;
-  light.blocks = MapCells(height, width, block);
-  std::vector<double> sums(light.blocks.size() * stride, 0.0);
-  std::vector<double> solid_angle(light.blocks.size(), 0.0);
-  for (int t = 0; t < height * width; ++t) {
-    const Share rows = ShareOf(t / width, block);
-    const Share columns = ShareOf(t % width, block);
-    double weight[4];
-    double* to[4];
-    for (int corner = 0; corner < 4; ++corner) {
-      const int a = corner >> 1, b = corner & 1;
-      const int row = std::clamp(rows.block[a], 0, light.height - 1);
-      int column = columns.block[b] + light.width;
-      if (row != rows.block[a]) column += light.width / 2;  // across a pole
-      const size_t cell =
-          static_cast<size_t>(row) * light.width + column % light.width;
-      weight[corner] = rows.weight[a] * columns.weight[b];
-      solid_angle[cell] += weight[corner] * texels[t].solid_angle;
-      to[corner] = &sums[cell * stride];
+  Light Gather() {
+    std::vector<double> solid_angle(light_.blocks.size(), 0.0);
+    for (int t = 0; t < height_ * width_; ++t) {
+      const Corners corners = CornersOf(t);
+      for (int k = 0; k < 4; ++k) {
+        solid_angle[corners.cell[k]] +=
+            corners.weight[k] * texels_[t].solid_angle;
+      }
+      AddTexel(t, corners);
     }
+    // So that constant light stays constant.
+    for (size_t i = 0; i < light_.blocks.size(); ++i) {
+      light_.blocks[i].solid_angle = solid_angle[i];
+    }
+    light_.block_power.assign(sums_.begin(), sums_.end());
+    return std::move(light_);
+  }
+
+ private:
+  // The four blocks around a texel, and its shares of them.
+  struct Corners {
+    size_t cell[4];
+    double weight[4];
+  };
+
+  Eigen::Array3d Power(size_t map, size_t texel) const {
+    const float* const rgb = &maps_[map]->rgb[3 * texel];
+    return Eigen::Array3d(rgb[0], rgb[1], rgb[2]) * texels_[texel].solid_angle;
+  }
+
+  // What a texel of that map must have to stay apart.
+  double BrightOf(size_t map) const {
+    double sum = 0.0;
+    for (size_t t = 0; t < texels_.size(); ++t) {
+      sum += Power(map, t).abs().sum();
+    }
+    return sum * (kBrightTexel / static_cast<double>(texels_.size()));
+  }
+
+  Corners CornersOf(int texel) const {
+    const Share rows = ShareOf(texel / width_, block_);
+    const Share columns = ShareOf(texel % width_, block_);
+    Corners corners;
+    for (int k = 0; k < 4; ++k) {
+      const int a = k >> 1, b = k & 1;
+      const int row = std::clamp(rows.block[a], 0, light_.height - 1);
+      int column = columns.block[b] + light_.width;
+      if (row != rows.block[a]) column += light_.width / 2;  // across a pole
+      corners.cell[k] =
+          static_cast<size_t>(row) * light_.width + column % light_.width;
+      corners.weight[k] = rows.weight[a] * columns.weight[b];
+    }
+    return corners;
+  }
+
+  // To the blocks or, of the maps in which it is bright, apart.
+  void AddTexel(int texel, const Corners& corners) {
+    const size_t count = maps_.size();
     std::vector<float> apart;
     for (size_t l = 0; l < count; ++l) {
-      const Eigen::Array3d p = power(l, t);
-      if (block > 1 && p.abs().sum() > bright[l]) {
-        apart.resize(stride, 0.0f);
+      const Eigen::Array3d power = Power(l, texel);
+      if (block_ > 1 && power.abs().sum() > bright_[l]) {
+        apart.resize(stride_, 0.0f);
         for (int c = 0; c < 3; ++c) {
-          apart[c * count + l] = static_cast<float>(p[c]);
+          apart[c * count + l] = static_cast<float>(power[c]);
         }
         continue;
       }
-      for (int corner = 0; corner < 4; ++corner) {
+      for (int k = 0; k < 4; ++k) {
+        double* const to = &sums_[corners.cell[k] * stride_];
         for (int c = 0; c < 3; ++c) {
-          to[corner][c * count + l] += weight[corner] * p[c];
+          to[c * count + l] += corners.weight[k] * power[c];
         }
       }
     }
-    if (apart.empty()) continue;
-    light.texels.push_back(texels[t]);
-    light.texel_of.push_back(t);
-    light.texel_power.insert(light.texel_power.end(), apart.begin(),
-                             apart.end());
+    if (apart.empty()) return;
+    light_.texels.push_back(texels_[texel]);
+    light_.texel_of.push_back(texel);
+    light_.texel_power.insert(light_.texel_power.end(), apart.begin(),
+                              apart.end());
   }
-  // So that constant light stays constant.
-  for (size_t i = 0; i < light.blocks.size(); ++i) {
-    light.blocks[i].solid_angle = solid_angle[i];
-  }
-  light.block_power.assign(sums.begin(), sums.end());
-  return light;
-}
+
+  const std::vector<const Image*>& maps_;
+  const int height_, width_;
+  const size_t stride_;
+  const int block_;  // side of the blocks in texels
+  const std::vector<FarCell> texels_;
+  std::vector<double> bright_;  // by map
+  std::vector<double> sums_;    // [block][stride]
+  Light light_;
+};
 
 ReferenceBatch::ReferenceBatch(const MerlTableStack& tables,
                                const std::vector<const Image*>& maps,
                                const ReferenceOptions& options)
     : ReferenceBatch(
           tables, maps,
-          GatherLight(maps, RoundUp(3 * maps.size()), options.far_width),
+          LightGatherer(maps, RoundUp(3 * maps.size()), options.far_width)
+              .Gather(),
           options) {}
 
 ReferenceBatch::ReferenceBatch(const MerlTableStack& tables,

@@ -44,8 +44,7 @@ class ReferenceBatch {
     std::vector<float> block_power, texel_power;  // [cells][stride]
     std::vector<int> texel_of;  // of `texels`: row * width + column of the map
   };
-  static Light GatherLight(const std::vector<const Image*>& maps, int stride,
-                           int far_width);
+  class LightGatherer;
   ReferenceBatch(const MerlTableStack& tables,
                  const std::vector<const Image*>& maps, Light&& light,
                  const ReferenceOptions& options);

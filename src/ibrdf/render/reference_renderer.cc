@@ -17,11 +17,6 @@
 namespace ibrdf {
 namespace {
 
-// A block with this many times the mean power of a block, and a texel this many
-// times brighter than its mean, is split into texels.
-constexpr double kBrightBlock = 4.0;
-constexpr double kUnevenBlock = 1.5;
-
 // A narrow lobe gets rays of its own, whose half-vectors lie within this many
 // times its half width of the normal.
 constexpr double kLobeWidths = 2.5;
@@ -34,6 +29,12 @@ constexpr double kBrightStep = 0.25;
 constexpr int kMostBrightSamples = 16;
 
 using Float4 [[gnu::vector_size(16)]] = float;
+
+Float4 Load4(const float* p) {
+  Float4 v;
+  std::memcpy(&v, p, sizeof(v));
+  return v;
+}
 
 // InterpolateMerl in float: four lanes per bin, the last one 1 where the bin is
 // valid, so that one trilinear sum gives values and weights.
@@ -56,8 +57,8 @@ class MerlSampler {
     const MerlTaps taps = MerlTapsAt(theta_h, theta_d, phi_d, 1.0);
     Float4 even = {0.0f, 0.0f, 0.0f, 0.0f}, odd = even;
     for (int k = 0; k < 8; k += 2) {
-      even += taps.weight[k] * Lane(taps.bin[k]);
-      odd += taps.weight[k + 1] * Lane(taps.bin[k + 1]);
+      even += taps.weight[k] * Load4(&lanes_[size_t{4} * taps.bin[k]]);
+      odd += taps.weight[k + 1] * Load4(&lanes_[size_t{4} * taps.bin[k + 1]]);
     }
     const Float4 sum = even + odd;
     if (!(sum[3] > 0.0f)) return Eigen::Array3d::Zero();
@@ -66,75 +67,61 @@ class MerlSampler {
   }
 
  private:
-  Float4 Lane(int bin) const {
-    Float4 v;
-    std::memcpy(&v, &lanes_[size_t{4} * bin], sizeof(v));
-    return v;
-  }
-  std::vector<float> lanes_;
+  std::vector<float> lanes_;  // [bin][4]
 };
+
+// Bilinear in a map of four floats a texel, at a position of place_rays.
+Float4 LookUpTexels(const PaddedMaps& map, float row, float column) {
+  const int r = std::min(static_cast<int>(row), map.height);
+  const int c = std::min(static_cast<int>(column), map.width - 1);
+  const float fy = row - static_cast<float>(r);
+  const float fx = column - static_cast<float>(c);
+  const float* const texel =
+      &map.lanes[4 * (static_cast<size_t>(r) * (map.width + 1) + c)];
+  const float* const below = texel + size_t{4} * (map.width + 1);
+  const Float4 upper = (1 - fx) * Load4(texel) + fx * Load4(texel + 4);
+  const Float4 lower = (1 - fx) * Load4(below) + fx * Load4(below + 4);
+  return (1 - fy) * upper + fy * lower;
+}
 
 }  // namespace
 
-ReferenceRenderer::Light ReferenceRenderer::GatherLight(
-    const Image& map, const ReferenceOptions& options) {
-  const int block = FarBlockSize(map.height, map.width, options.far_width);
-  const std::vector<FarCell> texels = MapCells(map.height, map.width, 1);
-  const std::vector<FarCell> blocks = MapCells(map.height, map.width, block);
-  const int columns = map.width / block;
-  const auto power_of = [&](int texel) {
-    const float* rgb = map.rgb.data() + size_t{3} * texel;
-    return Eigen::Array3d(Eigen::Array3d(rgb[0], rgb[1], rgb[2]) *
-                          texels[texel].solid_angle);
-  };
-  double total = 0.0;
-  for (size_t t = 0; t < texels.size(); ++t) {
-    total += power_of(static_cast<int>(t)).abs().sum();
-  }
-  Light light;
-  // Cell (y, x) of a map in cells of `side` texels.
-  const auto add_range = [&](int y, int x, int side) {
-    if (options.shadows == nullptr) return;
-    light.ranges.push_back(options.shadows->RangeOf(
-        y / side, x / side, map.height / side, map.width / side));
-  };
-  for (size_t b = 0; b < blocks.size(); ++b) {
-    const int y0 = static_cast<int>(b) / columns * block;
-    const int x0 = static_cast<int>(b) % columns * block;
-    Eigen::Array3d power = Eigen::Array3d::Zero();
-    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-    double sum = 0.0, peak = 0.0;
-    for (int k = 0; k < block * block; ++k) {
-      const int texel = (y0 + k / block) * map.width + x0 + k % block;
-      const Eigen::Array3d p = power_of(texel);
-      const double strength = p.abs().sum();
-      power += p;
-      centroid += strength * texels[texel].direction;
-      sum += strength;
-      peak = std::max(peak, strength);
-    }
-    const bool bright =
-        sum * static_cast<double>(blocks.size()) > kBrightBlock * total;
-    if (bright && peak * block * block > kUnevenBlock * sum) {
-      for (int k = 0; k < block * block; ++k) {
-        const int texel = (y0 + k / block) * map.width + x0 + k % block;
-        light.cells.push_back(texels[texel]);
-        light.power.push_back(power_of(texel));
-        add_range(y0 + k / block, x0 + k % block, 1);
-      }
-      continue;
-    }
-    FarCell cell = blocks[b];
-    if (centroid.norm() > 0.0) cell.direction = centroid.normalized();
-    light.cells.push_back(cell);
-    light.power.push_back(power);
-    add_range(y0, x0, block);
-  }
-  for (const FarCell& cell : light.cells) {
-    light.solid_angle.push_back(cell.solid_angle);
-  }
-  return light;
-}
+struct ReferenceRenderer::LobeSettings {
+  // Rays whose half-vectors lie within it of the normal, radians, are a narrow
+  // lobe; 0: lobes have no rays of their own.
+  double width = 0.0;
+  std::vector<BrightSample> bright;
+};
+
+template <typename Lookup>
+struct ReferenceRenderer::Pass {
+  int depth;
+  const LobeSettings& settings;
+  const std::vector<ShadingPoint>& points;
+  const Lookup& lookup;
+  const EmittedLight& emitted;
+};
+
+struct ReferenceRenderer::LobeLight {
+  int rays = 0;
+  std::vector<double> radiance;  // [points, rays, 3], negative: nothing met
+};
+
+struct ReferenceRenderer::Rays {
+  std::vector<float> x, y, z;  // direction
+  std::vector<float> f;        // weight times BRDF, four lanes
+  std::vector<int> bundle;     // of the first rays, -1: none
+};
+
+struct ReferenceRenderer::Scratch {
+  std::vector<NearSample> near;
+  std::vector<FarSample> far;
+  Rays rays;
+  VisibilityGrid::Scratch trace;
+  VisibilityGrid::Bits bits;
+  std::vector<SeenPatch> seen;
+  std::vector<PatchShare> shares;
+};
 
 ReferenceRenderer::ReferenceRenderer(const Image& map,
                                      const ReferenceOptions& options)
@@ -148,9 +135,11 @@ ReferenceRenderer::ReferenceRenderer(const Image& map,
 
 ReferenceRenderer::ReferenceRenderer(const BrightTexels& map,
                                      const ReferenceOptions& options)
-    : ReferenceRenderer(map, GatherLight(map.rest, options), options) {}
+    : ReferenceRenderer(map, GatherReferenceLight(map.rest, options), options) {
+}
 
-ReferenceRenderer::ReferenceRenderer(const BrightTexels& map, Light light,
+ReferenceRenderer::ReferenceRenderer(const BrightTexels& map,
+                                     ReferenceLight light,
                                      const ReferenceOptions& options)
     : num_threads_(options.num_threads),
       lobe_rays_(options.lobe_rays),
@@ -167,12 +156,122 @@ ReferenceRenderer::ReferenceRenderer(const BrightTexels& map, Light light,
   CHECK(lobe_rays_ >= 0 && (lobe_rays_ & (lobe_rays_ - 1)) == 0);
 }
 
-struct ReferenceRenderer::Common {
-  // Radians, 0: lobes have no rays of their own. These have half-vectors within
-  // it of the normal.
-  double lobe_width = 0.0;
-  std::vector<BrightSample> bright;
-};
+template <typename Lookup>
+void ReferenceRenderer::ShadeNear(const PointFrame& frame, const Lookup& lookup,
+                                  std::vector<NearSample>* samples,
+                                  Rays* rays) const {
+  SampleNearOf(frame, quadrature_, samples);
+  const size_t count = samples->size();
+  for (std::vector<float>* v : {&rays->x, &rays->y, &rays->z}) v->resize(count);
+  rays->f.resize(4 * count);
+  rays->bundle.clear();
+  for (size_t k = 0; k < count; ++k) {
+    const NearSample& s = (*samples)[k];
+    const Eigen::Array3d f = s.weight * lookup(s.theta_h, s.theta_d, s.phi_d);
+    rays->x[k] = static_cast<float>(s.wi.x());
+    rays->y[k] = static_cast<float>(s.wi.y());
+    rays->z[k] = static_cast<float>(s.wi.z());
+    for (int c = 0; c < 3; ++c) rays->f[4 * k + c] = static_cast<float>(f[c]);
+    rays->f[4 * k + 3] = 0.0f;
+  }
+}
+
+void ReferenceRenderer::FindVisible(const Rays& rays, size_t begin, int n,
+                                    const Eigen::Matrix3f& axes,
+                                    const uint64_t* hidden,
+                                    float* visible) const {
+  const Eigen::Vector3d normal = axes.col(2).cast<double>();
+  float row[kRayBlock], column[kRayBlock];
+  kernels_.place_rays(&rays.x[begin], &rays.y[begin], &rays.z[begin], n,
+                      axes.data(), shadows_->rows(), shadows_->columns(), row,
+                      column);
+  for (int k = 0; k < n; ++k) {
+    visible[k] = static_cast<float>(
+        shadows_->VisibleAt(hidden, normal, row[k], column[k]));
+  }
+}
+
+const double* ReferenceRenderer::ObjectAlong(const Rays& rays, size_t ray,
+                                             const Eigen::Matrix3f& axes,
+                                             const Sight& sight) const {
+  if (sight.lobe != nullptr && ray < rays.bundle.size() &&
+      rays.bundle[ray] >= 0) {
+    const double* const R = sight.lobe + size_t{3} * rays.bundle[ray];
+    if (R[0] >= 0.0) return R;
+  }
+  if (sight.seen.empty()) return nullptr;
+  const Eigen::Vector3f wi =
+      axes * Eigen::Vector3f(rays.x[ray], rays.y[ray], rays.z[ray]);
+  const int patch = patches_->Along(sight.seen, wi.cast<double>());
+  return patch < 0 ? nullptr : sight.emitted + size_t{3} * patch;
+}
+
+Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
+                                         const Eigen::Matrix3f& axes,
+                                         const Sight& sight) const {
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  const size_t count = rays.x.size();
+  for (size_t begin = 0; begin < count; begin += kRayBlock) {
+    const int n = static_cast<int>(std::min<size_t>(kRayBlock, count - begin));
+    float row[kRayBlock], column[kRayBlock], visible[kRayBlock];
+    kernels_.place_rays(&rays.x[begin], &rays.y[begin], &rays.z[begin], n,
+                        axes.data(), map_.height, map_.width, row, column);
+    if (sight.hidden != nullptr) {
+      FindVisible(rays, begin, n, axes, sight.hidden, visible);
+    }
+    Float4 block = {0.0f, 0.0f, 0.0f, 0.0f};
+    for (int k = 0; k < n; ++k) {
+      const Float4 f = Load4(&rays.f[4 * (begin + k)]);
+      if (sight.hidden == nullptr) {
+        block += f * LookUpTexels(map_, row[k], column[k]);
+        continue;
+      }
+      if (visible[k] < 1.0f) {
+        if (const double* const R = ObjectAlong(rays, begin + k, axes, sight)) {
+          const Float4 light = {static_cast<float>(R[0]),
+                                static_cast<float>(R[1]),
+                                static_cast<float>(R[2]), 0.0f};
+          block += (1.0f - visible[k]) * f * light;
+        }
+      }
+      if (visible[k] == 0.0f) continue;
+      block += f * (LookUpTexels(map_, row[k], column[k]) * visible[k]);
+    }
+    sum += Eigen::Array3d(block[0], block[1], block[2]);
+  }
+  return sum;
+}
+
+Eigen::Array3d ReferenceRenderer::LightOfCell(
+    int cell, double visible, const Eigen::Vector3d& n, const Sight& sight,
+    std::vector<PatchShare>* shares) const {
+  Eigen::Array3d light = visible * power_[cell];
+  if (visible == 1.0 || sight.seen.empty()) return light;
+  patches_->SharesIn(*shadows_, sight.hidden, n, ranges_[cell], sight.seen,
+                     shares);
+  for (const PatchShare& e : *shares) {
+    light +=
+        e.share * solid_angle_[cell] *
+        Eigen::Map<const Eigen::Array3d>(sight.emitted + size_t{3} * e.patch);
+  }
+  return light;
+}
+
+template <typename Lookup>
+void ReferenceRenderer::AddFar(const PointFrame& frame, const Lookup& lookup,
+                               const Sight& sight, Scratch* scratch,
+                               Eigen::Array3d* sum) const {
+  quadrature_.SampleFar(frame.n, frame.wo, &scratch->far);
+  for (const FarSample& far : scratch->far) {
+    const double visible =
+        sight.hidden == nullptr
+            ? 1.0
+            : shadows_->VisibleShare(sight.hidden, frame.n, ranges_[far.cell]);
+    if (visible == 0.0 && sight.seen.empty()) continue;
+    *sum += far.weight * lookup(far.theta_h, far.theta_d, far.phi_d) *
+            LightOfCell(far.cell, visible, frame.n, sight, &scratch->shares);
+  }
+}
 
 int ReferenceRenderer::BrightSamplesPerSide(double lobe_half_width) const {
   // A texel's light spreads over two; the lobe turns twice as far as
@@ -206,102 +305,6 @@ Eigen::Array3d ReferenceRenderer::GatherBright(
   return sum;
 }
 
-struct ReferenceRenderer::Rays {
-  std::vector<float> x, y, z;  // direction
-  std::vector<float> f;        // weight times BRDF, four lanes
-  std::vector<int> bundle;     // of the first rays, -1: none
-};
-
-Eigen::Array3d ReferenceRenderer::Gather(const Rays& rays,
-                                         const Eigen::Matrix3f& axes,
-                                         const Sight& sight) const {
-  const uint64_t* const hidden = sight.hidden;
-  // Radiance of what hides ray k; null: black.
-  const auto object = [&](size_t k) -> const double* {
-    if (sight.lobe != nullptr && k < rays.bundle.size() &&
-        rays.bundle[k] >= 0) {
-      const double* const R = sight.lobe + size_t{3} * rays.bundle[k];
-      if (R[0] >= 0.0) return R;
-    }
-    if (sight.seen.empty()) return nullptr;
-    const Eigen::Vector3f wi =
-        axes * Eigen::Vector3f(rays.x[k], rays.y[k], rays.z[k]);
-    const int patch = patches_->Along(sight.seen, wi.cast<double>());
-    return patch < 0 ? nullptr : sight.emitted + size_t{3} * patch;
-  };
-  const Eigen::Vector3d normal = axes.col(2).cast<double>();
-  const auto load = [](const float* p) {
-    Float4 v;
-    std::memcpy(&v, p, sizeof(v));
-    return v;
-  };
-  Eigen::Array3d sum = Eigen::Array3d::Zero();
-  const size_t count = rays.x.size();
-  for (size_t begin = 0; begin < count; begin += kRayBlock) {
-    const int n = static_cast<int>(std::min<size_t>(kRayBlock, count - begin));
-    float row[kRayBlock], column[kRayBlock];
-    kernels_.place_rays(&rays.x[begin], &rays.y[begin], &rays.z[begin], n,
-                        axes.data(), map_.height, map_.width, row, column);
-    float visible[kRayBlock];
-    if (hidden != nullptr) {
-      float grid_row[kRayBlock], grid_column[kRayBlock];
-      kernels_.place_rays(&rays.x[begin], &rays.y[begin], &rays.z[begin], n,
-                          axes.data(), shadows_->rows(), shadows_->columns(),
-                          grid_row, grid_column);
-      for (int k = 0; k < n; ++k) {
-        visible[k] = static_cast<float>(
-            shadows_->VisibleAt(hidden, normal, grid_row[k], grid_column[k]));
-      }
-    }
-    Float4 block = {0.0f, 0.0f, 0.0f, 0.0f};
-    for (int k = 0; k < n; ++k) {
-      if (hidden != nullptr && visible[k] < 1.0f) {
-        if (const double* const R = object(begin + k)) {
-          const Float4 light = {static_cast<float>(R[0]),
-                                static_cast<float>(R[1]),
-                                static_cast<float>(R[2]), 0.0f};
-          block += (1.0f - visible[k]) * load(&rays.f[4 * (begin + k)]) * light;
-        }
-      }
-      if (hidden != nullptr && visible[k] == 0.0f) continue;
-      const int r = std::min(static_cast<int>(row[k]), map_.height);
-      const int c = std::min(static_cast<int>(column[k]), map_.width - 1);
-      const float fy = row[k] - static_cast<float>(r);
-      const float fx = column[k] - static_cast<float>(c);
-      const float* const texel =
-          &map_.lanes[4 * (static_cast<size_t>(r) * (map_.width + 1) + c)];
-      const float* const below = texel + size_t{4} * (map_.width + 1);
-      const Float4 upper = (1 - fx) * load(texel) + fx * load(texel + 4);
-      const Float4 lower = (1 - fx) * load(below) + fx * load(below + 4);
-      Float4 light = (1 - fy) * upper + fy * lower;
-      if (hidden != nullptr) light *= visible[k];
-      block += load(&rays.f[4 * (begin + k)]) * light;
-    }
-    sum += Eigen::Array3d(block[0], block[1], block[2]);
-  }
-  return sum;
-}
-
-template <typename Lookup>
-void ReferenceRenderer::ShadeNear(const PointFrame& frame, const Lookup& lookup,
-                                  std::vector<NearSample>* samples,
-                                  Rays* rays) const {
-  SampleNearOf(frame, quadrature_, samples);
-  const size_t count = samples->size();
-  for (std::vector<float>* v : {&rays->x, &rays->y, &rays->z}) v->resize(count);
-  rays->f.resize(4 * count);
-  rays->bundle.clear();
-  for (size_t k = 0; k < count; ++k) {
-    const NearSample& s = (*samples)[k];
-    const Eigen::Array3d f = s.weight * lookup(s.theta_h, s.theta_d, s.phi_d);
-    rays->x[k] = static_cast<float>(s.wi.x());
-    rays->y[k] = static_cast<float>(s.wi.y());
-    rays->z[k] = static_cast<float>(s.wi.z());
-    for (int c = 0; c < 3; ++c) rays->f[4 * k + c] = static_cast<float>(f[c]);
-    rays->f[4 * k + 3] = 0.0f;
-  }
-}
-
 std::vector<Eigen::Vector3f> ReferenceRenderer::Bundle(
     const std::vector<NearSample>& samples, double lobe_width, int count,
     Rays* rays) {
@@ -324,38 +327,48 @@ std::vector<Eigen::Vector3f> ReferenceRenderer::Bundle(
 }
 
 template <typename Lookup>
-std::vector<double> ReferenceRenderer::LightOfLobes(
-    int depth, int count, const Common& common, const ViewGroups& groups,
-    const std::vector<ShadingPoint>& points, const Lookup& lookup,
-    const EmittedLight& emitted) const {
-  if (points.empty()) return {};
-  std::vector<ShadingPoint> met(points.size() * count, points[0]);
-  std::vector<char> is_met(met.size(), 0);
-  struct Scratch {
-    std::vector<NearSample> near;
-    Rays rays;
-  };
+std::vector<char> ReferenceRenderer::MeetObject(
+    const Pass<Lookup>& pass, const ViewGroups& groups, int rays,
+    std::vector<ShadingPoint>* met) const {
+  const std::vector<ShadingPoint>& points = pass.points;
+  met->assign(points.size() * rays, points[0]);
+  std::vector<char> is_met(met->size(), 0);
   std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
                                                 : HardwareThreads());
   ParallelFor(groups.count(), num_threads_, [&](int64_t group, int worker) {
     Scratch& s = scratch[worker];
     const size_t begin = groups.begins[group];
-    ShadeNear(PointFrame(points[groups.order[begin]]), lookup, &s.near,
+    ShadeNear(PointFrame(points[groups.order[begin]]), pass.lookup, &s.near,
               &s.rays);
     const std::vector<Eigen::Vector3f> lobe =
-        Bundle(s.near, common.lobe_width, count, &s.rays);
+        Bundle(s.near, pass.settings.width, rays, &s.rays);
     for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
       const int i = groups.order[k];
       const Eigen::Matrix3d axes = PointFrame(points[i]).Axes().cast<double>();
       for (size_t r = 0; r < lobe.size(); ++r) {
         if (lobe[r].isZero()) continue;
-        const size_t at = size_t{1} * i * count + r;
+        const size_t at = size_t{1} * i * rays + r;
         const Eigen::Vector3d wi = axes * lobe[r].cast<double>();
-        is_met[at] = patches_->Meet(points[i], wi, &met[at]) ? 1 : 0;
+        is_met[at] = patches_->Meet(points[i], wi, &(*met)[at]) ? 1 : 0;
       }
     }
   });
-  std::vector<ShadingPoint> some;
+  return is_met;
+}
+
+template <typename Lookup>
+ReferenceRenderer::LobeLight ReferenceRenderer::LightOfLobes(
+    const Pass<Lookup>& pass, const ViewGroups& groups) const {
+  LobeLight lobes;
+  if (pass.settings.width == 0.0 || pass.depth >= pass.emitted.bounces ||
+      pass.points.empty()) {
+    return lobes;
+  }
+  lobes.rays = lobe_rays_;
+  for (int k = 0; k < pass.depth; ++k) lobes.rays /= kFewerRays;
+  lobes.rays = std::max(lobes.rays, 1);
+  std::vector<ShadingPoint> met, some;
+  const std::vector<char> is_met = MeetObject(pass, groups, lobes.rays, &met);
   for (size_t k = 0; k < met.size(); ++k) {
     if (is_met[k] != 0) some.push_back(met[k]);
   }
@@ -363,15 +376,71 @@ std::vector<double> ReferenceRenderer::LightOfLobes(
   if (!some.empty()) {
     const ReferenceRenderer& next = coarser_ != nullptr ? *coarser_ : *this;
     // The last bounce shows what the map alone lights.
-    EmittedLight light = emitted;
-    if (depth + 1 >= emitted.bounces) light.radiance = nullptr;
-    next.RenderAt(depth + 1, common, some, lookup, light, radiance.data());
+    EmittedLight light = pass.emitted;
+    if (pass.depth + 1 >= light.bounces) light.radiance = nullptr;
+    next.RenderPass(
+        Pass<Lookup>{pass.depth + 1, pass.settings, some, pass.lookup, light},
+        radiance.data());
   }
-  std::vector<double> light(3 * met.size(), -1.0);
+  lobes.radiance.assign(3 * met.size(), -1.0);
   for (size_t k = 0, from = 0; k < met.size(); ++k) {
-    if (is_met[k] != 0) std::copy_n(&radiance[3 * from++], 3, &light[3 * k]);
+    if (is_met[k] == 0) continue;
+    std::copy_n(&radiance[3 * from++], 3, &lobes.radiance[3 * k]);
   }
-  return light;
+  return lobes;
+}
+
+ReferenceRenderer::Sight ReferenceRenderer::Look(const ShadingPoint& point,
+                                                 const EmittedLight& emitted,
+                                                 Scratch* scratch) const {
+  Sight sight;
+  if (shadows_ != nullptr &&
+      shadows_->Trace(point, &scratch->trace, &scratch->bits)) {
+    sight.hidden = scratch->bits.data();
+  }
+  if (sight.hidden != nullptr && emitted.radiance != nullptr &&
+      patches_ != nullptr) {
+    sight.seen = patches_->Look(point, *shadows_, sight.hidden, &scratch->seen);
+    sight.emitted = emitted.radiance;
+  }
+  return sight;
+}
+
+template <typename Lookup>
+void ReferenceRenderer::RenderGroup(const Pass<Lookup>& pass,
+                                    const ViewGroups& groups, int64_t group,
+                                    const LobeLight& lobes, Scratch* scratch,
+                                    double* L_o) const {
+  const size_t begin = groups.begins[group];
+  ShadeNear(PointFrame(pass.points[groups.order[begin]]), pass.lookup,
+            &scratch->near, &scratch->rays);
+  if (lobes.rays > 0) {
+    Bundle(scratch->near, pass.settings.width, lobes.rays, &scratch->rays);
+  }
+  for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
+    const int i = groups.order[k];
+    const PointFrame frame(pass.points[i]);
+    Sight sight = Look(pass.points[i], pass.emitted, scratch);
+    if (lobes.rays > 0) {
+      sight.lobe = &lobes.radiance[size_t{3} * lobes.rays * i];
+    }
+    Eigen::Array3d sum = Gather(scratch->rays, frame.Axes(), sight);
+    sum += GatherBright(frame, pass.settings.bright, pass.lookup, sight.hidden);
+    AddFar(frame, pass.lookup, sight, scratch, &sum);
+    for (int c = 0; c < 3; ++c) L_o[size_t{3} * i + c] = sum[c];
+  }
+}
+
+template <typename Lookup>
+void ReferenceRenderer::RenderPass(const Pass<Lookup>& pass,
+                                   double* L_o) const {
+  const ViewGroups groups(pass.points);
+  const LobeLight lobes = LightOfLobes(pass, groups);
+  std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
+                                                : HardwareThreads());
+  ParallelFor(groups.count(), num_threads_, [&](int64_t group, int worker) {
+    RenderGroup(pass, groups, group, lobes, &scratch[worker], L_o);
+  });
 }
 
 template <typename Lookup>
@@ -379,91 +448,16 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
                                    const Lookup& lookup,
                                    const EmittedLight& emitted,
                                    double* L_o) const {
-  Common common;
+  LobeSettings settings;
   const bool follow =
       lobe_rays_ > 0 && patches_ != nullptr && emitted.radiance != nullptr;
   if (follow || !bright_.empty()) {
     const double half = LobeHalfWidth(std::cref(lookup));
-    if (follow && half < kNarrowLobe) common.lobe_width = kLobeWidths * half;
-    common.bright = SampleBrightTexels(bright_, map_.height, map_.width,
-                                       BrightSamplesPerSide(half));
+    if (follow && half < kNarrowLobe) settings.width = kLobeWidths * half;
+    settings.bright = SampleBrightTexels(bright_, map_.height, map_.width,
+                                         BrightSamplesPerSide(half));
   }
-  RenderAt(0, common, points, lookup, emitted, L_o);
-}
-
-template <typename Lookup>
-void ReferenceRenderer::RenderAt(int depth, const Common& common,
-                                 const std::vector<ShadingPoint>& points,
-                                 const Lookup& lookup,
-                                 const EmittedLight& emitted,
-                                 double* L_o) const {
-  const ViewGroups groups(points);
-  int lobe_rays = 0;
-  std::vector<double> of_lobes;
-  if (common.lobe_width > 0.0 && depth < emitted.bounces) {
-    lobe_rays = lobe_rays_;
-    for (int k = 0; k < depth; ++k) lobe_rays /= kFewerRays;
-    lobe_rays = std::max(lobe_rays, 1);
-    of_lobes =
-        LightOfLobes(depth, lobe_rays, common, groups, points, lookup, emitted);
-  }
-  struct Scratch {
-    std::vector<NearSample> near;
-    std::vector<FarSample> far;
-    Rays rays;
-    VisibilityGrid::Scratch trace;
-    VisibilityGrid::Bits bits;
-    std::vector<SeenPatch> seen;
-    std::vector<PatchShare> shares;
-  };
-  std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
-                                                : HardwareThreads());
-  ParallelFor(groups.count(), num_threads_, [&](int64_t group, int worker) {
-    Scratch& s = scratch[worker];
-    const size_t begin = groups.begins[group];
-    ShadeNear(PointFrame(points[groups.order[begin]]), lookup, &s.near,
-              &s.rays);
-    if (lobe_rays > 0) Bundle(s.near, common.lobe_width, lobe_rays, &s.rays);
-    for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
-      const int i = groups.order[k];
-      const PointFrame frame(points[i]);
-      Sight sight;
-      if (shadows_ != nullptr &&
-          shadows_->Trace(points[i], &s.trace, &s.bits)) {
-        sight.hidden = s.bits.data();
-      }
-      if (sight.hidden != nullptr && emitted.radiance != nullptr &&
-          patches_ != nullptr) {
-        sight.seen =
-            patches_->Look(points[i], *shadows_, sight.hidden, &s.seen);
-        sight.emitted = emitted.radiance;
-      }
-      if (lobe_rays > 0) sight.lobe = &of_lobes[size_t{3} * lobe_rays * i];
-      Eigen::Array3d sum = Gather(s.rays, frame.Axes(), sight);
-      sum += GatherBright(frame, common.bright, lookup, sight.hidden);
-      quadrature_.SampleFar(frame.n, frame.wo, &s.far);
-      for (const FarSample& far : s.far) {
-        const double visible =
-            sight.hidden == nullptr
-                ? 1.0
-                : shadows_->VisibleShare(sight.hidden, frame.n,
-                                         ranges_[far.cell]);
-        if (visible == 0.0 && sight.seen.empty()) continue;
-        Eigen::Array3d light = visible * power_[far.cell];
-        if (visible < 1.0 && !sight.seen.empty()) {
-          patches_->SharesIn(*shadows_, sight.hidden, frame.n,
-                             ranges_[far.cell], sight.seen, &s.shares);
-          for (const PatchShare& e : s.shares) {
-            light += e.share * solid_angle_[far.cell] *
-                     Eigen::Map<const Eigen::Array3d>(emitted.radiance +
-                                                      size_t{3} * e.patch);
-          }
-        }
-        sum += far.weight * lookup(far.theta_h, far.theta_d, far.phi_d) * light;
-      }
-      for (int c = 0; c < 3; ++c) L_o[size_t{3} * i + c] = sum[c];
-    }
-  });
+  RenderPass(Pass<Lookup>{0, settings, points, lookup, emitted}, L_o);
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
