@@ -265,8 +265,19 @@ TEST(Interreflection, PatchesCoverWhatIsSeenWithinTheirNumber) {
     EXPECT_GT(patches->count(), 20);
     // The second bounce may add to them.
     EXPECT_LT(patches->count(), 1.2 * most);
-    EXPECT_GT(patches->num_bins(), 1000);
-    EXPECT_LT(patches->num_lost(), 1e-3 * patches->num_bins());
+    int64_t cells = 0, lost = 0;
+    const auto count = [&](const SeenPatches& seen) {
+      cells += seen.end - seen.begin;
+      lost += std::count_if(seen.begin, seen.end, [](const SeenPatch& s) {
+        return s.patch == kNoPatch;
+      });
+    };
+    for (const ShadingPoint& p : points) count(patches->SeenFrom(p));
+    for (const ShadingPoint& p : patches->points()) {
+      count(patches->SeenFromPatch(p));
+    }
+    EXPECT_GT(cells, 1000);
+    EXPECT_LT(lost, 1e-3 * cells);
     for (const ShadingPoint& p : patches->points()) {
       EXPECT_GE(p.normal.dot(p.wo), 0.9f * kMinViewCosine);
     }

@@ -173,20 +173,27 @@ class CouplingFlowReference {
   // Adjoint of layer l: gx comes in as the adjoint of its output point (the
   // log density's adjoint is 1) and leaves as that of its input point.
   void BackwardLayer(int l, const Tape& tape, const T* code, T* gx, T* gz,
-                     T* gw_all) const {
-    const int n = shape_.bins;
+                     T* gw) const {
     const CouplingDims dims = DimsOfLayer(l);
     const LayerTape& t = tape[l];
-    const T* p = t.rows.data() + shape_.OutputRow();
-    const Spline s = MakeSpline(p);
+    std::vector<T> grows(t.rows.size(), T(0));
+    gx[dims.transformed] = BackwardSpline(t, gx[dims.transformed],
+                                          grows.data() + shape_.OutputRow());
+    BackwardConditioner(t, code, weights_.data() + l * shape_.WeightsPerLayer(),
+                        grows.data(), gz, gw + l * shape_.WeightsPerLayer());
+    gx[dims.first] += 2 * grows[0];
+    gx[dims.second] += 2 * grows[1];
+  }
+
+  // Adjoint of a layer's spline, from that of its output: gp [2 bins + 1] of
+  // its parameters and, returned, that of its input.
+  T BackwardSpline(const LayerTape& t, T gy, T* gp) const {
+    const int n = shape_.bins;
+    const Spline s = MakeSpline(t.rows.data() + shape_.OutputRow());
     const int b = FindBin(s, t.x);
     const T a = std::min((t.x - s.knot[b]) / s.width[b], T(1));
     const T dv = s.slope[b + 1] - s.slope[b];
     const T slope = s.slope[b] + a * dv;
-    const T gy = gx[dims.transformed];
-
-    std::vector<T> grows(t.rows.size(), T(0));
-    T* gp = grows.data() + shape_.OutputRow();
     std::vector<T> ge(n + 1, T(0)), gwidth(n, T(0));
     for (int k = 0; k < n; ++k) {
       const T mean = (s.slope[k] + s.slope[k + 1]) / 2;
@@ -210,10 +217,13 @@ class CouplingFlowReference {
       gp[n + 1 + k] =
           (1 - n * T(kMinWidth)) * s.softmax[k] * (gwidth[k] - mean_g);
     }
-    gx[dims.transformed] = gy * slope / s.total + dv / (slope * s.width[b]);
+    return gy * slope / s.total + dv / (slope * s.width[b]);
+  }
 
-    const T* w = weights_.data() + l * shape_.WeightsPerLayer();
-    T* gw = gw_all + l * shape_.WeightsPerLayer();
+  // Adjoint of a layer's conditioner of weights w: from that of its output
+  // rows, in `grows`, to its input rows, the code and the weights.
+  void BackwardConditioner(const LayerTape& t, const T* code, const T* w,
+                           T* grows, T* gz, T* gw) const {
     for (int i = static_cast<int>(dense_.size()) - 1; i >= 0; --i) {
       const DenseLayer& d = dense_[i];
       for (int o = 0; o < d.out_count; ++o) {
@@ -237,8 +247,6 @@ class CouplingFlowReference {
         }
       }
     }
-    gx[dims.first] += 2 * grows[0];
-    gx[dims.second] += 2 * grows[1];
   }
 
   CouplingShape shape_;

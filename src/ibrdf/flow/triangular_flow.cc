@@ -160,22 +160,16 @@ TriangularFlow::CodeViews TriangularFlow::Views(const float* code) const {
   return views;
 }
 
-void TriangularFlow::LogDensity(const float* x, int64_t count,
-                                const float* code, int num_threads,
-                                float* log_density, float* dcode,
-                                float* dx) const {
-  const CodeViews views = Views(code);
-  if (num_threads <= 0) num_threads = HardwareThreads();
-  std::vector<Block> blocks(num_threads, Block(conditioners_));
-  const bool gradient = dcode != nullptr || dx != nullptr;
-  ParallelFor(NumBlocks(count), num_threads, [&](int64_t index, int worker) {
-    Block& b = blocks[worker];
-    const int64_t begin = index * kB;
-    const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
-    float points[3][kB], value[kB], ones[kB], dspline[kB];
-    float features[kColumnFeatures * kB];
-    double by_d[kB][kColumnFeatures], by_p[kB][kColumnFeatures];
+// A block of points, each with what its column's features depend on.
+struct TriangularFlow::PointBlock {
+  float points[3][kB];
+  double by_d[kB][kColumnFeatures], by_p[kB][kColumnFeatures];
+
+  // Also sets the block's features.
+  PointBlock(const float* x, int64_t count, int64_t begin, int n,
+             Block* block) {
     for (int i = 0; i < 3; ++i) Gather(x + i * count, begin, n, points[i]);
+    float features[kColumnFeatures * kB];
     for (int i = 0; i < kB; ++i) {
       double f[kColumnFeatures];
       ColumnFeatures<double>(points[1][i], points[2][i], f, by_d[i], by_p[i]);
@@ -183,37 +177,33 @@ void TriangularFlow::LogDensity(const float* x, int64_t count,
         features[k * kB + i] = static_cast<float>(f[k]);
       }
     }
-    b.SetFeatures(features);
-    std::fill(value, value + kB, 0.0f);
+    block->SetFeatures(features);
+  }
+};
+
+void TriangularFlow::LogDensity(const float* x, int64_t count,
+                                const float* code, int num_threads,
+                                float* log_density, float* dcode,
+                                float* dx) const {
+  const CodeViews views = Views(code);
+  if (num_threads <= 0) num_threads = HardwareThreads();
+  std::vector<Block> blocks(num_threads, Block(conditioners_));
+  ParallelFor(NumBlocks(count), num_threads, [&](int64_t index, int worker) {
+    Block& b = blocks[worker];
+    const int64_t begin = index * kB;
+    const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
+    const PointBlock at(x, count, begin, n, &b);
+    float value[kB] = {};
     for (int dim = 2; dim >= 0; --dim) {
       float* rows = b.rows[dim].data();
       kernels_->condition(views.view[dim], rows);
-      kernels_->evaluate(views.view[dim], rows, points[dim], 1, value, value);
+      kernels_->evaluate(views.view[dim], rows, at.points[dim], 1, value,
+                         value);
     }
     std::copy(value, value + n, log_density + begin);
-    if (!gradient) return;
-    std::fill(ones, ones + kB, 1.0f);
-    b.dcode.assign(static_cast<size_t>(shape_.code_size) * kB, 0.0f);
+    if (dcode == nullptr && dx == nullptr) return;
     float gx[3][kB] = {};
-    for (int dim = 0; dim < 3; ++dim) {
-      const ConditionerView& v = views.view[dim];
-      b.grows[dim].assign(b.rows[dim].size(), 0.0f);
-      float* grows = b.grows[dim].data();
-      kernels_->adjoint(v, b.rows[dim].data(), points[dim], 1, ones, grows,
-                        dspline);
-      kernels_->backward(v, b.rows[dim].data(), grows, nullptr, nullptr,
-                         nullptr, nullptr, b.dcode.data(), true);
-      for (int i = 0; i < kB; ++i) {
-        double sum_d = 0.0, sum_p = 0.0;
-        for (int k = 0; k < kNumFeatures[dim]; ++k) {
-          sum_d += grows[k * kB + i] * by_d[i][kFirstFeature[dim] + k];
-          sum_p += grows[k * kB + i] * by_p[i][kFirstFeature[dim] + k];
-        }
-        gx[dim][i] += dspline[i];
-        gx[1][i] += static_cast<float>(sum_d);
-        gx[2][i] += static_cast<float>(sum_p);
-      }
-    }
+    BlockGradient(views, at, &b, gx);
     for (int i = 0; i < 3 && dx != nullptr; ++i) {
       std::copy(gx[i], gx[i] + n, dx + i * count + begin);
     }
@@ -224,6 +214,41 @@ void TriangularFlow::LogDensity(const float* x, int64_t count,
   });
 }
 
+void TriangularFlow::BlockGradient(const CodeViews& views, const PointBlock& at,
+                                   Block* block, float gx[3][kB]) const {
+  Block& b = *block;
+  float ones[kB], dspline[kB];
+  std::fill(ones, ones + kB, 1.0f);
+  b.dcode.assign(static_cast<size_t>(shape_.code_size) * kB, 0.0f);
+  for (int dim = 0; dim < 3; ++dim) {
+    const ConditionerView& v = views.view[dim];
+    b.grows[dim].assign(b.rows[dim].size(), 0.0f);
+    float* grows = b.grows[dim].data();
+    kernels_->adjoint(v, b.rows[dim].data(), at.points[dim], 1, ones, grows,
+                      dspline);
+    kernels_->backward(v, b.rows[dim].data(), grows, nullptr, nullptr, nullptr,
+                       nullptr, b.dcode.data(), true);
+    for (int i = 0; i < kB; ++i) {
+      double sum_d = 0.0, sum_p = 0.0;
+      for (int k = 0; k < kNumFeatures[dim]; ++k) {
+        sum_d += grows[k * kB + i] * at.by_d[i][kFirstFeature[dim] + k];
+        sum_p += grows[k * kB + i] * at.by_p[i][kFirstFeature[dim] + k];
+      }
+      gx[dim][i] += dspline[i];
+      gx[1][i] += static_cast<float>(sum_d);
+      gx[2][i] += static_cast<float>(sum_p);
+    }
+  }
+}
+
+// What all columns share, for they have the same x_p conditioner.
+struct TriangularFlow::ColumnPass {
+  const CodeViews& views;
+  std::vector<float> last;         // activation rows of x_p's spline
+  std::vector<float> last_pieces;  // their code pieces
+  size_t pieces_size = 0, scratch_size = 0;
+};
+
 void TriangularFlow::LogDensityOnColumns(const FlowColumns& x,
                                          const float* code, int num_threads,
                                          float* log_density,
@@ -231,70 +256,96 @@ void TriangularFlow::LogDensityOnColumns(const FlowColumns& x,
   const CodeViews views = Views(code);
   if (num_threads <= 0) num_threads = HardwareThreads();
   std::vector<Block> blocks(num_threads, Block(conditioners_));
-  const int codes = shape_.code_size;
+  const ColumnPass pass = PrepareColumns(views, dcode != nullptr, &blocks[0]);
+  ParallelFor(NumBlocks(x.columns), num_threads,
+              [&](int64_t index, int worker) {
+                Block& b = blocks[worker];
+                const int64_t begin = index * kB;
+                const std::vector<float> x_h =
+                    EvaluateColumns(pass, x, begin, &b, log_density);
+                if (dcode != nullptr) {
+                  ColumnGradient(pass, x, begin, x_h, &b, dcode);
+                }
+              });
+}
+
+TriangularFlow::ColumnPass TriangularFlow::PrepareColumns(
+    const CodeViews& views, bool gradient, Block* block) const {
   int widest = 0, most_bins = 0;
   for (const ConditionerShape& c : conditioners_) {
     most_bins = std::max(most_bins, c.bins);
     for (const DenseLayer& d : c.dense) widest = std::max(widest, d.out_count);
   }
+  const auto codes = static_cast<size_t>(shape_.code_size);
+  ColumnPass pass = {
+      views, {}, {}, 2 * most_bins * codes * kB, 2 * codes * kB * widest};
   // x_p's spline is the same for all columns.
-  kernels_->condition(views.view[2], blocks[0].rows[2].data());
-  const std::vector<float> last = blocks[0].rows[2];
-  std::vector<float> last_pieces;
-  if (dcode != nullptr) {
-    last_pieces.resize(static_cast<size_t>(most_bins) * codes * 2 * kB);
-    blocks[0].scratch.resize(static_cast<size_t>(2) * codes * kB * widest);
-    kernels_->code_pieces(views.view[2], last.data(), blocks[0].scratch.data(),
-                          last_pieces.data());
+  kernels_->condition(views.view[2], block->rows[2].data());
+  pass.last = block->rows[2];
+  if (gradient) {
+    pass.last_pieces.resize(pass.pieces_size);
+    block->scratch.resize(pass.scratch_size);
+    kernels_->code_pieces(views.view[2], pass.last.data(),
+                          block->scratch.data(), pass.last_pieces.data());
   }
-  const int64_t count = x.num_points();
-  ParallelFor(
-      NumBlocks(x.columns), num_threads, [&](int64_t index, int worker) {
-        Block& b = blocks[worker];
-        const int64_t begin = index * kB;
-        const int n =
-            static_cast<int>(std::min<int64_t>(kB, x.columns - begin));
-        float x_d[kB], x_p[kB], base[kB];
-        Gather(x.x_d.data(), begin, n, x_d);
-        Gather(x.x_p.data(), begin, n, x_p);
-        b.SetFeatures(x, begin, n);
-        kernels_->evaluate(views.view[2], last.data(), x_p, 1, nullptr, base);
-        kernels_->condition(views.view[1], b.rows[1].data());
-        kernels_->evaluate(views.view[1], b.rows[1].data(), x_d, 1, base, base);
-        kernels_->condition(views.view[0], b.rows[0].data());
-        std::vector<float> x_h(static_cast<size_t>(x.points) * kB), value;
-        for (int i = 0; i < x.points; ++i) {
-          Gather(x.x_h.data() + static_cast<size_t>(i) * x.columns, begin, n,
-                 x_h.data() + static_cast<size_t>(i) * kB);
-        }
-        value.resize(x_h.size());
-        kernels_->evaluate(views.view[0], b.rows[0].data(), x_h.data(),
-                           x.points, base, value.data());
-        for (int i = 0; i < x.points; ++i) {
-          std::copy(value.data() + static_cast<size_t>(i) * kB,
-                    value.data() + static_cast<size_t>(i) * kB + n,
-                    log_density + static_cast<size_t>(i) * x.columns + begin);
-        }
-        if (dcode == nullptr) return;
-        b.pieces.resize(static_cast<size_t>(most_bins) * codes * 2 * kB);
-        b.scratch.resize(static_cast<size_t>(2) * codes * kB * widest);
-        b.dcode.resize(static_cast<size_t>(codes) * kB);
-        kernels_->code_gradient(views.view[2], last.data(), last_pieces.data(),
-                                x_p, 1, nullptr, kB, kB, 0, b.dcode.data());
-        for (int dim = 1; dim >= 0; --dim) {
-          const ConditionerView& v = views.view[dim];
-          const float* rows = b.rows[dim].data();
-          kernels_->code_pieces(v, rows, b.scratch.data(), b.pieces.data());
-          if (dim == 1) {
-            kernels_->code_gradient(v, rows, b.pieces.data(), x_d, 1,
-                                    b.dcode.data(), kB, kB, 0, b.dcode.data());
-          } else {
-            kernels_->code_gradient(v, rows, b.pieces.data(), x_h.data(),
-                                    x.points, b.dcode.data(), n, count,
-                                    x.columns, dcode + begin);
-          }
-        }
-      });
+  return pass;
+}
+
+std::vector<float> TriangularFlow::EvaluateColumns(const ColumnPass& pass,
+                                                   const FlowColumns& x,
+                                                   int64_t begin, Block* block,
+                                                   float* log_density) const {
+  const std::array<ConditionerView, 3>& view = pass.views.view;
+  Block& b = *block;
+  const int n = static_cast<int>(std::min<int64_t>(kB, x.columns - begin));
+  float x_d[kB], x_p[kB], base[kB];
+  Gather(x.x_d.data(), begin, n, x_d);
+  Gather(x.x_p.data(), begin, n, x_p);
+  b.SetFeatures(x, begin, n);
+  kernels_->evaluate(view[2], pass.last.data(), x_p, 1, nullptr, base);
+  kernels_->condition(view[1], b.rows[1].data());
+  kernels_->evaluate(view[1], b.rows[1].data(), x_d, 1, base, base);
+  kernels_->condition(view[0], b.rows[0].data());
+  std::vector<float> x_h(static_cast<size_t>(x.points) * kB);
+  for (int i = 0; i < x.points; ++i) {
+    Gather(x.x_h.data() + static_cast<size_t>(i) * x.columns, begin, n,
+           x_h.data() + static_cast<size_t>(i) * kB);
+  }
+  std::vector<float> value(x_h.size());
+  kernels_->evaluate(view[0], b.rows[0].data(), x_h.data(), x.points, base,
+                     value.data());
+  for (int i = 0; i < x.points; ++i) {
+    std::copy(value.data() + static_cast<size_t>(i) * kB,
+              value.data() + static_cast<size_t>(i) * kB + n,
+              log_density + static_cast<size_t>(i) * x.columns + begin);
+  }
+  return x_h;
+}
+
+void TriangularFlow::ColumnGradient(const ColumnPass& pass,
+                                    const FlowColumns& x, int64_t begin,
+                                    const std::vector<float>& x_h, Block* block,
+                                    float* dcode) const {
+  const std::array<ConditionerView, 3>& view = pass.views.view;
+  Block& b = *block;
+  const int n = static_cast<int>(std::min<int64_t>(kB, x.columns - begin));
+  float x_d[kB], x_p[kB];
+  Gather(x.x_d.data(), begin, n, x_d);
+  Gather(x.x_p.data(), begin, n, x_p);
+  b.pieces.resize(pass.pieces_size);
+  b.scratch.resize(pass.scratch_size);
+  b.dcode.resize(static_cast<size_t>(shape_.code_size) * kB);
+  kernels_->code_gradient(view[2], pass.last.data(), pass.last_pieces.data(),
+                          x_p, 1, nullptr, kB, kB, 0, b.dcode.data());
+  const float* rows = b.rows[1].data();
+  kernels_->code_pieces(view[1], rows, b.scratch.data(), b.pieces.data());
+  kernels_->code_gradient(view[1], rows, b.pieces.data(), x_d, 1,
+                          b.dcode.data(), kB, kB, 0, b.dcode.data());
+  rows = b.rows[0].data();
+  kernels_->code_pieces(view[0], rows, b.scratch.data(), b.pieces.data());
+  kernels_->code_gradient(view[0], rows, b.pieces.data(), x_h.data(), x.points,
+                          b.dcode.data(), n, x.num_points(), x.columns,
+                          dcode + begin);
 }
 
 template <bool kForward>

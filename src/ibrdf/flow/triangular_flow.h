@@ -20,9 +20,6 @@ class TriangularFlow final : public BrdfFlow {
                  const std::vector<float>& weights,
                  SimdLevel level = ActiveSimdLevel());
 
-  const TriangularShape& shape() const { return shape_; }
-  const std::vector<float>& weights() const { return weights_; }
-
   void SetWeights(const std::vector<float>& weights) override;
   void LogDensity(const float* x, int64_t count, const float* code,
                   int num_threads, float* log_density, float* dcode,
@@ -42,9 +39,25 @@ class TriangularFlow final : public BrdfFlow {
  private:
   class Pass;
   struct CodeViews;  // the conditioners of one code
-  struct Block;      // activations of one block of columns
+  struct Block;      // activations of one block of kColumnBlock columns
+  struct PointBlock;
+  struct ColumnPass;
   CodeViews Views(const float* code) const;
   ConditionerView View(int dim) const;
+  // Gradients of a block that has been evaluated: in x, and, in block->dcode,
+  // in the code.
+  void BlockGradient(const CodeViews& views, const PointBlock& at, Block* block,
+                     float gx[3][kColumnBlock]) const;
+  // LogDensityOnColumns: what all columns share; a block of columns from
+  // `begin` on, whose x_h [points][kColumnBlock] it returns; its dcode.
+  ColumnPass PrepareColumns(const CodeViews& views, bool gradient,
+                            Block* block) const;
+  std::vector<float> EvaluateColumns(const ColumnPass& pass,
+                                     const FlowColumns& x, int64_t begin,
+                                     Block* block, float* log_density) const;
+  void ColumnGradient(const ColumnPass& pass, const FlowColumns& x,
+                      int64_t begin, const std::vector<float>& x_h,
+                      Block* block, float* dcode) const;
   template <bool kForward>
   void Transform(const double* from, int64_t count, const float* code,
                  int num_threads, double* to) const;

@@ -68,75 +68,100 @@ double CloudCover(double phi, double elevation) {
   return std::clamp(1.0 - clear, 0.0, 1.0);
 }
 
+// A direction as the sky sees it; angles in radians.
+struct SkyView {
+  Eigen::Vector3d direction;
+  double elevation, phi, to_sun;
+};
+
+constexpr double kSoft = 1.5 * kDegree;
+
+// Irradiance of the ground, W/m^2.
+double HorizontalIrradiance(const SkyOptions& options) {
+  return kPi * options.zenith_radiance +
+         options.sun_irradiance *
+             std::max(std::cos(options.sun_theta_degrees * kDegree), 0.0);
+}
+
+// The clear sky and the sun's glow.
+Eigen::Array3d ClearSky(const SkyOptions& options, const SkyView& view) {
+  const double height = std::max(view.direction.y(), 0.0);
+  const double horizon = std::exp(-height / (0.12 + 0.25 * options.haze));
+  const double glow_width = (8.0 + 20.0 * options.haze) * kDegree;
+  const double glow =
+      0.15 * options.sun_irradiance * std::exp(-view.to_sun / glow_width);
+  return options.zenith_radiance *
+             ((1.0 - 0.5 * options.haze) * kZenithColour * (1.0 - horizon) +
+              (1.2 + 1.3 * options.haze) * kHorizonColour * horizon) +
+         glow * kSunColour;
+}
+
+void AddClouds(const SkyOptions& options, const SkyView& view,
+               Eigen::Array3d* sky) {
+  const double cover =
+      options.clouds * CloudCover(view.phi, std::max(view.elevation, 0.0));
+  const double lit = 0.6 + 0.9 * std::pow(0.5 + 0.5 * std::cos(view.to_sun), 3);
+  const Eigen::Array3d cloud =
+      lit * (options.zenith_radiance * 1.6 + 0.12 * options.sun_irradiance) *
+      Eigen::Array3d(1.05, 1.0, 0.97);
+  *sky += cover * (cloud - *sky);
+}
+
+Eigen::Array3d Ground(const SkyOptions& options, const SkyView& view) {
+  const Eigen::Vector3d& direction = view.direction;
+  // Broad fields and paths on the ground.
+  const double texture = 1.0 +
+                         0.35 * std::sin(3.0 * direction.x() + 1.0) *
+                             std::cos(4.0 * direction.z()) +
+                         0.15 * std::sin(9.0 * direction.x() * direction.z());
+  return (0.01 + options.ground_albedo * texture) *
+         HorizontalIrradiance(options) / kPi * kGroundColour;
+}
+
+void AddBuilding(const SkyOptions& options, const SkyView& view,
+                 const Building& building, bool has_windows,
+                 Eigen::Array3d* radiance) {
+  const double top = building.height * options.skyline * kDegree;
+  const double across =
+      building.half_width * kDegree -
+      std::abs(WrappedDifference(view.phi, building.phi * kDegree));
+  // Facing the sun: a wall is lit by what comes from the other side.
+  const double facing =
+      0.5 - 0.5 * std::cos((building.phi - options.sun_phi_degrees) * kDegree);
+  const Eigen::Array3d wall =
+      (0.15 + 0.5 * facing) * HorizontalIrradiance(options) / kPi * kWallColour;
+  const double inside =
+      Step(across, kSoft) * Step(top - view.elevation, kSoft) *
+      Step(view.elevation, kSoft) * std::min(options.skyline * 4.0, 1.0);
+  *radiance += inside * (wall - *radiance);
+  if (!has_windows) return;
+  const double window =
+      inside *
+      std::exp(-std::pow((view.elevation - kWindowElevation * top) /
+                             (0.2 * top + 0.5 * kDegree),
+                         2)) *
+      Step(across - 0.4 * building.half_width * kDegree, kSoft);
+  *radiance +=
+      window * 2.0 * options.zenith_radiance * options.skyline * kWindowColour;
+}
+
 }  // namespace
 
 Eigen::Array3d SkyRadiance(const SkyOptions& options,
                            const Eigen::Vector3d& direction) {
   const Eigen::Vector3d sun = MapDirection(options.sun_theta_degrees,
                                            options.sun_phi_degrees, 180, 360);
-  const double elevation = std::asin(std::clamp(direction.y(), -1.0, 1.0));
-  const double phi = std::atan2(direction.x(), direction.z());
-  const double to_sun = std::acos(std::clamp(direction.dot(sun), -1.0, 1.0));
-
-  const double height = std::max(direction.y(), 0.0);
-  const double horizon = std::exp(-height / (0.12 + 0.25 * options.haze));
-  const double glow_width = (8.0 + 20.0 * options.haze) * kDegree;
-  const double glow =
-      0.15 * options.sun_irradiance * std::exp(-to_sun / glow_width);
-  Eigen::Array3d sky =
-      options.zenith_radiance *
-          ((1.0 - 0.5 * options.haze) * kZenithColour * (1.0 - horizon) +
-           (1.2 + 1.3 * options.haze) * kHorizonColour * horizon) +
-      glow * kSunColour;
-
-  const double cover =
-      options.clouds * CloudCover(phi, std::max(elevation, 0.0));
-  const double lit = 0.6 + 0.9 * std::pow(0.5 + 0.5 * std::cos(to_sun), 3);
-  const Eigen::Array3d cloud =
-      lit * (options.zenith_radiance * 1.6 + 0.12 * options.sun_irradiance) *
-      Eigen::Array3d(1.05, 1.0, 0.97);
-  sky += cover * (cloud - sky);
-
-  const double horizontal =
-      kPi * options.zenith_radiance +
-      options.sun_irradiance *
-          std::max(std::cos(options.sun_theta_degrees * kDegree), 0.0);
-  // Broad fields and paths on the ground.
-  const double texture = 1.0 +
-                         0.35 * std::sin(3.0 * direction.x() + 1.0) *
-                             std::cos(4.0 * direction.z()) +
-                         0.15 * std::sin(9.0 * direction.x() * direction.z());
-  const Eigen::Array3d ground = (0.01 + options.ground_albedo * texture) *
-                                horizontal / kPi * kGroundColour;
-
-  constexpr double kSoft = 1.5 * kDegree;
-  Eigen::Array3d radiance = ground + Step(elevation, kSoft) * (sky - ground);
+  const SkyView view = {direction,
+                        std::asin(std::clamp(direction.y(), -1.0, 1.0)),
+                        std::atan2(direction.x(), direction.z()),
+                        std::acos(std::clamp(direction.dot(sun), -1.0, 1.0))};
+  Eigen::Array3d sky = ClearSky(options, view);
+  AddClouds(options, view, &sky);
+  const Eigen::Array3d ground = Ground(options, view);
+  Eigen::Array3d radiance =
+      ground + Step(view.elevation, kSoft) * (sky - ground);
   for (size_t b = 0; b < std::size(kBuildings); ++b) {
-    const Building& building = kBuildings[b];
-    const double top = building.height * options.skyline * kDegree;
-    const double across =
-        building.half_width * kDegree -
-        std::abs(WrappedDifference(phi, building.phi * kDegree));
-    // Facing the sun: a wall is lit by what comes from the other side.
-    const double facing =
-        0.5 -
-        0.5 * std::cos((building.phi - options.sun_phi_degrees) * kDegree);
-    const Eigen::Array3d wall =
-        (0.15 + 0.5 * facing) * horizontal / kPi * kWallColour;
-    const double inside = Step(across, kSoft) * Step(top - elevation, kSoft) *
-                          Step(elevation, kSoft) *
-                          std::min(options.skyline * 4.0, 1.0);
-    radiance += inside * (wall - radiance);
-    if (b % 2 == 0) {
-      const double window =
-          inside *
-          std::exp(-std::pow((elevation - kWindowElevation * top) /
-                                 (0.2 * top + 0.5 * kDegree),
-                             2)) *
-          Step(across - 0.4 * building.half_width * kDegree, kSoft);
-      radiance += window * 2.0 * options.zenith_radiance * options.skyline *
-                  kWindowColour;
-    }
+    AddBuilding(options, view, kBuildings[b], b % 2 == 0, &radiance);
   }
   return radiance;
 }

@@ -87,6 +87,16 @@ struct Scene::Impl {
 
   bool BuildEmbree();
   bool IntersectMesh(const Ray& ray, bool from_infinity, SurfaceHit* hit) const;
+  // In the frame that Embree knows, of unit bounds.
+  static RTCRay RayFrom(const Eigen::Vector3d& origin,
+                        const Eigen::Vector3d& direction);
+  // The interpolated normal of a hit, or the triangle's where there is none.
+  // Sets the triangle's, on the same side; wo: to the viewer.
+  Eigen::Vector3d NormalAt(const RTCHit& hit, const Eigen::Vector3d& wo,
+                           Eigen::Vector3d* geometric) const;
+  // SurfaceHit::position; outward: the triangle's normal on the viewer's side.
+  Eigen::Vector3d LiftedPosition(const RTCHit& hit,
+                                 const Eigen::Vector3d& outward) const;
   bool MeshOccludes(const Eigen::Vector3d& position,
                     const Eigen::Vector3d& direction) const;
   void MeshOccludes(const Eigen::Vector3d& position,
@@ -135,50 +145,69 @@ bool Scene::Impl::IntersectMesh(const Ray& ray, bool from_infinity,
   const double to_center = -origin.dot(ray.direction);
   double start = to_center - 1.5;
   if (!from_infinity) start = std::max(start, 0.0);
-  const Eigen::Vector3d o = origin + start * ray.direction;
 
   RTCRayHit query{};
-  query.ray.org_x = static_cast<float>(o.x());
-  query.ray.org_y = static_cast<float>(o.y());
-  query.ray.org_z = static_cast<float>(o.z());
-  query.ray.dir_x = static_cast<float>(ray.direction.x());
-  query.ray.dir_y = static_cast<float>(ray.direction.y());
-  query.ray.dir_z = static_cast<float>(ray.direction.z());
-  query.ray.tnear = 0.0f;
-  query.ray.tfar = std::numeric_limits<float>::infinity();
-  query.ray.mask = ~0u;
+  query.ray = RayFrom(origin + start * ray.direction, ray.direction);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcIntersect1(embree, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
 
-  const std::array<int, 3>& triangle = mesh.triangles[query.hit.primID];
   const Eigen::Vector3d wo = -ray.direction;
-  Eigen::Vector3d geometric(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-  if (geometric.allFinite() && geometric.norm() > 0.0) {
-    geometric.normalize();
+  Eigen::Vector3d geometric;
+  const Eigen::Vector3d normal = NormalAt(query.hit, wo, &geometric);
+  hit->position = LiftedPosition(query.hit, geometric.dot(wo) < 0.0
+                                                ? Eigen::Vector3d(-geometric)
+                                                : geometric);
+  hit->distance = (start + query.ray.tfar) * radius;
+  hit->normal = FaceViewer(normal, geometric, wo);
+  return true;
+}
+
+RTCRay Scene::Impl::RayFrom(const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& direction) {
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(origin.x());
+  ray.org_y = static_cast<float>(origin.y());
+  ray.org_z = static_cast<float>(origin.z());
+  ray.dir_x = static_cast<float>(direction.x());
+  ray.dir_y = static_cast<float>(direction.y());
+  ray.dir_z = static_cast<float>(direction.z());
+  ray.tnear = 0.0f;
+  ray.tfar = std::numeric_limits<float>::infinity();
+  ray.mask = ~0u;
+  return ray;
+}
+
+Eigen::Vector3d Scene::Impl::NormalAt(const RTCHit& hit,
+                                      const Eigen::Vector3d& wo,
+                                      Eigen::Vector3d* geometric) const {
+  *geometric = Eigen::Vector3d(hit.Ng_x, hit.Ng_y, hit.Ng_z);
+  if (geometric->allFinite() && geometric->norm() > 0.0) {
+    geometric->normalize();
   } else {
-    geometric = wo;
+    *geometric = wo;
   }
-  Eigen::Vector3d normal = geometric;
-  if (!mesh.normals.empty()) {
-    const double u = query.hit.u, v = query.hit.v;
-    const Eigen::Vector3d smooth =
-        (1.0 - u - v) * mesh.normals[triangle[0]].cast<double>() +
-        u * mesh.normals[triangle[1]].cast<double>() +
-        v * mesh.normals[triangle[2]].cast<double>();
-    if (smooth.allFinite() && smooth.norm() > 1e-6) {
-      normal = smooth.normalized();
-      // The winding may disagree with the normals: the side that the viewer
-      // sees decides.
-      if (geometric.dot(normal) < 0.0) geometric = -geometric;
-    }
-  }
-  const Eigen::Vector3d outward =
-      geometric.dot(wo) < 0.0 ? Eigen::Vector3d(-geometric) : geometric;
-  const double weights[3] = {1.0 - query.hit.u - query.hit.v, query.hit.u,
-                             query.hit.v};
+  if (mesh.normals.empty()) return *geometric;
+  const std::array<int, 3>& triangle = mesh.triangles[hit.primID];
+  const double u = hit.u, v = hit.v;
+  const Eigen::Vector3d smooth =
+      (1.0 - u - v) * mesh.normals[triangle[0]].cast<double>() +
+      u * mesh.normals[triangle[1]].cast<double>() +
+      v * mesh.normals[triangle[2]].cast<double>();
+  if (!smooth.allFinite() || !(smooth.norm() > 1e-6)) return *geometric;
+  const Eigen::Vector3d normal = smooth.normalized();
+  // The winding may disagree with the normals: the side that the viewer sees
+  // decides.
+  if (geometric->dot(normal) < 0.0) *geometric = -*geometric;
+  return normal;
+}
+
+Eigen::Vector3d Scene::Impl::LiftedPosition(
+    const RTCHit& hit, const Eigen::Vector3d& outward) const {
+  const std::array<int, 3>& triangle = mesh.triangles[hit.primID];
+  const double weights[3] = {1.0 - hit.u - hit.v, hit.u, hit.v};
   Eigen::Vector3d corners[3], corner_normals[3];
   for (int k = 0; k < 3; ++k) {
     corners[k] = (mesh.vertices[triangle[k]].cast<double>() - center) / radius;
@@ -187,28 +216,14 @@ bool Scene::Impl::IntersectMesh(const Ray& ray, bool from_infinity,
       corner_normals[k] = mesh.normals[triangle[k]].cast<double>();
     }
   }
-  hit->position =
-      center +
-      radius * (LiftToSmoothSurface(corners, corner_normals, weights, outward) +
-                kShadowOffset * outward);
-  hit->distance = (start + query.ray.tfar) * radius;
-  hit->normal = FaceViewer(normal, geometric, wo);
-  return true;
+  return center + radius * (LiftToSmoothSurface(corners, corner_normals,
+                                                weights, outward) +
+                            kShadowOffset * outward);
 }
 
 bool Scene::Impl::MeshOccludes(const Eigen::Vector3d& position,
                                const Eigen::Vector3d& direction) const {
-  const Eigen::Vector3d o = (position - center) / radius;
-  RTCRay ray{};
-  ray.org_x = static_cast<float>(o.x());
-  ray.org_y = static_cast<float>(o.y());
-  ray.org_z = static_cast<float>(o.z());
-  ray.dir_x = static_cast<float>(direction.x());
-  ray.dir_y = static_cast<float>(direction.y());
-  ray.dir_z = static_cast<float>(direction.z());
-  ray.tnear = 0.0f;
-  ray.tfar = std::numeric_limits<float>::infinity();
-  ray.mask = ~0u;
+  RTCRay ray = RayFrom((position - center) / radius, direction);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(embree, &context, &ray);

@@ -34,14 +34,9 @@ bool NormalAt(const Image& normals, double x, double y,
   return true;
 }
 
-}  // namespace
-
-StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
-    const Scene& scene, const Camera& camera, int width, int height,
-    const Mask& mask, int samples_per_side, int num_threads) {
-  CHECK(width > 0 && height > 0 && samples_per_side > 0);
+Status CheckSizes(const Scene& scene, const Camera& camera, int width,
+                  int height, const Mask& mask) {
   const Image& normals = scene.normal_map();
-  const bool orthographic = camera.type == CameraType::kOrthographic;
   const auto size = [](int w, int h) {
     return std::to_string(w) + " x " + std::to_string(h);
   };
@@ -55,38 +50,61 @@ StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
                         "expected fov_degrees in (0, 180), from apart from to, "
                         "up not parallel to the view");
   }
-  if (!normals.empty()) {
-    if (!orthographic) {
-      return InvalidInput("camera", "a normal map needs type orthographic");
-    }
-    if (normals.width != width || normals.height != height) {
-      return InvalidInput("normals", "expected the image's size " +
-                                         size(width, height) + ", found " +
-                                         size(normals.width, normals.height));
-    }
+  if (normals.empty()) return Status();
+  if (camera.type != CameraType::kOrthographic) {
+    return InvalidInput("camera", "a normal map needs type orthographic");
   }
+  if (normals.width != width || normals.height != height) {
+    return InvalidInput("normals", "expected the image's size " +
+                                       size(width, height) + ", found " +
+                                       size(normals.width, normals.height));
+  }
+  return Status();
+}
 
+// What a position of the image, in pixels, sees; false: nothing. Sets what the
+// position decides of the point.
+bool SeePoint(const Scene& scene, const Camera& camera, double x, double y,
+              int width, int height, ShadingPoint* point) {
+  const Ray ray = CameraRay(camera, x, y, width, height);
+  const Eigen::Vector3d wo = -ray.direction;
+  const Image& normals = scene.normal_map();
+  SurfaceHit hit{};
+  if (!normals.empty()) {
+    Eigen::Vector3d normal;
+    if (!NormalAt(normals, x, y, &normal)) return false;
+    hit.normal = FaceViewer(normal, wo, wo);
+  } else if (!scene.Intersect(ray, camera.type == CameraType::kOrthographic,
+                              &hit)) {
+    return false;
+  }
+  point->normal = hit.normal.cast<float>();
+  point->wo = wo.cast<float>();
+  point->position = hit.position;
+  return true;
+}
+
+}  // namespace
+
+StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
+    const Scene& scene, const Camera& camera, int width, int height,
+    const Mask& mask, int samples_per_side, int num_threads) {
+  CHECK(width > 0 && height > 0 && samples_per_side > 0);
+  IBRDF_RETURN_IF_ERROR(CheckSizes(scene, camera, width, height, mask));
   std::vector<std::vector<ShadingPoint>> rows(height);
   const int s = samples_per_side;
   ParallelFor(height, num_threads, [&](int64_t y, int) {
     for (int x = 0; x < width; ++x) {
-      const int pixel = static_cast<int>(y) * width + x;
-      if (!mask.empty() && mask.inside[pixel] == 0) continue;
+      ShadingPoint point{};
+      point.pixel = static_cast<int>(y) * width + x;
+      point.coverage = 1.0f / static_cast<float>(s * s);
+      if (!mask.empty() && mask.inside[point.pixel] == 0) continue;
       for (int k = 0; k < s * s; ++k) {
-        const double px = x + (k % s + 0.5) / s;
-        const double py = static_cast<double>(y) + (k / s + 0.5) / s;
-        const Ray ray = CameraRay(camera, px, py, width, height);
-        const Eigen::Vector3d wo = -ray.direction;
-        SurfaceHit hit{};
-        if (!normals.empty()) {
-          Eigen::Vector3d normal;
-          if (!NormalAt(normals, px, py, &normal)) continue;
-          hit.normal = FaceViewer(normal, wo, wo);
-        } else if (!scene.Intersect(ray, orthographic, &hit)) {
-          continue;
+        if (SeePoint(scene, camera, x + (k % s + 0.5) / s,
+                     static_cast<double>(y) + (k / s + 0.5) / s, width, height,
+                     &point)) {
+          rows[y].push_back(point);
         }
-        rows[y].push_back({hit.normal.cast<float>(), wo.cast<float>(), pixel,
-                           1.0f / static_cast<float>(s * s), 0, hit.position});
       }
     }
   });

@@ -67,19 +67,31 @@ RadiosityPatches::RadiosityPatches(const Scene& scene,
   CHECK_EQ(visibility->grid().rows() % options.lattice_rows, 0);
   CHECK_LE(2 * options.lattice_rows * options.lattice_rows, 65536);
   CHECK(options.max_patches >= 200 && options.max_patches < kNoPatch);
-  const std::vector<ShadingPoint> few =
-      SpreadPoints(points, options.max_points);
-  std::vector<std::vector<Hit>> found(few.size());
-  ParallelFor(static_cast<int64_t>(few.size()), options.num_threads,
+  PlacePatches(CastRays(SpreadPoints(points, options.max_points), *visibility));
+  VisibilityOptions rays;
+  rays.rows = std::max(visibility->grid().rows() / kCoarser, 32);
+  rays.num_threads = options.num_threads;
+  const auto own = std::make_shared<Visibility>(scene_, points_, rays);
+  visibility_ = own;
+  by_point_.lattice_rows = options.lattice_rows;
+  LookFrom(points, *visibility, &by_point_);
+  if (options.bounces > 1) LinkPatches(own.get());
+}
+
+std::vector<RadiosityPatches::Hit> RadiosityPatches::CastRays(
+    const std::vector<ShadingPoint>& points,
+    const Visibility& visibility) const {
+  std::vector<std::vector<Hit>> found(points.size());
+  ParallelFor(static_cast<int64_t>(points.size()), options_.num_threads,
               [&](int64_t i, int) {
-                const uint64_t* const hidden = visibility->Hidden(few[i]);
+                const uint64_t* const hidden = visibility.Hidden(points[i]);
                 if (hidden == nullptr) return;
                 std::vector<HiddenCell> cells;
-                HiddenCells(visibility->grid(), few[i], hidden,
+                HiddenCells(visibility.grid(), points[i], hidden,
                             options_.lattice_rows, &cells);
                 for (const HiddenCell& cell : cells) {
                   Hit hit;
-                  if (Meet(few[i], cell.direction, &hit)) {
+                  if (Meet(points[i], cell.direction, &hit)) {
                     found[i].push_back(hit);
                   }
                 }
@@ -88,6 +100,10 @@ RadiosityPatches::RadiosityPatches(const Scene& scene,
   for (const std::vector<Hit>& of_point : found) {
     hits.insert(hits.end(), of_point.begin(), of_point.end());
   }
+  return hits;
+}
+
+void RadiosityPatches::PlacePatches(const std::vector<Hit>& hits) {
   Eigen::Vector3d high = Eigen::Vector3d::Zero();
   if (!hits.empty()) low_ = high = hits[0].position;
   for (const Hit& hit : hits) {
@@ -95,29 +111,24 @@ RadiosityPatches::RadiosityPatches(const Scene& scene,
     high = high.cwiseMax(hit.position);
   }
   const double box = std::max((high - low_).norm(), 1e-300);
-  side_ = options.patch_size * box / 2;
+  side_ = options_.patch_size * box / 2;
   while (!Gather(hits)) {
     side_ *= kPatchGrowth;
     // One cube holds all: 24 orientations, 6 views each.
     if (side_ > 2 * box) options_.views = 1;
   }
-  VisibilityOptions rays;
-  rays.rows = std::max(visibility->grid().rows() / kCoarser, 32);
-  rays.num_threads = options.num_threads;
-  auto own = std::make_shared<Visibility>(scene_, points_, rays);
-  visibility_ = own;
-  by_point_.lattice_rows = options.lattice_rows;
-  LookFrom(points, *visibility, &by_point_);
-  if (options.bounces == 1) return;
-  by_patch_.lattice_rows = std::max(options.lattice_rows / kCoarser, 1);
+}
+
+void RadiosityPatches::LinkPatches(Visibility* visibility) {
+  by_patch_.lattice_rows = std::max(options_.lattice_rows / kCoarser, 1);
   for (int round = 0; round < kMaxRounds; ++round) {
     const auto looked = static_cast<int64_t>(by_patch_.begin.size()) - 1;
     const std::vector<ShadingPoint> fresh(points_.begin() + looked,
                                           points_.end());
     if (fresh.empty()) break;
-    if (round > 0) own->Add(fresh);
+    if (round > 0) visibility->Add(fresh);
     const std::vector<Unknown> unknown =
-        LookFrom(fresh, *visibility_, &by_patch_);
+        LookFrom(fresh, *visibility, &by_patch_);
     if (round + 1 < kMaxRounds) AddPatches(unknown, &by_patch_);
   }
 }
@@ -360,19 +371,6 @@ void RadiosityPatches::AddPatches(const std::vector<Unknown>& unknown,
     if (patch < 0) continue;
     table->seen[u.entry].patch = static_cast<uint16_t>(patch);
   }
-}
-
-int64_t RadiosityPatches::num_bins() const {
-  return static_cast<int64_t>(by_point_.seen.size() + by_patch_.seen.size());
-}
-
-int64_t RadiosityPatches::num_lost() const {
-  int64_t lost = 0;
-  for (const Table* table : {&by_point_, &by_patch_}) {
-    lost += std::count_if(table->seen.begin(), table->seen.end(),
-                          [](SeenPatch s) { return s.patch == kNoPatch; });
-  }
-  return lost;
 }
 
 SeenPatches RadiosityPatches::Table::Of(int index) const {
