@@ -59,7 +59,7 @@ StatusOr<Lambertian> FitLambertian(const MerlTable& table) {
   if (!samples.ok()) return samples.status();
   Lambertian brdf;
   for (int c = 0; c < 3; ++c) {
-    FromLogParameter(LogAlbedo(*samples, c), c, &brdf);
+    brdf.albedo[c] = std::exp(LogAlbedo(*samples, c));
   }
   return brdf;
 }

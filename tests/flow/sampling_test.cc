@@ -1,4 +1,3 @@
-#include "ibrdf/flow/sampling.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +5,7 @@
 #include <vector>
 
 #include "tests/support/flow_cells.h"
+#include "tests/support/flow_sampling.h"
 #include "tests/support/small_flow.h"
 #include "tests/support/statistics.h"
 

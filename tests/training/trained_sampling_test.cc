@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "ibrdf/flow/brdf_flow.h"
-#include "ibrdf/flow/sampling.h"
 #include "ibrdf/io/model_file.h"
 #include "tests/support/flow_cells.h"
+#include "tests/support/flow_sampling.h"
 #include "tests/support/statistics.h"
 
 namespace ibrdf {

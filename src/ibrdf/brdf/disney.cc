@@ -7,18 +7,11 @@
 
 namespace ibrdf {
 namespace {
-// Stands for 0, and 1 - it for 1, where a logarithm is taken.
-constexpr double kTiny = 1e-12;
 // Smallest alpha^2: keeps D finite at theta_h = 0.
 constexpr double kMinAlpha2 = 1e-10;
 constexpr double kSpecularScale = 0.08;  // Burley 2012, section 5.5
 
 double Logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
-
-double Logit(double p) {
-  const double q = std::clamp(p, kTiny, 1.0 - kTiny);
-  return std::log(q / (1.0 - q));
-}
 
 double Pow5(double x) { return x * x * x * x * x; }
 
@@ -92,15 +85,6 @@ BrdfFunction Disney::Function() const {
   return [brdf = *this](double theta_h, double theta_d, double phi_d) {
     return brdf.Evaluate(theta_h, theta_d, phi_d);
   };
-}
-
-DisneyLog ToLogParameters(const Disney& brdf) {
-  DisneyLog p;
-  for (int c = 0; c < 3; ++c) p[c] = std::log(std::max(brdf.base[c], kTiny));
-  p[3] = Logit(brdf.roughness);
-  p[4] = Logit(brdf.metallic);
-  p[5] = Logit(kSpecularScale * brdf.specular);
-  return p;
 }
 
 Disney FromLogParameters(const DisneyLog& parameters) {

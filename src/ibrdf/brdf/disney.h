@@ -35,9 +35,6 @@ struct Disney {
 inline constexpr int kDisneyParameters = 6;
 using DisneyLog = Eigen::Matrix<double, kDisneyParameters, 1>;
 
-// Values at the ends of their ranges become the nearest with a finite
-// logarithm.
-DisneyLog ToLogParameters(const Disney& brdf);
 Disney FromLogParameters(const DisneyLog& parameters);
 
 // What f takes from the angles alone, to be kept over the iterations of a fit.

@@ -17,12 +17,4 @@ struct Lambertian {
   BrdfFunction Function() const;
 };
 
-// One channel in an unbounded parameter: log albedo. An albedo of 0 becomes
-// the nearest value with a finite logarithm.
-double ToLogParameter(const Lambertian& brdf, int channel);
-void FromLogParameter(double log_albedo, int channel, Lambertian* brdf);
-
-// f of a channel, 1/sr, and where `gradient` is not null df/dlog_albedo.
-double EvaluateLambertian(double log_albedo, double* gradient);
-
 }  // namespace ibrdf

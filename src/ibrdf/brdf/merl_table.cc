@@ -8,10 +8,6 @@
 namespace ibrdf {
 namespace {
 
-int Floor(double x, int n) {
-  return std::clamp(static_cast<int>(std::floor(x)), 0, n - 1);
-}
-
 // Of the bins' centres: a table has 1.5 million.
 struct BinTrigonometry {
   BinTrigonometry() {
@@ -47,20 +43,6 @@ double MerlBinLowestCosine(int theta_h, int theta_d, int phi_d) {
 
 bool MerlBinAboveHorizon(int theta_h, int theta_d, int phi_d) {
   return MerlBinLowestCosine(theta_h, theta_d, phi_d) > 0.0;
-}
-
-Eigen::Array3d LookUpMerl(const MerlTable& table, double theta_h,
-                          double theta_d, double phi_d) {
-  const int i = Floor(
-      std::sqrt(std::max(theta_h, 0.0) / (kPi / 2)) * kMerlThetaH, kMerlThetaH);
-  const int j = Floor(theta_d / (kPi / 2) * kMerlThetaD, kMerlThetaD);
-  const int k = Floor(phi_d / kPi * kMerlPhiD, kMerlPhiD);
-  const int bin = MerlTable::Bin(i, j, k);
-  Eigen::Array3d f;
-  for (int c = 0; c < 3; ++c) {
-    f[c] = std::max(table.Raw(c, bin), 0.0) * kMerlScale[c];
-  }
-  return f;
 }
 
 Eigen::Array3d InterpolateMerl(const MerlTable& table, double theta_h,

@@ -48,9 +48,4 @@ bool MerlBinAboveHorizon(int theta_h, int theta_d, int phi_d);
 Eigen::Array3d InterpolateMerl(const MerlTable& table, double theta_h,
                                double theta_d, double phi_d);
 
-// BRDF in 1/sr of the bin that holds the angles (floor lookup), as most
-// renderers read these tables; 0 in an invalid bin.
-Eigen::Array3d LookUpMerl(const MerlTable& table, double theta_h,
-                          double theta_d, double phi_d);
-
 }  // namespace ibrdf

@@ -56,7 +56,10 @@ class BrdfFlow {
                                    float* dcode) const = 0;
 
   // The flow itself, [3][count]: x -> latent, uniform if x has the density, and
-  // back. Sampling is the inverse of uniform numbers.
+  // back. No program calls the two: they are what makes the density one of an
+  // invertible map, and tests hold the flow to that promise (inverse of forward
+  // is the identity over the closed cube; the inverse of uniform numbers has
+  // the density).
   virtual void Latent(const double* x, int64_t count, const float* code,
                       int num_threads, double* latent) const = 0;
   virtual void Inverse(const double* latent, int64_t count, const float* code,

@@ -18,9 +18,6 @@ class CouplingFlow final : public BrdfFlow {
   CouplingFlow(const CouplingShape& shape, const std::vector<float>& weights,
                SimdLevel level = ActiveSimdLevel());
 
-  const CouplingShape& shape() const { return shape_; }
-  const std::vector<float>& weights() const { return weights_; }
-
   void SetWeights(const std::vector<float>& weights) override;
   void LogDensity(const float* x, int64_t count, const float* code,
                   int num_threads, float* log_density, float* dcode,

@@ -30,7 +30,8 @@ class AlbedoRule {
   const std::vector<Eigen::Vector3d>& directions() const { return directions_; }
   const std::vector<double>& weights() const { return weights_; }  // sr
   const std::vector<double>& cos_i() const { return cos_i_; }
-  // What the weights were multiplied by: 1 for a perfect rule.
+  // What the weights were multiplied by: 1 for a perfect rule, which tests hold
+  // it to.
   double correction() const { return correction_; }
 
   Eigen::Array3d Albedo(const BrdfBatch& brdf) const;

@@ -59,7 +59,6 @@ void Visibility::Add(const std::vector<ShadingPoint>& points) {
       begin_[points[i].index] = begin;
       begin += static_cast<int64_t>(grid_.words());
     }
-    num_shadowed_ += static_cast<int>(chunk.shadowed.size());
     num_rays_ += chunk.rays;
   }
 }

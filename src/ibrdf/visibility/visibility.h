@@ -30,15 +30,13 @@ class Visibility {
   // from it. The point must be one of the constructor's.
   const uint64_t* Hidden(const ShadingPoint& point) const;
 
-  // Points from which something is hidden.
-  int num_shadowed() const { return num_shadowed_; }
+  // Rays cast so far.
   int64_t num_rays() const { return num_rays_; }
   size_t MemoryBytes() const;
 
  private:
   VisibilityGrid grid_;
   int num_threads_;
-  int num_shadowed_ = 0;
   int64_t num_rays_ = 0;
   // By index: words into bits_, kClear or kAbsent.
   std::vector<int64_t> begin_;
