@@ -6,7 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "ibrdf/approximation/gaussian_transport.h"
+#include "ibrdf/approximation/gaussian_light.h"
+#include "ibrdf/approximation/gaussian_radiance.h"
+#include "ibrdf/approximation/harmonic_radiance.h"
 #include "ibrdf/image/darkest.h"
 #include "ibrdf/render/scene_probe.h"
 #include "ibrdf/solvers/forward/approximation_costs.h"
@@ -58,10 +60,10 @@ int SmoothOrder(const std::vector<double>& by_order, double log_error) {
   return order;
 }
 
-bool RenderTo(std::vector<double>* L_o, const PointRenderer& render,
-              const std::vector<ShadingPoint>& points) {
-  L_o->resize(3 * points.size());
-  return render(points, L_o->data());
+GaussianFitOptions Spread(int spread) {
+  GaussianFitOptions options;
+  options.spread = spread;
+  return options;
 }
 
 }  // namespace
@@ -78,39 +80,13 @@ Status ApproximationOptions::Check() const {
   return OkStatus();
 }
 
-struct ApproximateRadiance::Gaussians {
-  Gaussians(const Image& map, const BrdfFunction& brdf, int spread,
-            int num_threads)
-      : light(map, FitOptions(spread)),
-        transport(light.lobes(), Options(num_threads)),
-        tables(transport.Tabulate(brdf)),
-        amplitudes(light.Fit(map.rgb.data())) {}
-
-  static GaussianFitOptions FitOptions(int spread) {
-    GaussianFitOptions options;
-    options.spread = spread;
-    return options;
-  }
-  static GaussianOptions Options(int num_threads) {
-    GaussianOptions options;
-    options.num_threads = num_threads;
-    return options;
-  }
-
-  GaussianLight light;
-  GaussianTransport transport;
-  GaussianTransport::Tables tables;
-  GaussianColours amplitudes;
-};
-
 ApproximateRadiance::ApproximateRadiance(const Image& map,
                                          const KnownBrdf& brdf, int num_threads)
     : map_(map), brdf_(brdf), num_threads_(num_threads) {}
-ApproximateRadiance::~ApproximateRadiance() = default;
 
 bool ApproximateRadiance::Choose(const std::vector<ShadingPoint>& points,
-                                 const PointRenderer& quadrature,
-                                 const PointRenderer& reference,
+                                 const RadianceRenderer& quadrature,
+                                 const RadianceRenderer& reference,
                                  const ApproximationOptions& options) {
   CHECK(options.Check().ok()) << options.Check().message();
   const auto count = static_cast<double>(points.size());
@@ -123,14 +99,18 @@ bool ApproximateRadiance::Choose(const std::vector<ShadingPoint>& points,
   const std::vector<double> by_order = PredictByOrder(at);
   PredictReflectanceMap(by_order, options);
   if (!MayGain(options)) return true;
-  if (!RenderTo(&at.quadrature, quadrature, at.points)) return false;
+  at.quadrature.resize(3 * at.points.size());
+  if (!quadrature.Render(at.points, nullptr, at.quadrature.data())) {
+    return false;
+  }
   std::vector<Candidate> table = ListCandidates(by_order, count, options);
   if (!AnyPromising(at, options, &table)) {
     Decline(ApproximationVerdict::kPredictedOff, table);
     return true;
   }
 
-  if (!RenderTo(&at.reference, reference, at.points)) return false;
+  at.reference.resize(3 * at.points.size());
+  if (!reference.Render(at.points, nullptr, at.reference.data())) return false;
   plan_.checked = static_cast<int>(at.points.size());
   plan_.quadrature_error = ErrorBound(at.quadrature, at.reference);
   if (const Candidate* chosen = ChooseFrom(at, options, &table)) {
@@ -144,6 +124,7 @@ bool ApproximateRadiance::Choose(const std::vector<ShadingPoint>& points,
 void ApproximateRadiance::StartPlan(double num_points,
                                     const ApproximationOptions& options) {
   plan_ = ApproximationPlan();
+  taken_ = nullptr;
   plan_.forced = options.forced;
   plan_.log_error = options.log_error;
   plan_.seconds = plan_.quadrature_seconds = QuadratureSeconds(num_points);
@@ -217,7 +198,7 @@ void ApproximateRadiance::Predict(const Samples& at,
                                   Candidate* candidate) const {
   if (candidate->predicted != kNotPredicted) return;
   // What of the map the mixture is not, as the points reflect it.
-  const GaussianLight light(map_, Gaussians::FitOptions(candidate->size));
+  const GaussianLight light(map_, Spread(candidate->size));
   const Image rest = light.Residual(map_.rgb.data());
   std::vector<double> with_rest(at.quadrature.size());
   HarmonicTransport(at.points, rest.height, rest.width, ProbeOptions())
@@ -241,9 +222,31 @@ bool ApproximateRadiance::AnyPromising(const Samples& at,
   });
 }
 
-void ApproximateRadiance::Verify(const Samples& at, Candidate* candidate) {
+void ApproximateRadiance::SetUp(Candidate* candidate) const {
+  if (candidate->approximation == Approximation::kHarmonics) {
+    HarmonicOptions options;
+    options.order = candidate->size;
+    options.grid = grid_.shape;
+    options.view_angles = kHarmonicViews;
+    options.num_threads = num_threads_;
+    candidate->renderer =
+        std::make_shared<HarmonicRadiance>(map_, grid_, options);
+    return;
+  }
+  GaussianOptions options;
+  options.num_threads = num_threads_;
+  const auto renderer = std::make_shared<GaussianRadiance>(
+      map_, brdf_.Lookup(), Spread(candidate->size), options);
+  candidate->gaussians = renderer->num_lobes();
+  candidate->spots = renderer->num_peaks();
+  candidate->renderer = renderer;
+}
+
+void ApproximateRadiance::Verify(const Samples& at,
+                                 Candidate* candidate) const {
+  SetUp(candidate);
   std::vector<double> L_o(at.reference.size());
-  RenderBy(*candidate, at.points, L_o.data());
+  candidate->renderer->Render(at.points, nullptr, L_o.data());
   candidate->found = ErrorBound(L_o, at.reference);
 }
 
@@ -255,8 +258,8 @@ const ApproximateRadiance::Candidate* ApproximateRadiance::FirstWithin(
     const bool slower = !options.forced && candidate.seconds >= plan_.seconds;
     if (candidate.predicted > allowed || slower) continue;
     Verify(at, &candidate);
-    if (candidate.found > allowed) continue;
-    return &candidate;
+    if (candidate.found <= allowed) return &candidate;
+    candidate.renderer = nullptr;
   }
   return nullptr;
 }
@@ -285,7 +288,7 @@ const ApproximateRadiance::Candidate* ApproximateRadiance::ChooseFrom(
 }
 
 void ApproximateRadiance::Take(const Candidate& candidate) {
-  taken_ = candidate;
+  taken_ = candidate.renderer;
   plan_.verdict = ApproximationVerdict::kTaken;
   plan_.approximation = candidate.approximation;
   plan_.predicted_error = candidate.predicted;
@@ -294,8 +297,8 @@ void ApproximateRadiance::Take(const Candidate& candidate) {
   if (candidate.approximation == Approximation::kHarmonics) {
     plan_.order = candidate.size;
   } else {
-    plan_.gaussians = gaussians_->transport.num_lobes();
-    plan_.spots = gaussians_->light.num_peaks();
+    plan_.gaussians = candidate.gaussians;
+    plan_.spots = candidate.spots;
   }
 }
 
@@ -308,34 +311,6 @@ void ApproximateRadiance::Decline(ApproximationVerdict verdict,
                          return a.predicted < b.predicted;
                        })
           ->predicted;
-}
-
-void ApproximateRadiance::Render(const std::vector<ShadingPoint>& points,
-                                 double* L_o) {
-  RenderBy(taken_, points, L_o);
-}
-
-void ApproximateRadiance::RenderBy(const Candidate& candidate,
-                                   const std::vector<ShadingPoint>& points,
-                                   double* L_o) {
-  if (candidate.approximation == Approximation::kHarmonics) {
-    HarmonicOptions options;
-    options.order = candidate.size;
-    options.grid = grid_.shape;
-    options.view_angles = kHarmonicViews;
-    options.num_threads = num_threads_;
-    HarmonicTransport(points, map_.height, map_.width, options)
-        .Render(grid_, map_.rgb.data(), L_o);
-  } else {
-    if (gaussians_ == nullptr || spread_ != candidate.size) {
-      spread_ = candidate.size;
-      gaussians_ = std::make_unique<const Gaussians>(map_, brdf_.Lookup(),
-                                                     spread_, num_threads_);
-    }
-    gaussians_->transport.Render(points, gaussians_->tables,
-                                 gaussians_->amplitudes, L_o);
-  }
-  for (size_t k = 0; k < 3 * points.size(); ++k) L_o[k] = std::max(L_o[k], 0.0);
 }
 
 HarmonicOptions ApproximateRadiance::ProbeOptions() const {

@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "ibrdf/approximation/harmonic_transport.h"
-#include "ibrdf/approximation/reflectance_map.h"
 #include "ibrdf/base/status.h"
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/forward/approximation_plan.h"
 #include "ibrdf/solvers/forward/known_brdf.h"
+#include "ibrdf/transport/radiance_renderer.h"
 
 namespace ibrdf {
 
@@ -48,23 +48,19 @@ struct ApproximationOptions {
 class ApproximateRadiance {
  public:
   ApproximateRadiance(const Image& map, const KnownBrdf& brdf, int num_threads);
-  ~ApproximateRadiance();
 
   // Where no candidate is within the error, one that is within that of the
   // quadrature is as good. Goes by counts, not by a clock: the same scene is
   // rendered alike anywhere. False: a renderer stopped.
   bool Choose(const std::vector<ShadingPoint>& points,
-              const PointRenderer& quadrature, const PointRenderer& reference,
+              const RadianceRenderer& quadrature,
+              const RadianceRenderer& reference,
               const ApproximationOptions& options);
 
   const ApproximationPlan& plan() const { return plan_; }
-  // Whether Render does: by harmonics or Gaussians.
-  bool renders() const {
-    return plan_.approximation == Approximation::kHarmonics ||
-           plan_.approximation == Approximation::kGaussians;
-  }
-  // [points, 3], >= 0.
-  void Render(const std::vector<ShadingPoint>& points, double* L_o);
+  // The harmonics or Gaussians that were chosen, null where they were not. It
+  // must not outlive *this.
+  const RadianceRenderer* renderer() const { return taken_.get(); }
 
  private:
   // A row of the table.
@@ -74,15 +70,16 @@ class ApproximateRadiance {
     double seconds = 0.0;
     double predicted = 0.0;  // error
     int spots = 0;           // of Gaussians
+    int gaussians = 0;       // all of them, once it is verified
     double found = 0.0;      // error, once it is verified
+    std::shared_ptr<const RadianceRenderer>
+        renderer;  // while it is not refused
   };
   // Points of the image, and their radiance [points, 3].
   struct Samples {
     std::vector<ShadingPoint> points;
     std::vector<double> quadrature, reference;
   };
-  struct Gaussians;
-
   // The plan of points that are rendered each by itself, or by normal.
   void StartPlan(double num_points, const ApproximationOptions& options);
   // Whether harmonics or Gaussians may be taken and save seconds that count.
@@ -103,8 +100,10 @@ class ApproximateRadiance {
   // Whether any candidate is worth rendering the reference for.
   bool AnyPromising(const Samples& at, const ApproximationOptions& options,
                     std::vector<Candidate>* table) const;
-  // Fills `found` in.
-  void Verify(const Samples& at, Candidate* candidate);
+  // Sets the candidate's renderer up.
+  void SetUp(Candidate* candidate) const;
+  // Sets it up and fills `found` in.
+  void Verify(const Samples& at, Candidate* candidate) const;
   // The first that pays and is predicted and found within `allowed`, or null.
   const Candidate* FirstWithin(double allowed, const Samples& at,
                                const ApproximationOptions& options,
@@ -117,17 +116,13 @@ class ApproximateRadiance {
   void Decline(ApproximationVerdict verdict,
                const std::vector<Candidate>& table);
 
-  void RenderBy(const Candidate& candidate,
-                const std::vector<ShadingPoint>& points, double* L_o);
   HarmonicOptions ProbeOptions() const;
 
   const Image& map_;
   const KnownBrdf& brdf_;
   const int num_threads_;
-  BrdfGrid grid_;                               // for harmonics
-  std::unique_ptr<const Gaussians> gaussians_;  // of spread_
-  int spread_ = 0;
-  Candidate taken_;
+  BrdfGrid grid_;  // for harmonics
+  std::shared_ptr<const RadianceRenderer> taken_;
   ApproximationPlan plan_;
 };
 

@@ -10,7 +10,7 @@ namespace ibrdf {
 
 PixelRenderer::PixelRenderer(const Problem& problem, const ForwardScene& scene,
                              const PlannedRender& planned, int num_threads,
-                             const RenderProgress& progress)
+                             const RadianceRenderer::Progress& progress)
     : problem_(problem),
       scene_(scene),
       planned_(planned),
@@ -32,13 +32,10 @@ StatusOr<Image> PixelRenderer::RenderPoints(
     const std::vector<ShadingPoint>& points, const Span& span) {
   std::vector<double> L_o(3 * points.size());
   counts_.points += points.size();
-  if (planned_.approximation->renders()) {
-    if (progress_ && !progress_(span.begin)) return RenderInterrupted(problem_);
-    planned_.approximation->Render(points, L_o.data());
-  } else if (planned_.plan.approximation.approximation ==
-             Approximation::kReflectanceMap) {
+  if (planned_.plan.approximation.approximation ==
+      Approximation::kReflectanceMap) {
     IBRDF_RETURN_IF_ERROR(RenderByNormals(points, span, L_o.data()));
-  } else if (!RenderEach(points, span, L_o.data())) {
+  } else if (!planned_.renderer().Render(points, Within(span), L_o.data())) {
     return RenderInterrupted(problem_);
   }
   return PixelMeans(points, L_o.data(), problem_.image.width,
@@ -49,11 +46,8 @@ Status PixelRenderer::RenderByNormals(const std::vector<ShadingPoint>& points,
                                       const Span& span, double* L_o) {
   ReflectanceMapOptions options;
   options.log_error = RenderTolerances::Of(problem_.quality).approximation;
-  const auto each = [&](const std::vector<ShadingPoint>& some, double* out) {
-    return RenderEach(some, span, out);
-  };
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, each, options, L_o);
+      RenderByNormal(points, *planned_.radiance, Within(span), options, L_o);
   if (!report.ok()) {
     return report.status().code() == StatusCode::kInterrupted
                ? RenderInterrupted(problem_)
@@ -63,13 +57,11 @@ Status PixelRenderer::RenderByNormals(const std::vector<ShadingPoint>& points,
   return OkStatus();
 }
 
-bool PixelRenderer::RenderEach(const std::vector<ShadingPoint>& points,
-                               const Span& span, double* L_o) const {
-  if (!progress_) return planned_.radiance->Render(points, nullptr, L_o);
-  const auto progress = [&](double share) {
+RadianceRenderer::Progress PixelRenderer::Within(const Span& span) const {
+  if (!progress_) return nullptr;
+  return [this, span](double share) {
     return progress_(span.begin + (span.end - span.begin) * share);
   };
-  return planned_.radiance->Render(points, progress, L_o);
 }
 
 Status PixelRenderer::Refine(const Span& span, Image* image) {

@@ -1,6 +1,5 @@
 // Pixels of a planned render.
 #pragma once
-#include <functional>
 #include <vector>
 
 #include "ibrdf/base/status.h"
@@ -9,11 +8,9 @@
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/forward/forward_scene.h"
 #include "ibrdf/solvers/forward/render_plan.h"
+#include "ibrdf/transport/radiance_renderer.h"
 
 namespace ibrdf {
-
-// Called with the share done, in [0, 1], from the calling thread; false stops.
-using RenderProgress = std::function<bool(double)>;
 
 // How the points came to their radiance.
 struct PixelCounts {
@@ -30,7 +27,7 @@ class PixelRenderer {
   // `progress` may be empty.
   PixelRenderer(const Problem& problem, const ForwardScene& scene,
                 const PlannedRender& planned, int num_threads,
-                const RenderProgress& progress);
+                const RadianceRenderer::Progress& progress);
 
   // All passes; 0 outside the object. kInterrupted where `progress` stops it.
   StatusOr<Image> Render();
@@ -47,8 +44,8 @@ class PixelRenderer {
                                const Span& span);
   Status RenderByNormals(const std::vector<ShadingPoint>& points,
                          const Span& span, double* L_o);
-  bool RenderEach(const std::vector<ShadingPoint>& points, const Span& span,
-                  double* L_o) const;
+  // The progress of a call that goes through `span`.
+  RadianceRenderer::Progress Within(const Span& span) const;
   // Renders the pixels anew whose centre does not stand for them.
   Status Refine(const Span& span, Image* image);
 
@@ -56,7 +53,7 @@ class PixelRenderer {
   const ForwardScene& scene_;
   const PlannedRender& planned_;
   const int num_threads_;
-  const RenderProgress& progress_;
+  const RadianceRenderer::Progress& progress_;
   PixelCounts counts_;
 };
 

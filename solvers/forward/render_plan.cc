@@ -81,26 +81,36 @@ ApproximationOptions MayTake(const Problem& problem,
   return options;
 }
 
+// The scene at reference quality, set up when it is asked for points: a preview
+// is off by more than what is looked for under a small sun.
+class SceneReference final : public RadianceRenderer {
+ public:
+  SceneReference(const ForwardScene& scene, const EffectsPlan& effects,
+                 int num_threads)
+      : scene_(scene), effects_(effects), num_threads_(num_threads) {}
+
+  bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
+              double* L_o) const override {
+    return SceneRadiance(scene_, points, effects_,
+                         SceneRadianceOptions::Of(RenderQuality::kReference,
+                                                  num_threads_))
+        .Render(points, progress, L_o);
+  }
+
+ private:
+  const ForwardScene& scene_;
+  const EffectsPlan& effects_;
+  const int num_threads_;
+};
+
 // Fills the approximation in. False: interrupted.
 bool PlanApproximation(const Problem& problem, const ForwardScene& scene,
                        int num_threads, PlannedRender* out) {
   const EffectsPlan& effects = out->plan.effects;
-  const auto quadrature = [&](const std::vector<ShadingPoint>& some,
-                              double* L_o) {
-    return out->radiance->Render(some, nullptr, L_o);
-  };
-  // At reference quality, as a preview is off by more than what is looked for
-  // under a small sun.
-  const auto reference = [&](const std::vector<ShadingPoint>& some,
-                             double* L_o) {
-    return SceneRadiance(
-               scene, some, effects,
-               SceneRadianceOptions::Of(RenderQuality::kReference, num_threads))
-        .Render(some, nullptr, L_o);
-  };
+  const SceneReference reference(scene, effects, num_threads);
   out->approximation =
       std::make_unique<ApproximateRadiance>(scene.map, scene.brdf, num_threads);
-  if (!out->approximation->Choose(scene.view.points, quadrature, reference,
+  if (!out->approximation->Choose(scene.view.points, *out->radiance, reference,
                                   MayTake(problem, effects))) {
     return false;
   }
@@ -116,6 +126,11 @@ RenderTolerances RenderTolerances::Of(RenderQuality quality) {
   tolerances.omission = kReferenceOmissionError;
   tolerances.approximation = kReferenceApproximationError;
   return tolerances;
+}
+
+const RadianceRenderer& PlannedRender::renderer() const {
+  const RadianceRenderer* approximate = approximation->renderer();
+  return approximate != nullptr ? *approximate : *radiance;
 }
 
 StatusOr<PlannedRender> PlanRender(const Problem& problem,

@@ -10,6 +10,7 @@
 #include "ibrdf/solvers/forward/approximation_plan.h"
 #include "ibrdf/solvers/forward/forward_scene.h"
 #include "ibrdf/solvers/forward/scene_radiance.h"
+#include "ibrdf/transport/radiance_renderer.h"
 
 namespace ibrdf {
 
@@ -45,6 +46,9 @@ struct PlannedRender {
   RenderPlan plan;
   std::unique_ptr<SceneRadiance> radiance;
   std::unique_ptr<ApproximateRadiance> approximation;
+
+  // What renders points: the approximation where one is taken.
+  const RadianceRenderer& renderer() const;
 };
 
 // Chooses the effects first, then how the points are rendered if nothing

@@ -5,15 +5,13 @@
 #include <algorithm>
 
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/render/reference_radiance.h"
 #include "ibrdf/transport/quadrature.h"
 #include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 namespace {
 
-// Points between two calls of progress: well below a second at reference
-// quality, enough to keep the threads busy.
-constexpr size_t kPointsPerStep = 2048;
 constexpr size_t kReferencePatchPoints = 8192;
 // Width of maps whose sides do not halve and which no transport takes as they
 // are.
@@ -103,22 +101,14 @@ void SceneRadiance::set_lobe_rays(int rays) {
 
 bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
                            const Progress& progress, double* L_o) const {
-  for (size_t begin = 0; begin < points.size(); begin += kPointsPerStep) {
-    if (progress && !progress(static_cast<double>(begin) / points.size())) {
-      return false;
-    }
-    const size_t end = std::min(begin + kPointsPerStep, points.size());
-    const std::vector<ShadingPoint> some(points.begin() + begin,
-                                         points.begin() + end);
-    EmittedLight emitted;
-    if (bounces_ > 0) emitted = {emitted_[bounces_].data(), bounces_};
-    if (scene_.brdf.function) {
-      renderer_->Render(some, scene_.brdf.function, L_o + 3 * begin, emitted);
-    } else {
-      renderer_->Render(some, scene_.brdf.table, L_o + 3 * begin, emitted);
-    }
+  EmittedLight emitted;
+  if (bounces_ > 0) emitted = {emitted_[bounces_].data(), bounces_};
+  if (scene_.brdf.function) {
+    return ReferenceRadiance(*renderer_, scene_.brdf.function, emitted)
+        .Render(points, progress, L_o);
   }
-  return true;
+  return ReferenceRadiance(*renderer_, scene_.brdf.table, emitted)
+      .Render(points, progress, L_o);
 }
 
 }  // namespace ibrdf

@@ -1,6 +1,5 @@
 // Radiance of a known scene, with the effects of a plan.
 #pragma once
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/effects/effects_plan.h"
 #include "ibrdf/solvers/forward/forward_scene.h"
+#include "ibrdf/transport/radiance_renderer.h"
 
 namespace ibrdf {
 
@@ -36,12 +36,8 @@ struct SceneRadianceOptions {
   static SceneRadianceOptions Of(RenderQuality quality, int num_threads);
 };
 
-class SceneRadiance {
+class SceneRadiance final : public RadianceRenderer {
  public:
-  // Called with the share of a call's points that are done, in [0, 1], from the
-  // calling thread; false stops. May be empty.
-  using Progress = std::function<bool(double)>;
-
   // `scene` must live as long as this. `points`: of the image; where the object
   // lights itself, what they see of it decides where patches are.
   SceneRadiance(const ForwardScene& scene,
@@ -59,9 +55,9 @@ class SceneRadiance {
   int lobe_rays() const { return reference_.lobe_rays; }
   void set_lobe_rays(int rays);
 
-  // [points, 3]; false: stopped.
+  // `progress` is called as by ReferenceRadiance.
   bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
-              double* L_o) const;
+              double* L_o) const override;
 
  private:
   // Places patches that `points` see, and lights them.

@@ -9,6 +9,7 @@
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/light/procedural_sky.h"
 #include "ibrdf/solvers/forward/render_scene.h"
+#include "tests/support/function_renderer.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -185,34 +186,33 @@ TEST(ApproximateRadiance, FallsBackWhereTheTruthDisagrees) {
   options.harmonics = options.gaussians = true;
   const ReferenceRenderer renderer(map, {});
   double scale = 1.0;
-  const PointRenderer truth = [&](const std::vector<ShadingPoint>& some,
-                                  double* L_o) {
-    renderer.Render(some, brdf.function, L_o);
-    for (size_t k = 0; k < 3 * some.size(); ++k) L_o[k] *= scale;
-    return true;
-  };
+  const testing::FunctionRenderer truth(
+      [&](const std::vector<ShadingPoint>& some, double* L_o) {
+        renderer.Render(some, brdf.function, L_o);
+        for (size_t k = 0; k < 3 * some.size(); ++k) L_o[k] *= scale;
+        return true;
+      });
   ApproximateRadiance approximation(map, brdf, 0);
   ASSERT_TRUE(approximation.Choose(points, truth, truth, options));
-  EXPECT_TRUE(approximation.renders());
+  EXPECT_NE(nullptr, approximation.renderer());
   scale = 1.01;
   ASSERT_TRUE(approximation.Choose(points, truth, truth, options));
-  EXPECT_FALSE(approximation.renders());
+  EXPECT_EQ(nullptr, approximation.renderer());
   EXPECT_NE(std::string::npos,
             Describe(approximation.plan()).find("not within"));
   // The quadrature may be as far off itself.
-  const PointRenderer quadrature = [&](const std::vector<ShadingPoint>& some,
-                                       double* L_o) {
-    renderer.Render(some, brdf.function, L_o);
-    for (size_t k = 0; k < 3 * some.size(); ++k) L_o[k] *= 0.99;
-    return true;
-  };
+  const testing::FunctionRenderer quadrature(
+      [&](const std::vector<ShadingPoint>& some, double* L_o) {
+        renderer.Render(some, brdf.function, L_o);
+        for (size_t k = 0; k < 3 * some.size(); ++k) L_o[k] *= 0.99;
+        return true;
+      });
   ASSERT_TRUE(approximation.Choose(points, quadrature, truth, options));
-  EXPECT_TRUE(approximation.renders());
+  EXPECT_NE(nullptr, approximation.renderer());
   EXPECT_GT(approximation.plan().quadrature_error, 0.015);
   // Stopped.
-  const PointRenderer stop = [](const std::vector<ShadingPoint>&, double*) {
-    return false;
-  };
+  const testing::FunctionRenderer stop(
+      [](const std::vector<ShadingPoint>&, double*) { return false; });
   EXPECT_FALSE(approximation.Choose(points, truth, stop, options));
 }
 
