@@ -13,8 +13,8 @@
 namespace ibrdf {
 
 struct RenderSceneOptions {
-  uint64_t seed = 1;        // of the noise, where the problem has no seed
-  int num_threads = 0;      // <= 0: all
+  uint64_t seed = 1;    // of the noise, where the problem has no seed
+  int num_threads = 0;  // <= 0: all
   RadianceRenderer::Progress progress;  // may be empty
   // Only `plan` of the result is filled in: what would be simulated.
   bool plan_only = false;
