@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -554,10 +555,11 @@ ProblemSchema MakeSchema() {
 }  // namespace
 
 const ProblemKey& ProblemSchema::Key(const std::string& path) const {
-  for (const ProblemKey& key : keys) {
-    if (key.path == path) return key;
-  }
-  LOG(FATAL) << "no key " << path;
+  const auto key =
+      std::find_if(keys.begin(), keys.end(),
+                   [&](const ProblemKey& k) { return k.path == path; });
+  CHECK(key != keys.end()) << "no key " << path;
+  return *key;
 }
 
 std::vector<std::string> ProblemSchema::NamesBelow(
