@@ -297,12 +297,17 @@ Keys IlluminationKeys() {
           .Unit("texels"),
       Row("illumination.prior", "What is taken as natural light.")
           .Choice(
-              "unet",
-              {{"unet",
-                "The map is a network's output, begun at the MAP estimate of a "
-                "Gaussian process. That estimate stays where the network fits "
-                "less well."},
-               {"process", "The map is that MAP estimate itself."},
+              "auto",
+              {{"auto",
+                "`process`. It is `unet` where `illumination.unet_channels` is "
+                "set, with `solver.estimator: maximum`, and for maps of more "
+                "than " +
+                    std::to_string(kMaxProcessSide) + " texels a side."},
+               {"process",
+                "The map is the MAP estimate of a Gaussian process."},
+               {"unet",
+                "The map is a network's output, begun at that MAP estimate, "
+                "which stays where the network fits less well."},
                {"none",
                 "Texels are independent of each other. It is there for "
                 "comparison."}})
