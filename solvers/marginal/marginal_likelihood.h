@@ -222,10 +222,13 @@ class MarginalLikelihood {
   // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the rest.
   double TraceByAmplitude(const Given& given, const Linearisation& linear,
                           const RowMatrix& inverse) const;
-  // The derivative of K by the log roughness of a band, applied: with weights h
-  // along the texels that of C is diag(h) R + R diag(h), R the rough part.
-  Eigen::VectorXd ApplyBandDerivative(const Light& light, int band,
-                                      const Eigen::VectorXd& g) const;
+  // The derivative of K by the log roughness of a band of weights h [texels],
+  // applied: that of C is diag(h) R + R diag(h), R the rough part; rough: g R
+  // [3][texels].
+  Eigen::VectorXd ApplyBandDerivative(const Light& light,
+                                      const Eigen::VectorXd& h,
+                                      const Eigen::VectorXd& g,
+                                      const RowMatrix& rough) const;
   void AddGradient(const Given& given, const LightMode& mode,
                    const Point& point, const Linearisation& linear,
                    MarginalGradient* gradient) const;
