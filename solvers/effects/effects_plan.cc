@@ -1,5 +1,7 @@
 #include "ibrdf/solvers/effects/effects_plan.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <string>
 
@@ -118,6 +120,7 @@ bool DependsOnNormal(const Problem& problem, bool visibility) {
 StatusOr<EffectsPlan> PlanEffects(const Problem& problem, const Scene& scene,
                                   const std::vector<ShadingPoint>& points,
                                   const EffectsOptions& options) {
+  CHECK_GT(options.threshold, 0.0);
   EffectsPlan plan;
   plan.mode = problem.effects.mode;
   plan.shape = ShapeOf(problem, scene);

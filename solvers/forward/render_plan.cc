@@ -1,5 +1,7 @@
 #include "ibrdf/solvers/forward/render_plan.h"
 
+#include <glog/logging.h>
+
 #include <utility>
 
 #include "ibrdf/solvers/forward/measured_effects.h"
@@ -15,6 +17,7 @@ OmissionErrors MeasureNarrowLobe(const ForwardScene& scene,
                                  const RenderTolerances& tolerances,
                                  const SceneRadianceOptions& options,
                                  std::unique_ptr<SceneRadiance>* lit) {
+  CHECK_GT(tolerances.lobe, 0.0);
   const std::vector<ShadingPoint>& points = scene.view.points;
   EffectsPlan none, all;
   all.visibility = true;

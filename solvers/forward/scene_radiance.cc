@@ -37,6 +37,11 @@ SceneRadiance::SceneRadiance(const ForwardScene& scene,
                              const EffectsPlan& effects,
                              const SceneRadianceOptions& options)
     : scene_(scene), bounces_(effects.bounces) {
+  CHECK_GE(options.shadow_rows, 1);
+  CHECK(options.patch_points > 0 && options.least_patches > 0);
+  CHECK(options.lobe_rays >= 0 &&
+        (options.lobe_rays & (options.lobe_rays - 1)) == 0)
+      << options.lobe_rays << " is no power of 2";
   if (options.coarse_quadrature) reference_ = Coarser(reference_);
   reference_.num_threads = options.num_threads;
   if (effects.visibility) {

@@ -1,5 +1,7 @@
 #include "ibrdf/solvers/marginal/marginal_descent.h"
 
+#include <glog/logging.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
@@ -32,6 +34,7 @@ Eigen::VectorXd Direction(const MarginalObjective& objective,
 MarginalDescent Descend(const MarginalObjective& objective,
                         const MarginalDescentOptions& options,
                         std::vector<double>* y) {
+  CHECK(options.max_iterations >= 0 && options.least_gain >= 0.0);
   MarginalDescent descent;
   const auto n = static_cast<Eigen::Index>(y->size());
   Eigen::VectorXd gradient(n);

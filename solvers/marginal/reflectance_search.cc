@@ -397,6 +397,9 @@ StatusOr<ReflectanceSearchResult> SearchReflectance(
     const std::vector<double>& radiance,
     const ReflectanceSearchOptions& options) {
   CHECK(!prior.materials.empty());
+  CHECK(options.kept > 0 && options.sigma > 0.0);
+  CHECK(options.coarse_margin >= 0.0 && options.margin >= 0.0);
+  CHECK(options.fine_iterations >= 0 && options.most_directional_lights >= 0);
   if (BinByNormal(points, radiance, options.coarse.bins).num_bins() == 0) {
     return InvalidInput("image",
                         "no pixel of the object, limb aside, is finite and "

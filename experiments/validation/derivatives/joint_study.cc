@@ -1,4 +1,7 @@
-// The joint objective: gradient, and radiance along a direction.
+// The joint objective: gradient, and radiance along a direction; and the same
+// likelihood as one Ceres cost, row by row.
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -13,6 +16,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/illumination_unet_reference.h"
 #include "ibrdf/light/log_map.h"
+#include "ibrdf/solvers/costs/log_radiance_cost.h"
 #include "ibrdf/solvers/illumination/natural_noise.h"
 #include "ibrdf/solvers/joint/joint_objective.h"
 #include "tests/support/render_testing.h"
@@ -54,11 +58,7 @@ class JointStudy {
   void Add(const std::string& kind, const std::string& where,
            const JointState& state, float bright = 0.0f) {
     const Exact exact = Reference(state);
-    std::vector<double> image;
-    for (size_t i = 0; i < exact.L_o.size(); ++i) {
-      image.push_back(static_cast<double>(exact.L_o[i]) *
-                      std::exp(0.3 * std::sin(5.0 * static_cast<double>(i))));
-    }
+    std::vector<double> image = ImageOf(exact);
     if (bright > 0.0f) image[4] = bright;
     const Observations observed = MakeObservations(image);
     terms_.observed = &observed;
@@ -87,6 +87,41 @@ class JointStudy {
                 ToVector(objective.RadianceJvp(v)), Jvp(state, exact, v));
   }
 
+  // The rows of LogRadianceCost, one block after the other.
+  void AddCeresCost(const std::string& kind, const std::string& where,
+                    const JointState& state) {
+    const Exact exact = Reference(state);
+    const std::vector<double> image = ImageOf(exact);
+    const Observations observed = MakeObservations(image);
+    RobustLogLikelihood likelihood = terms_.likelihood;
+    likelihood.epsilon = 1e-3 * image[0];
+    const LogRadianceCost cost(&scene_.transport(), &lobes_, &unet_, &observed,
+                               likelihood);
+    const std::vector<double> weights(state.light.begin(), state.light.end());
+    const size_t rows = image.size(), nl = state.lobes.size(),
+                 nw = weights.size();
+    std::vector<double> residuals(rows), by_lobes(rows * nl),
+        by_light(rows * nw);
+    const double* blocks[] = {state.lobes.data(), weights.data()};
+    double* jacobians[] = {by_lobes.data(), by_light.data()};
+    CHECK(cost.Evaluate(blocks, residuals.data(), jacobians));
+    for (size_t i = 0; i < rows; ++i) {
+      const Real slope = ResidualSlope(exact.L_o[i], image[i], likelihood);
+      std::vector<Real> lobe_row(nl), by_map(exact.map.size(), 0);
+      for (size_t p = 0; p < nl; ++p) {
+        lobe_row[p] = slope * exact.dL_o[i * nl + p];
+      }
+      AddMapRow(exact, i, slope, &by_map);
+      const std::string at = where + ", row " + std::to_string(i);
+      const double* found = &by_lobes[i * nl];
+      table_->Add(name_ + ": row of the Ceres cost by lobes", kind, at,
+                  {found, found + nl}, lobe_row);
+      found = &by_light[i * nw];
+      table_->Add(name_ + ": row of the Ceres cost by light", kind, at,
+                  {found, found + nw}, ByWeight(exact, by_map));
+    }
+  }
+
  private:
   struct Exact {
     std::vector<Real> L_o, dL_o, map;
@@ -95,6 +130,40 @@ class JointStudy {
     UnetReferencePass<Real> pass;
     std::vector<Real> weights;
   };
+
+  static std::vector<double> ImageOf(const Exact& exact) {
+    std::vector<double> image;
+    for (size_t i = 0; i < exact.L_o.size(); ++i) {
+      image.push_back(static_cast<double>(exact.L_o[i]) *
+                      std::exp(0.3 * std::sin(5.0 * static_cast<double>(i))));
+    }
+    return image;
+  }
+
+  // Adds factor times the derivative of radiance i by the map [texels][3].
+  void AddMapRow(const Exact& exact, size_t i, Real factor,
+                 std::vector<Real>* by_map) const {
+    const std::vector<Real> row =
+        scene_.reference().MapRow(static_cast<int>(i / 3), exact.brdf[i % 3]);
+    for (size_t t = 0; t < row.size(); ++t) {
+      (*by_map)[3 * t + i % 3] += factor * row[t];
+    }
+  }
+
+  // The UNet's vector-Jacobian product of a derivative by the map.
+  std::vector<Real> ByWeight(const Exact& exact,
+                             const std::vector<Real>& by_map) const {
+    const size_t texels = exact.map.size() / 3;
+    std::vector<Real> by_log(exact.map.size(), 0);
+    for (size_t t = 0; t < texels; ++t) {
+      for (size_t c = 0; c < 3; ++c) {
+        const size_t at = 3 * t + c;
+        by_log[c * texels + t] =
+            exact.moves[at] ? by_map[at] * exact.map[at] : 0;
+      }
+    }
+    return reference_.Vjp(exact.weights, by_log, exact.pass);
+  }
 
   Exact Reference(const JointState& state) const {
     Exact exact;
@@ -124,7 +193,7 @@ class JointStudy {
   std::vector<Real> Gradient(const JointState& state, const Exact& exact,
                              const Observations& observed) const {
     const RobustLogLikelihood& l = terms_.likelihood;
-    const size_t nl = state.lobes.size(), texels = exact.map.size() / 3;
+    const size_t nl = state.lobes.size();
     std::vector<Real> gradient(nl, 0), by_map(exact.map.size(), 0);
     for (size_t i = 0; i < exact.L_o.size(); ++i) {
       if (!observed.valid[i / 3]) continue;
@@ -133,11 +202,7 @@ class JointStudy {
       for (size_t p = 0; p < nl; ++p) {
         gradient[p] += adjoint * exact.dL_o[i * nl + p];
       }
-      const std::vector<Real> row =
-          scene_.reference().MapRow(static_cast<int>(i / 3), exact.brdf[i % 3]);
-      for (size_t t = 0; t < texels; ++t) {
-        by_map[3 * t + i % 3] += adjoint * row[t];
-      }
+      AddMapRow(exact, i, adjoint, &by_map);
     }
     const LobePrior& prior = terms_.lobe_prior;
     const size_t size = lobes_.code_size(), lobe_size = size + 3;
@@ -159,16 +224,7 @@ class JointStudy {
         }
       }
     }
-    std::vector<Real> by_log(exact.map.size(), 0);
-    for (size_t t = 0; t < texels; ++t) {
-      for (size_t c = 0; c < 3; ++c) {
-        const size_t at = 3 * t + c;
-        by_log[c * texels + t] =
-            exact.moves[at] ? by_map[at] * exact.map[at] : 0;
-      }
-    }
-    std::vector<Real> by_weight =
-        reference_.Vjp(exact.weights, by_log, exact.pass);
+    std::vector<Real> by_weight = ByWeight(exact, by_map);
     const std::vector<float> std = light_->PriorStd();
     for (size_t i = 0; i < by_weight.size(); ++i) {
       const Real s = Real(terms_.light_sigma) * std[i];
@@ -242,7 +298,9 @@ void AddStates(const std::string& name, const NeuralBrdfModel& model, int count,
     return state;
   };
   for (int i = 0; i < count; ++i) {
-    study.Add("random", "state " + std::to_string(i), random(-1.0));
+    const JointState state = random(-1.0);
+    study.Add("random", "state " + std::to_string(i), state);
+    if (i == 0) study.AddCeresCost("random", "state 0", state);
   }
   study.Add("codes 0", "", random(0.0));
   study.Add("codes of norm 1 + 1e-6", "", random(1 + 1e-6));
@@ -254,6 +312,7 @@ void AddStates(const std::string& name, const NeuralBrdfModel& model, int count,
       if (i % lobe_size >= size) state.lobes[i] = colour;
     }
     study.Add("log colours " + Coordinates({colour}), "", state);
+    study.AddCeresCost("log colours " + Coordinates({colour}), "", state);
   }
   // The last weights are the map's levels.
   for (const float level : {-30.0f, 30.0f, 62.0f}) {
