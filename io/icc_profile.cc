@@ -1,5 +1,6 @@
 #include "ibrdf/io/icc_profile.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -135,27 +136,35 @@ Curve TableCurve(std::string_view tag) {
   });
 }
 
-// parametricCurveType, ICC.1:2010 Table 65.
+using Parameters = std::array<double, 7>;  // g a b c d e f
+
+// Linear light of code value y, ICC.1:2010 Table 65; `type` 1 to 4.
+double ParametricValue(uint32_t type, const Parameters& parameters, double y) {
+  const auto [g, a, b, c, d, e, f] = parameters;
+  const double power = std::pow(std::max(a * y + b, 0.0), g);
+  if (type == 1) return a * y >= -b ? power : 0.0;
+  if (type == 2) return a * y >= -b ? power + c : c;
+  if (type == 3) return y >= d ? power : c * y;
+  return y >= d ? power + e : c * y + f;
+}
+
+// parametricCurveType.
 Curve ParametricCurve(std::string_view tag) {
-  constexpr std::array<size_t, 5> kParameters = {1, 3, 4, 5, 7};
-  const std::optional<uint32_t> type = BigEndian(tag, 8, 2);
-  if (!type || *type >= kParameters.size()) return {};
-  std::array<double, 7> p = {};  // g a b c d e f
-  for (size_t i = 0; i < kParameters[*type]; ++i) {
+  constexpr std::array<size_t, 5> kCounts = {1, 3, 4, 5, 7};
+  const uint32_t type =
+      BigEndian(tag, 8, 2).value_or(static_cast<uint32_t>(kCounts.size()));
+  if (type >= kCounts.size()) return {};
+  Parameters parameters = {};
+  for (size_t i = 0; i < kCounts[type]; ++i) {
     const std::optional<double> value = Fixed(tag, 12 + 4 * i);
     if (!value) return {};
-    p[i] = *value;
+    parameters[i] = *value;
   }
-  const auto [g, a, b, c, d, e, f] = p;
-  if (*type == 0) return PowerCurve(g);
+  if (type == 0) return PowerCurve(parameters[0]);
   constexpr size_t kSamples = 257;
-  return NameSampled(kSamples, [&, t = *type](size_t i) {
-    const double y = static_cast<double>(i) / (kSamples - 1);
-    const double power = std::pow(std::max(a * y + b, 0.0), g);
-    if (t == 1) return a * y >= -b ? power : 0.0;
-    if (t == 2) return a * y >= -b ? power + c : c;
-    if (t == 3) return y >= d ? power : c * y;
-    return y >= d ? power + e : c * y + f;
+  return NameSampled(kSamples, [&](size_t i) {
+    return ParametricValue(type, parameters,
+                           static_cast<double>(i) / (kSamples - 1));
   });
 }
 
