@@ -25,7 +25,8 @@ struct PngReadState {
   PngReadState& operator=(const PngReadState&) = delete;
 };
 
-// Makes png and info; sides are limited to kMaxImageSide. False on an error.
+// Makes png and info; sides are limited to kMaxImageSide. False on an error, as
+// of a chunk that claims more than the file has.
 // The caller sets its own setjmp before it reads.
 bool OpenPng(PngReadState* state);
 

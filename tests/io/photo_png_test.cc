@@ -280,6 +280,18 @@ TEST(PhotoPng, DamagedFilesAreRefused) {
   });
 }
 
+// An eXIf chunk that claims a gigabyte. tests/fuzz/regressions/photo_png has
+// one of 384 bytes, for which libpng takes that memory.
+TEST(PhotoPng, ChunksThatClaimMuchAreRefused) {
+  PngSpec spec = Rgb8();
+  std::string bytes = PngBytes(spec);
+  bytes.resize(bytes.size() - 12);  // IEND
+  bytes += BigEndianBytes(0x4C326558, 4) + "eXIfII";
+  const Status status = DecodePhoto("a.png", bytes).status();
+  EXPECT_NE(std::string::npos, status.message().find("unexpected end of file"))
+      << status.message();
+}
+
 TEST(PhotoPng, LargeClaimsAreRefused) {
   PngSpec spec = Rgb8();
   std::string bytes = PngBytes(spec);
