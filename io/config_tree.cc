@@ -9,7 +9,7 @@
 
 namespace ibrdf {
 namespace {
-constexpr size_t kMaxBytes = size_t{1} << 20;
+constexpr size_t kMaxConfigBytes = size_t{1} << 20;
 constexpr size_t kMaxDepth = 32;
 
 // Thrown from the handler, caught in ParseConfig.
@@ -146,7 +146,7 @@ const ConfigNode* ConfigNode::Find(const std::string& key) const {
 
 StatusOr<ConfigNode> ParseConfig(const std::string& where,
                                  const std::string& text) {
-  if (text.size() > kMaxBytes) {
+  if (text.size() > kMaxConfigBytes) {
     return InvalidInput(where, "expected at most 1 MiB, found " +
                                    std::to_string(text.size()) + " bytes");
   }

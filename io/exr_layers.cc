@@ -10,13 +10,13 @@
 namespace ibrdf {
 namespace {
 
-using Triple = std::array<const char*, 3>;
+using ChannelNames = std::array<const char*, 3>;
 
-constexpr Triple kRgbNames[] = {{"R", "G", "B"},
-                                {"r", "g", "b"},
-                                {"red", "green", "blue"},
-                                {"Red", "Green", "Blue"}};
-constexpr Triple kXyzNames[] = {
+constexpr ChannelNames kRgbNames[] = {{"R", "G", "B"},
+                                      {"r", "g", "b"},
+                                      {"red", "green", "blue"},
+                                      {"Red", "Green", "Blue"}};
+constexpr ChannelNames kXyzNames[] = {
     {"X", "Y", "Z"}, {"x", "y", "z"}, {"NX", "NY", "NZ"}, {"Nx", "Ny", "Nz"}};
 constexpr const char* kAlphaNames[] = {"A", "a", "alpha", "Alpha"};
 
@@ -46,7 +46,7 @@ std::string Prefixed(const std::string& layer, const std::string& name) {
 // Fills in kind and channels; false where the layer has none for `content`.
 bool FindChannels(const std::set<std::string>& names, PhotoContent content,
                   ExrPicture* picture) {
-  const auto take = [&](const Triple& triple, ExrChannels kind) {
+  const auto take = [&](const ChannelNames& triple, ExrChannels kind) {
     for (size_t c = 0; c < 3; ++c) {
       if (names.count(triple[c]) == 0) return false;
       picture->channels[c] = Prefixed(picture->layer, triple[c]);
@@ -56,11 +56,11 @@ bool FindChannels(const std::set<std::string>& names, PhotoContent content,
   };
   const bool normals = content == PhotoContent::kNormals;
   if (normals) {
-    for (const Triple& triple : kXyzNames) {
+    for (const ChannelNames& triple : kXyzNames) {
       if (take(triple, ExrChannels::kXyz)) return true;
     }
   }
-  for (const Triple& triple : kRgbNames) {
+  for (const ChannelNames& triple : kRgbNames) {
     if (take(triple, ExrChannels::kRgb)) return true;
   }
   if (normals) return false;

@@ -10,7 +10,7 @@
 namespace ibrdf {
 namespace {
 
-constexpr size_t kHeaderBytes = 128;
+constexpr size_t kIccHeaderBytes = 128;
 constexpr size_t kTagBytes = 12;
 constexpr size_t kMaxTags = 1000;
 constexpr size_t kMaxDescription = 200;
@@ -37,9 +37,9 @@ std::optional<double> Fixed(std::string_view bytes, size_t at) {
 
 // The data of a tag; empty where it is absent or does not fit.
 std::string_view FindTag(std::string_view bytes, std::string_view signature) {
-  const size_t count = BigEndian(bytes, kHeaderBytes, 4).value_or(0);
+  const size_t count = BigEndian(bytes, kIccHeaderBytes, 4).value_or(0);
   for (size_t i = 0; i < count && i < kMaxTags; ++i) {
-    const size_t at = kHeaderBytes + 4 + kTagBytes * i;
+    const size_t at = kIccHeaderBytes + 4 + kTagBytes * i;
     const std::optional<uint32_t> offset = BigEndian(bytes, at + 4, 4);
     const std::optional<uint32_t> size = BigEndian(bytes, at + 8, 4);
     if (!offset || !size) return {};
@@ -207,7 +207,7 @@ bool HasOtherPrimaries(std::string_view bytes) {
 }  // namespace
 
 std::optional<IccProfile> ParseIccProfile(std::string_view bytes) {
-  if (bytes.size() < kHeaderBytes + 4 || bytes.substr(36, 4) != "acsp") {
+  if (bytes.size() < kIccHeaderBytes + 4 || bytes.substr(36, 4) != "acsp") {
     return std::nullopt;
   }
   IccProfile profile;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr char kMagic[] = "ibrdf-model ";
 constexpr int kVersion = 3;
-constexpr size_t kMaxBytes = size_t{256} << 20;
+constexpr size_t kMaxModelBytes = size_t{256} << 20;
 // Rounding of a code that was projected to the unit sphere in float.
 constexpr double kBallSlack = 1e-4;
 
@@ -61,8 +61,8 @@ std::vector<int> IntsOf(const nlohmann::json& list) {
   return out;
 }
 
-Status ParseHeader(const std::string& path, const std::string& text,
-                   NeuralBrdfModel* model) {
+Status ParseModelHeader(const std::string& path, const std::string& text,
+                        NeuralBrdfModel* model) {
   try {
     const nlohmann::json header = nlohmann::json::parse(text);
     const std::string flow = header.at("flow").get<std::string>();
@@ -110,7 +110,7 @@ Status ParseHeader(const std::string& path, const std::string& text,
 }  // namespace
 
 StatusOr<NeuralBrdfModel> ReadModel(const std::string& path) {
-  const StatusOr<std::string> file = ReadFile(path, kMaxBytes);
+  const StatusOr<std::string> file = ReadFile(path, kMaxModelBytes);
   if (!file.ok()) return file.status();
   return DecodeModel(path, *file);
 }
@@ -144,7 +144,7 @@ StatusOr<NeuralBrdfModel> DecodeModel(const std::string& path,
   const size_t header_size = std::stoul(length);
   NeuralBrdfModel model;
   IBRDF_RETURN_IF_ERROR(
-      ParseHeader(path, bytes.substr(at, header_size), &model));
+      ParseModelHeader(path, bytes.substr(at, header_size), &model));
   at += header_size;
   const size_t codes = model.names.size() * model.shape.code_size();
   const size_t fits = static_cast<size_t>(model.num_materials()) *

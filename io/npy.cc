@@ -8,10 +8,10 @@
 namespace ibrdf {
 namespace {
 
-constexpr std::string_view kMagic("\x93NUMPY", 6);
+constexpr std::string_view kNpyMagic("\x93NUMPY", 6);
 constexpr size_t kMaxHeaderBytes = 1 << 16;
 
-struct Header {
+struct NpyHeader {
   std::string type;  // "<f4"
   bool fortran_order = false;
   std::vector<int64_t> shape;
@@ -24,7 +24,7 @@ class Dictionary {
   explicit Dictionary(std::string_view text) : text_(text) {}
 
   // False where the text is no such dictionary.
-  bool Read(Header* header) {
+  bool Read(NpyHeader* header) {
     if (!Take('{')) return false;
     int found = 0;
     while (!Take('}')) {
@@ -117,20 +117,21 @@ uint32_t LittleEndian(std::string_view bytes, size_t at, size_t count) {
   return value;
 }
 
-StatusOr<Header> ReadHeader(const std::string& path, std::string_view bytes) {
-  const size_t version_end = kMagic.size() + 2;
-  if (bytes.substr(0, kMagic.size()) != kMagic ||
+StatusOr<NpyHeader> ReadNpyHeader(const std::string& path,
+                                  std::string_view bytes) {
+  const size_t version_end = kNpyMagic.size() + 2;
+  if (bytes.substr(0, kNpyMagic.size()) != kNpyMagic ||
       bytes.size() < version_end + 4) {
     return InvalidInput(path, "expected a whole .npy header");
   }
-  const int version = bytes[kMagic.size()];
+  const int version = bytes[kNpyMagic.size()];
   if (version < 1 || version > 3) {
     return InvalidInput(path + ": version",
                         "expected 1, 2 or 3, found " + std::to_string(version));
   }
   const size_t length_bytes = version == 1 ? 2 : 4;
   const size_t length = LittleEndian(bytes, version_end, length_bytes);
-  Header header;
+  NpyHeader header;
   header.data = version_end + length_bytes + length;
   if (length > kMaxHeaderBytes || header.data > bytes.size()) {
     return InvalidInput(path, "expected a whole .npy header");
@@ -185,7 +186,7 @@ StatusOr<ValueType> FindType(const std::string& path, const std::string& name) {
       "expected |u1, <u2, <f4 or <f8, found " + name.substr(0, 20));
 }
 
-Status CheckShape(const std::string& path, const Header& header,
+Status CheckShape(const std::string& path, const NpyHeader& header,
                   const ImageLimits& limits) {
   const std::vector<int64_t>& shape = header.shape;
   if (shape.size() != 2 && !(shape.size() == 3 && shape[2] == 3)) {
@@ -205,7 +206,7 @@ Status CheckShape(const std::string& path, const Header& header,
 
 StatusOr<Photo> DecodeNpy(const std::string& path, const std::string& bytes,
                           const ImageLimits& limits) {
-  const StatusOr<Header> header = ReadHeader(path, bytes);
+  const StatusOr<NpyHeader> header = ReadNpyHeader(path, bytes);
   if (!header.ok()) return header.status();
   const StatusOr<ValueType> type = FindType(path, header->type);
   if (!type.ok()) return type.status();

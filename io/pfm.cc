@@ -26,7 +26,7 @@ std::string NextWord(const std::string& bytes, size_t* at) {
 }
 
 // 0 where the word is no whole number of at most 9 digits.
-int64_t Size(const std::string& word) {
+int64_t ParsePfmSize(const std::string& word) {
   if (word.empty() || word.size() > 9) return 0;
   for (const char c : word) {
     if (c < '0' || c > '9') return 0;
@@ -34,7 +34,7 @@ int64_t Size(const std::string& word) {
   return std::atoll(word.c_str());
 }
 
-float Value(const char* data, bool little_endian) {
+float PfmValue(const char* data, bool little_endian) {
   uint32_t bits = 0;
   for (size_t i = 0; i < 4; ++i) {
     const size_t digit = little_endian ? 3 - i : i;
@@ -54,8 +54,8 @@ StatusOr<Photo> DecodePfm(const std::string& path, const std::string& bytes,
   if (kind != "PF" && kind != "Pf") {
     return InvalidInput(path, "expected a PFM image, which starts PF or Pf");
   }
-  const int64_t width = Size(NextWord(bytes, &at));
-  const int64_t height = Size(NextWord(bytes, &at));
+  const int64_t width = ParsePfmSize(NextWord(bytes, &at));
+  const int64_t height = ParsePfmSize(NextWord(bytes, &at));
   IBRDF_RETURN_IF_ERROR(CheckImageSize(path, width, height, limits));
   const std::string scale_word = NextWord(bytes, &at);
   char* end = nullptr;
@@ -84,7 +84,7 @@ StatusOr<Photo> DecodePfm(const std::string& path, const std::string& bytes,
         static_cast<size_t>(height) - 1 - pixel / static_cast<size_t>(width);
     const size_t value = row * row_values + (grey ? x : 3 * x + i % 3);
     photo.image.rgb[i] =
-        Value(bytes.data() + at + value * sizeof(float), little_endian);
+        PfmValue(bytes.data() + at + value * sizeof(float), little_endian);
   }
   if (std::fabs(scale) != 1.0) {
     photo.notes.push_back("The PFM scale " + Printable(scale_word) +

@@ -167,7 +167,7 @@ void InsertPlane(const std::string& name, const Imath::Box2i& window,
                                        sizeof(float), row, sampling, sampling));
 }
 
-struct Pixels {
+struct WindowPixels {
   Image image;               // of the data window
   std::vector<float> alpha;  // empty where there is none
 };
@@ -188,10 +188,11 @@ void AddChroma(const Imath::Box2i& window, int sampling,
   }
 }
 
-Pixels ReadPixels(Imf::MultiPartInputFile* file, const ExrPicture& picture,
-                  const Imf::Header& header, const Eigen::Vector3d& weights) {
+WindowPixels ReadWindow(Imf::MultiPartInputFile* file,
+                        const ExrPicture& picture, const Imf::Header& header,
+                        const Eigen::Vector3d& weights) {
   const Imath::Box2i window = header.dataWindow();
-  Pixels pixels;
+  WindowPixels pixels;
   pixels.image = Image(Width(window), Height(window));
   constexpr size_t kPixelBytes = 3 * sizeof(float);
   const size_t row_bytes = kPixelBytes * static_cast<size_t>(Width(window));
@@ -229,7 +230,7 @@ Pixels ReadPixels(Imf::MultiPartInputFile* file, const ExrPicture& picture,
   return pixels;
 }
 
-std::string Text(const Imath::Box2i& window) {
+std::string WindowText(const Imath::Box2i& window) {
   return std::to_string(Width(window)) + "x" + std::to_string(Height(window)) +
          " at (" + std::to_string(window.min.x) + ", " +
          std::to_string(window.min.y) + ")";
@@ -237,7 +238,7 @@ std::string Text(const Imath::Box2i& window) {
 
 // Places the data window's pixels in the display window.
 Status PlaceInDisplay(const std::string& path, const Imf::Header& header,
-                      Pixels pixels, Photo* photo) {
+                      WindowPixels pixels, Photo* photo) {
   const Imath::Box2i& data = header.dataWindow();
   const Imath::Box2i& display = header.displayWindow();
   if (data == display) {
@@ -252,7 +253,8 @@ Status PlaceInDisplay(const std::string& path, const Imf::Header& header,
   if (both.isEmpty()) {
     return InvalidInput(path + ": dataWindow",
                         "expected pixels in the display window " +
-                            Text(display) + ", found " + Text(data));
+                            WindowText(display) + ", found " +
+                            WindowText(data));
   }
   photo->image = Image(Width(display), Height(display));
   Mask covered(Width(display), Height(display), 0);
@@ -273,8 +275,8 @@ Status PlaceInDisplay(const std::string& path, const Imf::Header& header,
   }
   if (!alpha.empty()) SetAlpha(alpha, photo);
   const bool whole = both == display;
-  photo->notes.push_back("The data window, " + Text(data) +
-                         ", is not the display window, " + Text(display) +
+  photo->notes.push_back("The data window, " + WindowText(data) +
+                         ", is not the display window, " + WindowText(display) +
                          ": the image is the display window" +
                          (whole ? "." : ", with pixels missing."));
   if (!whole) photo->has_data = std::move(covered);
@@ -385,8 +387,8 @@ StatusOr<ExrPicture> FindPicture(const std::string& path,
   return picture;
 }
 
-StatusOr<Photo> Decode(const std::string& path, const std::string& bytes,
-                       const PhotoOptions& options) {
+StatusOr<Photo> DecodeOrThrow(const std::string& path, const std::string& bytes,
+                              const PhotoOptions& options) {
   const StatusOr<std::vector<Imf::Header>> headers =
       ReadHeaders(path, bytes, options.limits);
   if (!headers.ok()) return headers.status();
@@ -422,7 +424,7 @@ StatusOr<Photo> Decode(const std::string& path, const std::string& bytes,
   const StatusOr<ColourSpace> colours =
       FileColours(path, header, picture, options.content);
   if (!colours.ok()) return colours.status();
-  Pixels pixels = ReadPixels(&file, picture, header, colours->luminance);
+  WindowPixels pixels = ReadWindow(&file, picture, header, colours->luminance);
   IBRDF_RETURN_IF_ERROR(
       PlaceInDisplay(path, header, std::move(pixels), &photo));
   if (colours->to_rec709) ConvertColours(*colours->to_rec709, &photo);
@@ -436,7 +438,7 @@ StatusOr<Photo> DecodeExrPhoto(const std::string& path,
                                const std::string& bytes,
                                const PhotoOptions& options) {
   try {
-    return Decode(path, bytes, options);
+    return DecodeOrThrow(path, bytes, options);
   } catch (const std::exception& e) {
     return InvalidInput(
         path, std::string("expected an OpenEXR image (") + e.what() + ")");

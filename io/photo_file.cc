@@ -137,8 +137,9 @@ Status CheckNormals(const std::string& path, const Photo& photo) {
   return OkStatus();
 }
 
-StatusOr<Photo> Decode(const std::string& path, const std::string& bytes,
-                       const PhotoOptions& options) {
+StatusOr<Photo> DecodeByContent(const std::string& path,
+                                const std::string& bytes,
+                                const PhotoOptions& options) {
   const std::optional<PhotoFormat> format = FindFormat(bytes);
   if (!format) {
     const std::string_view other = OtherFormat(bytes);
@@ -177,7 +178,7 @@ StatusOr<Photo> ReadPhoto(const std::string& path,
 StatusOr<Photo> DecodePhoto(const std::string& path, const std::string& bytes,
                             const PhotoOptions& options) {
   try {
-    return Decode(path, bytes, options);
+    return DecodeByContent(path, bytes, options);
   } catch (const std::exception&) {  // of memory alone; OpenEXR's are caught
     return InvalidInput(path, "expected an image that fits into memory");
   }

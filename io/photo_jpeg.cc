@@ -25,7 +25,7 @@ constexpr unsigned int kMaxMarkerBytes = 0xFFFF;
 
 // libjpeg's errors leave by longjmp: functions that call setjmp own nothing,
 // they work on the state of a caller.
-struct ReadState {
+struct JpegState {
   jpeg_error_mgr errors;  // first: libjpeg hands a pointer to it back
   jmp_buf jump;
   int code = 0;  // of the error
@@ -37,21 +37,21 @@ struct ReadState {
   std::vector<uint8_t> row;
   std::vector<float> values;  // [rows, width, channels]
 
-  ReadState() : errors(), progress(), jpeg() {}
-  ~ReadState() {
+  JpegState() : errors(), progress(), jpeg() {}
+  ~JpegState() {
     jpeg_destroy_decompress(&jpeg);
     std::free(icc);
   }
-  ReadState(const ReadState&) = delete;
-  ReadState& operator=(const ReadState&) = delete;
+  JpegState(const JpegState&) = delete;
+  JpegState& operator=(const JpegState&) = delete;
 };
 
-ReadState* StateOf(j_common_ptr jpeg) {
-  return reinterpret_cast<ReadState*>(jpeg->err);
+JpegState* StateOf(j_common_ptr jpeg) {
+  return reinterpret_cast<JpegState*>(jpeg->err);
 }
 
-void OnError(j_common_ptr jpeg) {
-  ReadState* state = StateOf(jpeg);
+void OnJpegError(j_common_ptr jpeg) {
+  JpegState* state = StateOf(jpeg);
   state->code = jpeg->err->msg_code;
   jpeg->err->format_message(jpeg, state->message);
   std::longjmp(state->jump, 1);
@@ -67,7 +67,7 @@ void OnMessage(j_common_ptr jpeg, int level) {
     case JWRN_BOGUS_ICC:
       return;
     default:
-      OnError(jpeg);
+      OnJpegError(jpeg);
   }
 }
 
@@ -76,15 +76,15 @@ void OnProgress(j_common_ptr jpeg) {
       kMaxScans) {
     return;
   }
-  ReadState* state = StateOf(jpeg);
+  JpegState* state = StateOf(jpeg);
   std::snprintf(state->message, sizeof(state->message), "more than %d scans",
                 kMaxScans);
   std::longjmp(state->jump, 1);
 }
 
-bool ReadHeader(const std::string& bytes, ReadState* state) {
+bool ReadJpegHeader(const std::string& bytes, JpegState* state) {
   state->jpeg.err = jpeg_std_error(&state->errors);
-  state->errors.error_exit = OnError;
+  state->errors.error_exit = OnJpegError;
   state->errors.emit_message = OnMessage;
   if (setjmp(state->jump) != 0) return false;
   jpeg_create_decompress(&state->jpeg);
@@ -101,7 +101,7 @@ bool ReadHeader(const std::string& bytes, ReadState* state) {
 }
 
 // `values` has the capacity of all of them and grows by rows.
-bool ReadRows(ReadState* state) {
+bool ReadJpegRows(JpegState* state) {
   if (setjmp(state->jump) != 0) return false;
   jpeg_start_decompress(&state->jpeg);
   while (state->jpeg.output_scanline < state->jpeg.output_height) {
@@ -114,7 +114,7 @@ bool ReadRows(ReadState* state) {
   return true;
 }
 
-Status DecodeError(const std::string& path, const ReadState& state) {
+Status JpegError(const std::string& path, const JpegState& state) {
   switch (state.code) {
     case JERR_BAD_PRECISION:
       return InvalidInput(path + ": bits",
@@ -153,7 +153,7 @@ Status ChooseColours(const std::string& path, jpeg_decompress_struct* jpeg) {
   }
 }
 
-void ReadTags(const ReadState& state, Photo* photo) {
+void ReadJpegTags(const JpegState& state, Photo* photo) {
   if (state.icc != nullptr) {
     photo->tags.icc = ParseIccProfile(
         {reinterpret_cast<const char*>(state.icc), state.icc_bytes});
@@ -182,8 +182,8 @@ void ReadTags(const ReadState& state, Photo* photo) {
 StatusOr<Photo> DecodeJpegPhoto(const std::string& path,
                                 const std::string& bytes,
                                 const PhotoOptions& options) {
-  ReadState state;
-  if (!ReadHeader(bytes, &state)) return DecodeError(path, state);
+  JpegState state;
+  if (!ReadJpegHeader(bytes, &state)) return JpegError(path, state);
   IBRDF_RETURN_IF_ERROR(CheckImageSize(
       path, state.jpeg.image_width, state.jpeg.image_height, options.limits));
   IBRDF_RETURN_IF_ERROR(ChooseColours(path, &state.jpeg));
@@ -191,13 +191,13 @@ StatusOr<Photo> DecodeJpegPhoto(const std::string& path,
   photo.format = PhotoFormat::kJpeg;
   photo.bits = photo.significant_bits = 8;
   photo.grey = state.jpeg.out_color_space == JCS_GRAYSCALE;
-  ReadTags(state, &photo);  // before the end of decompression frees them
+  ReadJpegTags(state, &photo);  // before the end of decompression frees them
 
   const size_t width = state.jpeg.image_width;
   const size_t pixels = width * state.jpeg.image_height;
   state.row.resize(width * (photo.grey ? 1 : 3));
   state.values.reserve(pixels * (photo.grey ? 1 : 3));
-  if (!ReadRows(&state)) return DecodeError(path, state);
+  if (!ReadJpegRows(&state)) return JpegError(path, state);
   photo.image.width = static_cast<int>(width);
   photo.image.height = static_cast<int>(state.jpeg.image_height);
   if (!photo.grey) {

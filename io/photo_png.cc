@@ -15,7 +15,7 @@
 namespace ibrdf {
 namespace {
 
-struct ReadState : PngReadState {
+struct PhotoState : PngReadState {
   using PngReadState::PngReadState;
 
   png_uint_32 width = 0;
@@ -27,7 +27,7 @@ struct ReadState : PngReadState {
 };
 
 // Reads up to the pixels and asks for one or two bytes a sample.
-bool ReadHeader(ReadState* state) {
+bool ReadPhotoHeader(PhotoState* state) {
   if (!OpenPng(state)) return false;
   if (setjmp(png_jmpbuf(state->png)) != 0) return false;
   static const png_byte kCicp[] = "cICP";
@@ -48,7 +48,7 @@ bool ReadHeader(ReadState* state) {
 // Ends of the alpha range and how samples become colours.
 class Samples {
  public:
-  explicit Samples(const ReadState& state)
+  explicit Samples(const PhotoState& state)
       : two_bytes_(state.depth == 16), channels_(state.channels) {}
 
   // Sample c of pixel i.
@@ -64,7 +64,7 @@ class Samples {
 };
 
 // Colours and alpha by the palette.
-Status FromPalette(const std::string& path, const ReadState& state,
+Status FromPalette(const std::string& path, const PhotoState& state,
                    const std::vector<uint8_t>& pixels, Photo* photo,
                    std::vector<float>* alpha) {
   png_colorp palette = nullptr;
@@ -94,7 +94,7 @@ Status FromPalette(const std::string& path, const ReadState& state,
   return OkStatus();
 }
 
-void FromSamples(const ReadState& state, const std::vector<uint8_t>& pixels,
+void FromSamples(const PhotoState& state, const std::vector<uint8_t>& pixels,
                  Photo* photo, std::vector<float>* alpha) {
   const Samples samples(state);
   const bool colour = (state.type & PNG_COLOR_MASK_COLOR) != 0;
@@ -130,7 +130,7 @@ void FromSamples(const ReadState& state, const std::vector<uint8_t>& pixels,
 }
 
 // The chunk of unknown name that libpng was asked to keep.
-void ReadCicp(const ReadState& state, ColourTags* tags) {
+void ReadCicp(const PhotoState& state, ColourTags* tags) {
   png_unknown_chunkp chunks = nullptr;
   const int count = png_get_unknown_chunks(state.png, state.info, &chunks);
   for (int k = 0; k < count; ++k) {
@@ -141,7 +141,7 @@ void ReadCicp(const ReadState& state, ColourTags* tags) {
   }
 }
 
-void ReadColourTags(const ReadState& state, Photo* photo) {
+void ReadColourTags(const PhotoState& state, Photo* photo) {
   ColourTags* tags = &photo->tags;
   double gamma = 0.0;
   int intent = 0;
@@ -168,7 +168,7 @@ void ReadColourTags(const ReadState& state, Photo* photo) {
   }
 }
 
-void ReadOtherTags(const ReadState& state, Photo* photo) {
+void ReadOtherTags(const PhotoState& state, Photo* photo) {
   png_color_8p bits = nullptr;
   photo->significant_bits = photo->bits;
   if (png_get_sBIT(state.png, state.info, &bits) != 0) {
@@ -191,7 +191,7 @@ void ReadOtherTags(const ReadState& state, Photo* photo) {
   }
 }
 
-Status DecodeError(const std::string& path, const ReadState& state) {
+Status PhotoError(const std::string& path, const PhotoState& state) {
   return InvalidInput(
       path, std::string("expected a PNG image (") + state.message + ")");
 }
@@ -201,8 +201,8 @@ Status DecodeError(const std::string& path, const ReadState& state) {
 StatusOr<Photo> DecodePngPhoto(const std::string& path,
                                const std::string& bytes,
                                const PhotoOptions& options) {
-  ReadState state(bytes);
-  if (!ReadHeader(&state)) return DecodeError(path, state);
+  PhotoState state(bytes);
+  if (!ReadPhotoHeader(&state)) return PhotoError(path, state);
   IBRDF_RETURN_IF_ERROR(
       CheckImageSize(path, state.width, state.height, options.limits));
   // Deflate shrinks at most 1032-fold (RFC 1951: 258 bytes in 2 bits), and
@@ -217,7 +217,7 @@ StatusOr<Photo> DecodePngPhoto(const std::string& path,
   for (size_t y = 0; y < rows.size(); ++y) {
     rows[y] = pixels.data() + y * state.row_bytes;
   }
-  if (!ReadPngRows(&state, rows.data())) return DecodeError(path, state);
+  if (!ReadPngRows(&state, rows.data())) return PhotoError(path, state);
 
   Photo photo;
   photo.format = PhotoFormat::kPng;

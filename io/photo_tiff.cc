@@ -32,7 +32,7 @@ MemoryFile* FileOf(thandle_t handle) {
   return static_cast<MemoryFile*>(handle);
 }
 
-tmsize_t ReadBytes(thandle_t handle, void* out, tmsize_t count) {
+tmsize_t ReadTiffBytes(thandle_t handle, void* out, tmsize_t count) {
   MemoryFile* file = FileOf(handle);
   const toff_t size = file->bytes->size();
   if (count <= 0 || file->position >= size) return 0;
@@ -46,7 +46,7 @@ tmsize_t ReadBytes(thandle_t handle, void* out, tmsize_t count) {
 
 tmsize_t WriteNothing(thandle_t, void*, tmsize_t) { return 0; }
 
-toff_t Seek(thandle_t handle, toff_t offset, int whence) {
+toff_t SeekTiff(thandle_t handle, toff_t offset, int whence) {
   MemoryFile* file = FileOf(handle);
   if (whence == SEEK_CUR) offset += file->position;
   if (whence == SEEK_END) offset += file->bytes->size();
@@ -54,9 +54,9 @@ toff_t Seek(thandle_t handle, toff_t offset, int whence) {
   return offset;
 }
 
-int Close(thandle_t) { return 0; }
+int KeepOpen(thandle_t) { return 0; }
 
-toff_t Size(thandle_t handle) { return FileOf(handle)->bytes->size(); }
+toff_t TiffSize(thandle_t handle) { return FileOf(handle)->bytes->size(); }
 
 void Keep(MemoryFile* file, const char* format, va_list arguments) {
   if (!file->message.empty()) return;
@@ -65,14 +65,14 @@ void Keep(MemoryFile* file, const char* format, va_list arguments) {
   file->message = text[0] == '\0' ? "damaged" : text;
 }
 
-int OnError(TIFF*, void* file, const char*, const char* format,
-            va_list arguments) {
+int OnTiffError(TIFF*, void* file, const char*, const char* format,
+                va_list arguments) {
   Keep(static_cast<MemoryFile*>(file), format, arguments);
   return 1;
 }
 
-int OnWarning(TIFF*, void* data, const char*, const char* format,
-              va_list arguments) {
+int OnTiffWarning(TIFF*, void* data, const char*, const char* format,
+                  va_list arguments) {
   MemoryFile* file = static_cast<MemoryFile*>(data);
   if (file->strict) Keep(file, format, arguments);
   return 1;
@@ -88,11 +88,12 @@ TiffHandle OpenTiff(MemoryFile* file, size_t largest) {
   TIFFOpenOptions* options = TIFFOpenOptionsAlloc();
   if (options == nullptr) return nullptr;
   TIFFOpenOptionsSetMaxSingleMemAlloc(options, static_cast<tmsize_t>(largest));
-  TIFFOpenOptionsSetErrorHandlerExtR(options, OnError, file);
-  TIFFOpenOptionsSetWarningHandlerExtR(options, OnWarning, file);
+  TIFFOpenOptionsSetErrorHandlerExtR(options, OnTiffError, file);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, OnTiffWarning, file);
   // m: the file is not mapped; it is in memory.
-  TIFF* tiff = TIFFClientOpenExt("file", "rm", file, ReadBytes, WriteNothing,
-                                 Seek, Close, Size, nullptr, nullptr, options);
+  TIFF* tiff = TIFFClientOpenExt("file", "rm", file, ReadTiffBytes,
+                                 WriteNothing, SeekTiff, KeepOpen, TiffSize,
+                                 nullptr, nullptr, options);
   TIFFOpenOptionsFree(options);
   return TiffHandle(tiff);
 }
@@ -270,7 +271,7 @@ float SampleValue(const Layout& layout, const uint8_t* row, size_t index) {
 }
 
 // Samples of a picture: colours and alpha.
-struct Pixels {
+struct TiffPixels {
   Image image;
   std::vector<float> alpha;
 };
@@ -283,7 +284,7 @@ struct Block {
 };
 
 void CopyBlock(const Layout& layout, const Block& block,
-               const std::vector<uint8_t>& data, Pixels* pixels) {
+               const std::vector<uint8_t>& data, TiffPixels* pixels) {
   const size_t samples =
       static_cast<size_t>(layout.planes ? 1 : layout.samples);
   const size_t row_bytes =
@@ -400,13 +401,14 @@ Status ReadBlock(const std::string& path, TIFF* tiff, const Layout& layout,
   return OkStatus();
 }
 
-StatusOr<Pixels> ReadPixels(const std::string& path, TIFF* tiff,
-                            const Layout& layout, const ImageLimits& limits,
-                            MemoryFile* file) {
+StatusOr<TiffPixels> ReadTiffPixels(const std::string& path, TIFF* tiff,
+                                    const Layout& layout,
+                                    const ImageLimits& limits,
+                                    MemoryFile* file) {
   const StatusOr<Blocks> blocks = ReadBlocks(path, tiff, layout, limits, *file);
   if (!blocks.ok()) return blocks.status();
   std::vector<uint8_t> data(blocks->bytes);
-  Pixels pixels;
+  TiffPixels pixels;
   file->message.clear();
   file->strict = true;
   for (int plane = 0; plane < (layout.planes ? layout.samples : 1); ++plane) {
@@ -454,7 +456,7 @@ Status ApplyPalette(const std::string& path, TIFF* tiff, int index_bits,
   return OkStatus();
 }
 
-void ReadTags(TIFF* tiff, const std::string& bytes, Photo* photo) {
+void ReadTiffTags(TIFF* tiff, const std::string& bytes, Photo* photo) {
   // BigTIFF's tables are of another kind.
   if (TIFFIsBigTIFF(tiff) == 0) AddExif(ParseExif(bytes), photo);
   const uint16_t orientation = Field<uint16_t>(tiff, TIFFTAG_ORIENTATION, 1);
@@ -501,8 +503,8 @@ StatusOr<Photo> DecodeTiffPhoto(const std::string& path,
   SkipThumbnails(tiff.get());
   const StatusOr<Layout> layout = ReadLayout(path, tiff.get(), options.limits);
   if (!layout.ok()) return layout.status();
-  StatusOr<Pixels> pixels =
-      ReadPixels(path, tiff.get(), *layout, options.limits, &file);
+  StatusOr<TiffPixels> pixels =
+      ReadTiffPixels(path, tiff.get(), *layout, options.limits, &file);
   if (!pixels.ok()) return pixels.status();
 
   Photo photo;
@@ -527,7 +529,7 @@ StatusOr<Photo> DecodeTiffPhoto(const std::string& path,
   photo.significant_bits = photo.bits;
   for (float& alpha : pixels->alpha) alpha /= largest_code;
   if (!pixels->alpha.empty()) SetAlpha(pixels->alpha, &photo);
-  ReadTags(tiff.get(), bytes, &photo);
+  ReadTiffTags(tiff.get(), bytes, &photo);
   return photo;
 }
 

@@ -37,7 +37,7 @@ struct Element {
 
 enum class Format { kUnknown, kAscii, kLittleEndian, kBigEndian };
 
-struct Header {
+struct PlyHeader {
   Format format = Format::kUnknown;
   std::vector<Element> elements;
   size_t end = 0;  // first byte after the header
@@ -83,7 +83,7 @@ size_t Bytes(Type type) {
 }
 
 // Keywords after the first line of the header; false where malformed.
-bool ParseHeaderLine(const std::string& line, Header* header) {
+bool ParseHeaderLine(const std::string& line, PlyHeader* header) {
   std::istringstream words(line);
   std::string keyword, name;
   words >> keyword;
@@ -120,9 +120,9 @@ bool ParseHeaderLine(const std::string& line, Header* header) {
   return keyword == "comment" || keyword == "obj_info" || keyword.empty();
 }
 
-StatusOr<Header> ParseHeader(const std::string& path,
-                             const std::string& bytes) {
-  Header header;
+StatusOr<PlyHeader> ParsePlyHeader(const std::string& path,
+                                   const std::string& bytes) {
+  PlyHeader header;
   for (int line_number = 1; header.end < bytes.size(); ++line_number) {
     const size_t newline = bytes.find('\n', header.end);
     if (newline == std::string::npos) break;
@@ -294,7 +294,7 @@ Status ReadElement(const std::string& path, const Element& element,
 
 StatusOr<PolygonMesh> ParsePly(const std::string& path,
                                const std::string& bytes) {
-  const StatusOr<Header> header = ParseHeader(path, bytes);
+  const StatusOr<PlyHeader> header = ParsePlyHeader(path, bytes);
   if (!header.ok()) return header.status();
   PolygonMesh mesh;
   NumberReader numbers(std::string_view(bytes).substr(header->end),

@@ -88,8 +88,9 @@ Status DecodeError(const std::string& path, const ReadState& state) {
       path, std::string("expected a PNG image (") + state.message + ")");
 }
 
-StatusOr<Mask> Decode(const std::string& path, const std::string& bytes,
-                      const ImageLimits& limits) {
+StatusOr<Mask> DecodeUnlessTooLarge(const std::string& path,
+                                    const std::string& bytes,
+                                    const ImageLimits& limits) {
   ReadState state(bytes);
   if (!ReadHeader(&state)) return DecodeError(path, state);
   IBRDF_RETURN_IF_ERROR(
@@ -134,7 +135,7 @@ StatusOr<Mask> ReadMask(const std::string& path) {
 StatusOr<Mask> DecodeMask(const std::string& path, const std::string& bytes,
                           const ImageLimits& limits) {
   try {
-    return Decode(path, bytes, limits);
+    return DecodeUnlessTooLarge(path, bytes, limits);
   } catch (const std::bad_alloc&) {
     return InvalidInput(path, "expected an image that fits into memory");
   }

@@ -23,7 +23,7 @@ bool ChunksFit(const PngReadState& state) {
   return true;
 }
 
-void ReadBytes(png_structp png, png_bytep out, size_t count) {
+void ReadPngBytes(png_structp png, png_bytep out, size_t count) {
   PngReadState* state = static_cast<PngReadState*>(png_get_io_ptr(png));
   if (count > state->size - state->position) {
     png_error(png, "unexpected end of file");
@@ -59,7 +59,7 @@ bool OpenPng(PngReadState* state) {
   state->info = png_create_info_struct(state->png);
   if (state->info == nullptr) return false;
   png_set_user_limits(state->png, kMaxImageSide, kMaxImageSide);
-  png_set_read_fn(state->png, state, ReadBytes);
+  png_set_read_fn(state->png, state, ReadPngBytes);
   return true;
 }
 

@@ -44,7 +44,8 @@ struct ReflectanceSpec {
   bool known() const { return !known_file.empty() || analytic.has_value(); }
 };
 
-enum class IlluminationPrior { kUNet, kProcess, kNone };
+// kAuto stands in files alone: a problem that was read has one of the others.
+enum class IlluminationPrior { kAuto, kProcess, kUNet, kNone };
 // Most texels along a side of an estimate under kProcess, whose MAP estimate
 // takes O(width height^3).
 inline constexpr int kMaxProcessSide = 256;
@@ -55,7 +56,7 @@ struct IlluminationSpec {
   int width = 128;
   int height = 64;
   bool sized = false;  // they were asked for
-  IlluminationPrior prior = IlluminationPrior::kUNet;
+  IlluminationPrior prior = IlluminationPrior::kProcess;
   int unet_channels = 32;  // of the network's feature maps, [1, 128]
   // Known illumination: at most one is set.
   std::string known_file;  // .exr or .hdr
@@ -92,7 +93,8 @@ struct EffectsSpec {
 
 // What minimises the map, under SolverEstimator::kMaximum map and reflectance.
 // With IlluminationPrior::kUNet it is the network's: the MAP estimate under
-// the Gaussian process before it is found by kGaussNewton. kAuto: the program decides.
+// the Gaussian process before it is found by kGaussNewton. kAuto: the program
+// decides.
 enum class SolverMethod {
   kAuto,
   kAlternating,

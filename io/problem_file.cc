@@ -143,7 +143,12 @@ void ReadMapSize(ProblemReader* reader, IlluminationSpec* illumination) {
 
 void ReadIllumination(ProblemReader reader, IlluminationSpec* illumination) {
   ReadMapSize(&reader, illumination);
+  illumination->prior = IlluminationPrior::kAuto;
   reader.Read("prior", &illumination->prior);
+  if (illumination->prior == IlluminationPrior::kAuto &&
+      reader.Has("unet_channels")) {
+    illumination->prior = IlluminationPrior::kUNet;
+  }
   reader.Read("unet_channels", &illumination->unet_channels);
   reader.CheckNeeds("unet_channels",
                     illumination->prior == IlluminationPrior::kUNet);
@@ -238,6 +243,16 @@ void ReadTruth(ProblemReader reader, TruthSpec* truth) {
 }
 
 // The first error is the context's.
+// What `auto` stands for.
+void SettlePrior(const SolverSpec& solver, IlluminationSpec* illumination) {
+  if (illumination->prior != IlluminationPrior::kAuto) return;
+  const bool large =
+      std::max(illumination->width, illumination->height) > kMaxProcessSide;
+  illumination->prior = large || solver.estimator == SolverEstimator::kMaximum
+                            ? IlluminationPrior::kUNet
+                            : IlluminationPrior::kProcess;
+}
+
 void ReadKeys(ProblemReader root, Problem* problem) {
   for (const char* key : {"image", "geometry"}) {
     if (!root.Has(key)) root.Fail(key, "expected, found nothing");
@@ -257,6 +272,7 @@ void ReadKeys(ProblemReader root, Problem* problem) {
   ReadLikelihood(root.Below("likelihood"), &problem->likelihood);
   ReadEffects(&root, &problem->effects);
   ReadSolver(root.Below("solver"), problem->kind, &problem->solver);
+  SettlePrior(problem->solver, &problem->illumination);
   ReadTruth(root.Below("truth"), &problem->truth);
   root.Read("noise", &problem->noise);
   root.Read("quality", &problem->quality);

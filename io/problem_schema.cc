@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -296,12 +297,17 @@ Keys IlluminationKeys() {
           .Unit("texels"),
       Row("illumination.prior", "What is taken as natural light.")
           .Choice(
-              "unet",
-              {{"unet",
-                "The map is a network's output, begun at the MAP estimate of a "
-                "Gaussian process. That estimate stays where the network fits "
-                "less well."},
-               {"process", "The map is that MAP estimate itself."},
+              "auto",
+              {{"auto",
+                "`process`. It is `unet` where `illumination.unet_channels` is "
+                "set, with `solver.estimator: maximum`, and for maps of more "
+                "than " +
+                    std::to_string(kMaxProcessSide) + " texels a side."},
+               {"process",
+                "The map is the MAP estimate of a Gaussian process."},
+               {"unet",
+                "The map is a network's output, begun at that MAP estimate, "
+                "which stays where the network fits less well."},
                {"none",
                 "Texels are independent of each other. It is there for "
                 "comparison."}})
@@ -554,10 +560,11 @@ ProblemSchema MakeSchema() {
 }  // namespace
 
 const ProblemKey& ProblemSchema::Key(const std::string& path) const {
-  for (const ProblemKey& key : keys) {
-    if (key.path == path) return key;
-  }
-  LOG(FATAL) << "no key " << path;
+  const auto key =
+      std::find_if(keys.begin(), keys.end(),
+                   [&](const ProblemKey& k) { return k.path == path; });
+  CHECK(key != keys.end()) << "no key " << path;
+  return *key;
 }
 
 std::vector<std::string> ProblemSchema::NamesBelow(

@@ -19,7 +19,7 @@ constexpr int kMinRleWidth = 8;
 constexpr int kMaxRleWidth = 32767;
 constexpr int kExponentBias = 128 + 8;  // 8: the mantissa is an integer
 
-struct Header {
+struct HdrHeader {
   int width = 0;
   int height = 0;
   std::array<double, 3> exposure = {1.0, 1.0, 1.0};
@@ -63,7 +63,7 @@ bool ParseSize(const std::string& line, size_t* position, int64_t* size) {
 }
 
 Status ParseResolution(const std::string& path, const std::string& line,
-                       const ImageLimits& limits, Header* header) {
+                       const ImageLimits& limits, HdrHeader* header) {
   const std::string where = path + ": resolution";
   int64_t height = 0, width = 0;
   size_t position = 3;
@@ -81,12 +81,13 @@ Status ParseResolution(const std::string& path, const std::string& line,
   return OkStatus();
 }
 
-StatusOr<Header> ParseHeader(const std::string& path, const std::string& bytes,
-                             const ImageLimits& limits) {
+StatusOr<HdrHeader> ParseHdrHeader(const std::string& path,
+                                   const std::string& bytes,
+                                   const ImageLimits& limits) {
   if (bytes.compare(0, 2, "#?") != 0) {
     return InvalidInput(path, "expected a Radiance image, which starts \"#?\"");
   }
-  Header header;
+  HdrHeader header;
   bool first = true, blank = false;
   while (header.end < bytes.size()) {
     const size_t newline = bytes.find('\n', header.end);
@@ -258,7 +259,7 @@ StatusOr<Image> ReadRadianceHdr(const std::string& path) {
 StatusOr<Image> DecodeRadianceHdr(const std::string& path,
                                   const std::string& bytes,
                                   const ImageLimits& limits) {
-  const StatusOr<Header> header = ParseHeader(path, bytes, limits);
+  const StatusOr<HdrHeader> header = ParseHdrHeader(path, bytes, limits);
   if (!header.ok()) return header.status();
 
   Image image;

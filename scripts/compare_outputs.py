@@ -59,13 +59,13 @@ SCENES = {
 JOINT = "reflectance: {model: %s, lobes: 2}\n"
 DEFAULT_MODEL = ("joint", "reflectance", "maximum")  # the others: a small one of three materials
 SOLVES = {
-    "joint": ("sphere", "joint", "illumination: {width: 32, height: 16}\n", "max_iterations: 1"),
+    "joint": ("sphere", "joint", "illumination: {width: 32, height: 16, prior: unet}\n", "max_iterations: 1"),
     "joint_process": ("sphere", "joint", "illumination: {width: 32, height: 16, prior: process}\n",
                       "max_iterations: 1"),
-    "joint_grey": ("mirror", "joint", "illumination: {width: 32, height: 16}\n",
+    "joint_grey": ("mirror", "joint", "illumination: {width: 32, height: 16, prior: unet}\n",
                    "max_iterations: 2, gauge: grey_light, quadrature: coarse"),
-    "joint_start": ("sphere", "joint", "illumination: {width: 32, height: 16}\n", "max_iterations: 0"),
-    "joint_torus": ("torus", "joint", "illumination: {width: 32, height: 16}\neffects: all\n", "max_iterations: 1"),
+    "joint_start": ("sphere", "joint", "illumination: {width: 32, height: 16, prior: unet}\n", "max_iterations: 0"),
+    "joint_torus": ("torus", "joint", "illumination: {width: 32, height: 16, prior: unet}\neffects: all\n", "max_iterations: 1"),
     "joint_shadows": ("torus", "joint", "illumination: {width: 32, height: 16, prior: process}\n"
                       "effects: [visibility]\n", "max_iterations: 1, gauge: unit_light"),
     "maximum": ("sphere", "joint", "illumination: {width: 16, height: 8}\n", "estimator: maximum, max_iterations: 3"),
@@ -77,7 +77,7 @@ SOLVES = {
                      "estimator: maximum, method: adam, max_iterations: 1"),
     "maximum_tr": ("sphere", "joint", "illumination: {width: 16, height: 8, prior: none}\n",
                    "estimator: maximum, method: trust_region, max_iterations: 2"),
-    "light": ("sphere", "illumination", "illumination: {width: 64, height: 32}\n", "max_iterations: 4"),
+    "light": ("sphere", "illumination", "illumination: {width: 64, height: 32, prior: unet}\n", "max_iterations: 4"),
     "light_mirror": ("mirror", "illumination", "illumination: {width: 64, height: 32, prior: process}\n",
                      "max_iterations: 4"),
     "light_none": ("torus", "illumination", "illumination: {width: 32, height: 16, prior: none}\neffects: all\n",

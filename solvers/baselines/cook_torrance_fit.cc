@@ -22,7 +22,7 @@ constexpr double kRelativeFloor = 1e-6;
 struct Bounds {
   double lower, upper;
 };
-constexpr Bounds kLogColour = {-16.0, 8.0};
+constexpr Bounds kLogColourBounds = {-16.0, 8.0};
 constexpr Bounds kLogRoughness = {-5.5, 0.7};  // 0.004 to 2
 constexpr Bounds kLogitF0 = {-7.0, 7.0};
 
@@ -34,7 +34,7 @@ constexpr double kPullScale = 30.0;
 constexpr int kColourIterations = 40;
 
 Bounds BoundsOf(int parameter) {
-  if (parameter < 6) return kLogColour;
+  if (parameter < 6) return kLogColourBounds;
   return parameter == 6 ? kLogRoughness : kLogitF0;
 }
 

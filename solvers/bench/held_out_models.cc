@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kDefault[] = "default";
+constexpr char kDefaultModel[] = "default";
 constexpr char kExtension[] = ".ibrdf";
 // Deep enough for FOLDER/fold0/NAME.ibrdf.
 constexpr int kDepth = 1;
@@ -40,15 +40,16 @@ StatusOr<std::vector<fs::path>> FindModels(const std::string& folder) {
 }  // namespace
 
 std::string ChosenModel::folder_suffix() const {
-  if (path == kDefault) return "";
+  if (path == kDefaultModel) return "";
   std::string name = "_" + label;
   std::replace(name.begin(), name.end(), '/', '-');
   return name;
 }
 
 std::string ReflectanceYaml(const ChosenModel& model, int lobes) {
-  return (model.path == kDefault ? "{"
-                                 : "{model: " + Quoted(model.path) + ", ") +
+  return (model.path == kDefaultModel
+              ? "{"
+              : "{model: " + Quoted(model.path) + ", ") +
          "lobes: " + std::to_string(lobes) + "}\n";
 }
 
@@ -64,7 +65,7 @@ StatusOr<HeldOutModels> HeldOutModels::Open(const ModelOptions& options) {
     return OkStatus();
   };
   if (options.models.empty()) {
-    const bool shipped = options.model == kDefault;
+    const bool shipped = options.model == kDefaultModel;
     const fs::path path(options.model);
     if (!shipped && !fs::is_regular_file(path)) {
       return InvalidInput(options.model, "expected a model file or default");
@@ -74,7 +75,7 @@ StatusOr<HeldOutModels> HeldOutModels::Open(const ModelOptions& options) {
             shipped ? options.model : path.filename().string(), {}));
     return out;
   }
-  if (options.model != kDefault) {
+  if (options.model != kDefaultModel) {
     return InvalidInput("command line", "expected --model or --models");
   }
   const StatusOr<std::vector<fs::path>> paths = FindModels(options.models);

@@ -9,6 +9,7 @@
 #include "ibrdf/io/png.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/solvers/bench/solver_sweep.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
 #include "ibrdf/solvers/bench/sweep_inputs.h"
 #include "ibrdf/solvers/forward/render_scene.h"
 #include "ibrdf/solvers/problem/load_scene.h"
@@ -18,7 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kMaxJsonBytes = size_t{1} << 20;
 // Counts changes of the fit that its options do not show.
 constexpr int kFitVersion = 1;
 
@@ -41,7 +41,7 @@ Json Made(const SweepOptions& options, const SweepCase& c,
 // False where the file holds no score made so.
 bool ReadScore(const std::string& path, const Json& made,
                CookTorranceScore* score) {
-  const StatusOr<std::string> text = ReadFile(path, kMaxJsonBytes);
+  const StatusOr<std::string> text = ReadFile(path, kMaxSettingsBytes);
   if (!text.ok()) return false;
   const Json json = Json::parse(*text, nullptr, false);
   if (!json.is_object() || !json.contains("made") || json["made"] != made) {

@@ -11,7 +11,7 @@ namespace ibrdf {
 
 struct JointSweepOptions : ModelSweepOptions {
   // Priors of the light, by their names in problem files: a run each.
-  std::vector<std::string> priors = {"unet"};
+  std::vector<std::string> priors = {"process"};
 };
 
 // Columns of its results.csv, in order; the first seven name the run.

@@ -8,7 +8,7 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kKeyColumns = 5;
+constexpr int kKnownBrdfKeys = 5;
 
 std::string ProblemText(const KnownBrdfSweepOptions& options,
                         const SweepCase& c, const std::string& prior) {
@@ -73,7 +73,7 @@ StatusOr<SolverSweep> KnownBrdfSweep(const KnownBrdfSweepOptions& options) {
   SolverSweep sweep;
   sweep.title = "Illumination of a known material";
   sweep.columns = &KnownBrdfColumns();
-  sweep.key_columns = kKeyColumns;
+  sweep.key_columns = kKnownBrdfKeys;
   for (const SweepCase& c : *cases) {
     for (const std::string& prior : options.priors) {
       NamedRow row = CaseRow(options, c, KnownBrdfColumns());

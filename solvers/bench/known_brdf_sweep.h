@@ -11,7 +11,7 @@
 namespace ibrdf {
 
 struct KnownBrdfSweepOptions : SolverSweepOptions {
-  std::vector<std::string> priors = {"unet", "none"};
+  std::vector<std::string> priors = {"process", "none"};
 };
 
 // Columns of its results.csv, in order; the first five name the run.

@@ -18,6 +18,17 @@ void MakeSmall(ParetoPoint* p) {
   p->prior = "none";
 }
 
+void SetNetwork(ParetoPoint* p, int channels) {
+  p->prior = "unet";
+  p->unet_channels = channels;
+}
+
+// The published estimator, whose map is a network's output.
+void Publish(ParetoPoint* p) {
+  p->estimator = "maximum";
+  p->prior = "unet";
+}
+
 }  // namespace
 
 bool ParetoPoint::operator==(const ParetoPoint& o) const {
@@ -39,20 +50,20 @@ const std::vector<ParetoSetting>& ParetoSettings() {
       {"method-lbfgs", [](P* p) { p->method = "lbfgs"; }},
       {"method-adam", [](P* p) { p->method = "adam"; }},
       // Both unknowns at once.
-      {"maximum", [](P* p) { p->estimator = "maximum"; }},
+      {"maximum", Publish},
       {"maximum-gauss_newton",
        [](P* p) {
-         p->estimator = "maximum";
+         Publish(p);
          p->method = "gauss_newton";
        }},
       {"maximum-lbfgs",
        [](P* p) {
-         p->estimator = "maximum";
+         Publish(p);
          p->method = "lbfgs";
        }},
       {"adam",
        [](P* p) {
-         p->estimator = "maximum";
+         Publish(p);
          p->method = "adam";
          p->max_iterations = kAdamRounds;
          p->seconds = kAdamSeconds;
@@ -71,11 +82,11 @@ const std::vector<ParetoSetting>& ParetoSettings() {
       {"lobes-1", [](P* p) { p->lobes = 1; }},
       {"lobes-2", [](P* p) { p->lobes = 2; }},
       {"lobes-3", [](P* p) { p->lobes = 3; }},
-      {"unet-8", [](P* p) { p->unet_channels = 8; }},
-      {"unet-64", [](P* p) { p->unet_channels = 64; }},
+      {"unet-8", [](P* p) { SetNetwork(p, 8); }},
+      {"unet-64", [](P* p) { SetNetwork(p, 64); }},
       {"quadrature-coarse", [](P* p) { p->quadrature = "coarse"; }},
       {"quadrature-fine", [](P* p) { p->quadrature = "fine"; }},
-      {"prior-process", [](P* p) { p->prior = "process"; }},
+      {"prior-unet", [](P* p) { p->prior = "unet"; }},
       {"prior-none", [](P* p) { p->prior = "none"; }},
       {"small", MakeSmall},
       {"small-trust_region",

@@ -13,7 +13,7 @@ struct ParetoPoint {
   int size = 128;       // of the image
   int map_width = 128;  // twice its height
   int lobes = 2;
-  std::string prior = "unet";
+  std::string prior = "process";
   int unet_channels = 32;  // of prior unet
   std::string quadrature = "standard";
   double tolerance = 1e-4;

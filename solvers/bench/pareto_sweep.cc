@@ -12,9 +12,9 @@
 namespace ibrdf {
 namespace {
 
-constexpr char kDefault[] = "default";
+constexpr char kDefaultSetting[] = "default";
 constexpr char kReference[] = "adam";
-constexpr int kKeyColumns = 14;
+constexpr int kParetoKeys = 14;
 
 struct NamedPoint {
   std::string name;
@@ -41,7 +41,8 @@ StatusOr<std::vector<NamedPoint>> ChoosePoints(
     known += std::count(names.begin(), names.end(), setting.name);
     ParetoPoint point = base;
     setting.change(&point);
-    const bool again = !points.empty() && wanted(kDefault) && point == base;
+    const bool again =
+        !points.empty() && wanted(kDefaultSetting) && point == base;
     if (!again) points.push_back({setting.name, point});
   }
   if (known == names.size()) return points;
@@ -158,13 +159,13 @@ std::string MisfitTimeTable(const ParetoSweepOptions& options,
     if (last == nullptr) continue;
     const double schedule = slow->back().seconds;
     const std::optional<double> at = SecondsToMisfit(*fast, *last);
-    lines +=
-        Cells({reference.of.material, reference.of.map,
-               std::to_string(CountIterations(*slow)), Format("%.4f", last->misfit),
-               Format("%.1f", last->seconds), Format("%.1f", schedule),
-               at.has_value() ? Format("%.1f", *at) : "not reached",
-               at.has_value() ? Format("%.1f", schedule / *at) : "",
-               Format("%.1f", fast->back().seconds)});
+    lines += Cells({reference.of.material, reference.of.map,
+                    std::to_string(CountIterations(*slow)),
+                    Format("%.4f", last->misfit), Format("%.1f", last->seconds),
+                    Format("%.1f", schedule),
+                    at.has_value() ? Format("%.1f", *at) : "not reached",
+                    at.has_value() ? Format("%.1f", schedule / *at) : "",
+                    Format("%.1f", fast->back().seconds)});
   }
   if (lines.empty()) return "";
   return "## Time to Adam's last misfit\n\n" +
@@ -220,7 +221,7 @@ StatusOr<SolverSweep> ParetoSweep(const ParetoSweepOptions& options) {
   SolverSweep sweep;
   sweep.title = "What accuracy costs in time";
   sweep.columns = &ParetoColumns();
-  sweep.key_columns = kKeyColumns;
+  sweep.key_columns = kParetoKeys;
   std::vector<SolverRun> defaults, references;
   IBRDF_RETURN_IF_ERROR(ForEachModelCase(
       options, [&](const SweepCase& c, const ChosenModel& model) {
@@ -232,7 +233,7 @@ StatusOr<SolverSweep> ParetoSweep(const ParetoSweepOptions& options) {
                                  EstimateName(named, model),
                                  KeyRow(options, c, model, named)};
           sweep.runs.push_back(run);
-          if (named.name == kDefault) defaults.push_back(run);
+          if (named.name == kDefaultSetting) defaults.push_back(run);
           if (named.name == kReference) references.push_back(run);
         }
       }));

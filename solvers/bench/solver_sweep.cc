@@ -13,6 +13,7 @@
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/baselines/cook_torrance_fit.h"
 #include "ibrdf/solvers/bench/child_process.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
 #include "ibrdf/solvers/bench/sweep_inputs.h"
 #include "ibrdf/solvers/forward/render_scene.h"
 #include "ibrdf/solvers/problem/load_scene.h"
@@ -22,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMaxJsonBytes = size_t{1} << 28;
 constexpr int kBadInput = 2;  // exit status
 
 std::string DescribeEnd(const ChildResult& child) {
@@ -46,7 +46,7 @@ std::string DescribeEnd(const ChildResult& child) {
 // False where result.json has no metrics.
 bool ReadMetrics(const std::string& path,
                  const std::vector<std::string>& columns, NamedRow* row) {
-  const StatusOr<std::string> text = ReadFile(path, kMaxJsonBytes);
+  const StatusOr<std::string> text = ReadFile(path, kMaxResultBytes);
   if (!text.ok()) return false;
   const nlohmann::json json = nlohmann::json::parse(*text, nullptr, false);
   if (!json.is_object() || !json.contains("metrics") ||
@@ -69,7 +69,7 @@ bool ReadMetrics(const std::string& path,
 
 // The last line of a solver's log without "error: "; empty where it is empty.
 std::string LastWords(const std::string& log) {
-  const StatusOr<std::string> text = ReadFile(log, kMaxJsonBytes);
+  const StatusOr<std::string> text = ReadFile(log, kMaxResultBytes);
   if (!text.ok()) return "";
   const size_t last = text->find_last_not_of('\n');
   if (last == std::string::npos) return "";
@@ -124,7 +124,7 @@ Status CheckSettings(const SolverSweepOptions& options,
   if (!fs::exists(path)) {
     return WriteFileAtomically(path, nlohmann::json(settings).dump(2) + "\n");
   }
-  const StatusOr<std::string> text = ReadFile(path, kMaxJsonBytes);
+  const StatusOr<std::string> text = ReadFile(path, kMaxResultBytes);
   if (!text.ok()) return text.status();
   const nlohmann::json begun = nlohmann::json::parse(*text, nullptr, false);
   for (const auto& [name, value] : settings) {

@@ -4,11 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "ibrdf/io/atomic_file.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
 
 namespace ibrdf {
 namespace {
-
-constexpr size_t kMaxJsonBytes = size_t{1} << 28;
 
 bool IsNumber(const nlohmann::json& line, const char* key) {
   const auto at = line.find(key);
@@ -44,7 +43,7 @@ StatusOr<std::vector<TraceLine>> DecodeTrace(const std::string& path,
 }
 
 StatusOr<std::vector<TraceLine>> ReadTrace(const std::string& result_json) {
-  const StatusOr<std::string> text = ReadFile(result_json, kMaxJsonBytes);
+  const StatusOr<std::string> text = ReadFile(result_json, kMaxResultBytes);
   if (!text.ok()) return text.status();
   return DecodeTrace(result_json, *text);
 }

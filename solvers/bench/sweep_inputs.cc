@@ -13,6 +13,7 @@
 #include "ibrdf/io/png.h"
 #include "ibrdf/render/reference_batch.h"
 #include "ibrdf/render/reference_renderer.h"
+#include "ibrdf/solvers/bench/sweep_files.h"
 #include "ibrdf/solvers/forward/forward_scene.h"
 #include "ibrdf/solvers/forward/image_noise.h"
 #include "ibrdf/solvers/problem/load_scene.h"
@@ -22,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMaxJsonBytes = size_t{1} << 20;
 // Maps that are taken together: radiance of all their images is in memory.
 constexpr size_t kMaxMaps = 16;
 // Points between two looks at options.stop: some seconds.
@@ -191,7 +191,7 @@ bool HasInput(const SweepOptions& options, const SweepCase& c) {
        {path, folder + "/input.exr", folder + "/mask.png"}) {
     if (!fs::is_regular_file(file)) return false;
   }
-  const StatusOr<std::string> text = ReadFile(path, kMaxJsonBytes);
+  const StatusOr<std::string> text = ReadFile(path, kMaxSettingsBytes);
   return text.ok() && *text == InputSettings(options, c);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 // The candidates' first steps spend at most this share of the time that
 // remains.
-constexpr double kSearchShare = 0.55;
+constexpr double kCandidateShare = 0.55;
 // Across the disc of normals: what a few dozen parameters under known light can
 // learn from.
 constexpr int kBins = 26;
@@ -113,7 +113,7 @@ std::vector<Candidate> Search::FirstCandidates(
       MakeCandidate(ranked.front().name, first)};
   context_->Report(Entry("rank " + ranked.front().name, candidates.front()));
   if (!context_->IterationsLeft()) return candidates;
-  const std::function<bool()> stop = context_->StopAfter(kSearchShare);
+  const std::function<bool()> stop = context_->StopAfter(kCandidateShare);
   const int count = std::min<int>(kCandidates, static_cast<int>(ranked.size()));
   for (int k = 0; k < count && !(k > 0 && stop()); ++k) {
     JointState next;

@@ -15,19 +15,18 @@ namespace ibrdf {
 namespace {
 
 constexpr int kMaxIterations = 60;
-constexpr double kSmallestStep = 1e-4;
+constexpr double kSmallestStepLength = 1e-4;
 constexpr double kLongestStep = 6.0;
 // Of the gain that a step's quadratic model promises, what it must bring.
-constexpr double kSufficientGain = 0.1;
+constexpr double kPromisedShare = 0.1;
 constexpr double kSmallestRadiance = 1e-200;
 // Conjugate gradients with the Hessian: steps, and the square of the error,
-// relative, in the Hessian's norm, for Newton's steps and for the motion of the
-// mode.
+// relative, in the Hessian's norm, for Newton's steps.
 constexpr int kMaxHessianSteps = 30;
 constexpr double kNewtonTolerance = 1e-3;
-constexpr double kMotionTolerance = 1e-10;
 // Of FindNoise, log radiance.
 constexpr double kFirstSigma = 0.15;
+
 }  // namespace
 
 MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
@@ -61,6 +60,12 @@ MarginalLikelihood::Light MarginalLikelihood::LightAt(
     const LightHyperparameters& hyperparameters) const {
   return {std::exp(hyperparameters.log_amplitude),
           spectrum_.At(hyperparameters), spectrum_.RoughAt(hyperparameters)};
+}
+
+MarginalLikelihood::Given MarginalLikelihood::GivenBy(
+    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    const LightHyperparameters& hyperparameters) const {
+  return {matrices, noise, noise.cwiseInverse(), LightAt(hyperparameters)};
 }
 
 double MarginalLikelihood::LevelFor(
@@ -166,15 +171,14 @@ MarginalLikelihood::Point MarginalLikelihood::At(
 }
 
 std::unique_ptr<const MarginalLikelihood::Linearisation>
-MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
-                              const Eigen::VectorXd& noise, const Light& light,
-                              const Point& point) const {
+MarginalLikelihood::Linearise(const Given& given, const Point& point) const {
+  const Light& light = given.light;
   const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
   auto linear = std::make_unique<Linearisation>();
   ParallelFor(3, num_threads_, [&](int64_t c, int) {
     linear->jacobian[c] =
-        point.L_o.segment(c * P, P).cwiseInverse().asDiagonal() * matrices[c] *
-        point.L.segment(c * n, n).asDiagonal();
+        point.L_o.segment(c * P, P).cwiseInverse().asDiagonal() *
+        given.matrices[c] * point.L.segment(c * n, n).asDiagonal();
     light.correlation.Multiply(linear->jacobian[c].leftCols(t), &linear->JC[c]);
   });
   RowMatrix& A = linear->factor;
@@ -190,7 +194,7 @@ MarginalLikelihood::Linearise(const std::array<RowMatrix, 3>& matrices,
                                       .array() +
                                   level_(c, d);
   });
-  A.diagonal() += noise;
+  A.diagonal() += given.noise;
   if (!A.allFinite() || !Factorise(&A)) return nullptr;
   return linear;
 }
@@ -244,26 +248,25 @@ Eigen::VectorXd MarginalLikelihood::SolveRepresenters(
 }
 
 Eigen::VectorXd MarginalLikelihood::JacobianTimes(
-    const std::array<RowMatrix, 3>& matrices, const Point& point,
-    const Eigen::VectorXd& v) const {
+    const Given& given, const Point& point, const Eigen::VectorXd& v) const {
   const Eigen::Index n = num_sources(), P = num_points_;
   const Eigen::VectorXd dL = point.L.cwiseProduct(v);
   Eigen::VectorXd out(3 * P);
   for (int c = 0; c < 3; ++c) {
-    out.segment(c * P, P) = MultiplyVector(matrices[c], dL.segment(c * n, n));
+    out.segment(c * P, P) =
+        MultiplyVector(given.matrices[c], dL.segment(c * n, n));
   }
   return out.cwiseQuotient(point.L_o);
 }
 
 Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
-    const std::array<RowMatrix, 3>& matrices, const Point& point,
-    const Eigen::VectorXd& a) const {
+    const Given& given, const Point& point, const Eigen::VectorXd& a) const {
   const Eigen::Index n = num_sources(), P = num_points_;
   const Eigen::VectorXd dL_o = a.cwiseQuotient(point.L_o);
   Eigen::VectorXd out(3 * n);
   for (int c = 0; c < 3; ++c) {
     out.segment(c * n, n) =
-        MultiplyTransposedVector(matrices[c], dL_o.segment(c * P, P));
+        MultiplyTransposedVector(given.matrices[c], dL_o.segment(c * P, P));
   }
   return out.cwiseProduct(point.L);
 }
@@ -271,19 +274,19 @@ Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
 // H = K^-1 + J^T D^-1 J + C, C = -sum_p r_p / D_p (diag(J_p) - J_p J_p^T).
 // Vectors come in pairs: x and, where x = K x', its representers x'.
 Eigen::VectorXd MarginalLikelihood::SolveHessian(
-    const std::array<RowMatrix, 3>& matrices, const Point& point,
-    const Linearisation& linear, const Eigen::VectorXd& weight,
-    const Light& light, double tolerance, const Eigen::VectorXd& x) const {
+    const Given& given, const Point& point, const Linearisation& linear,
+    double tolerance, const Eigen::VectorXd& x) const {
+  const Eigen::VectorXd& weight = given.weight;
   const Eigen::VectorXd weighted = weight.cwiseProduct(point.residual);
   const Eigen::VectorXd curvature =
-      JacobianTransposedTimes(matrices, point, weighted);
+      JacobianTransposedTimes(given, point, weighted);
   Eigen::VectorXd w = Eigen::VectorXd::Zero(x.size()), rest = x, p_representers,
                   p;
   double rho = 0.0, first_rho = 0.0;
   for (int k = 0; k < kMaxHessianSteps; ++k) {
     const Eigen::VectorXd z_representers =
-        SolveRepresenters(linear, light, rest);
-    const Eigen::VectorXd z = ApplyCovariance(light, z_representers);
+        SolveRepresenters(linear, given.light, rest);
+    const Eigen::VectorXd z = ApplyCovariance(given.light, z_representers);
     const double next_rho = rest.dot(z);
     if (k == 0) first_rho = next_rho;
     if (!(next_rho > tolerance * first_rho)) break;
@@ -293,10 +296,10 @@ Eigen::VectorXd MarginalLikelihood::SolveHessian(
                : Eigen::VectorXd(z_representers + beta * p_representers);
     p = k == 0 ? z : Eigen::VectorXd(z + beta * p);
     rho = next_rho;
-    const Eigen::VectorXd Jp = JacobianTimes(matrices, point, p);
+    const Eigen::VectorXd Jp = JacobianTimes(given, point, p);
     const Eigen::VectorXd Hp =
         p_representers - curvature.cwiseProduct(p) +
-        JacobianTransposedTimes(matrices, point,
+        JacobianTransposedTimes(given, point,
                                 (weight + weighted).cwiseProduct(Jp));
     const double square = p.dot(Hp);
     if (!(square > 0.0)) {
@@ -310,202 +313,116 @@ Eigen::VectorXd MarginalLikelihood::SolveHessian(
   return w;
 }
 
+double MarginalLikelihood::NegativeLogLikelihood(const Given& given,
+                                                 const Point& at) {
+  return 0.5 * at.residual.cwiseAbs2().dot(given.weight);
+}
+
+MarginalLikelihood::Point MarginalLikelihood::FirstPoint(
+    const Given& given, LightMode* mode) const {
+  if (mode->l.size() == 0) {
+    mode->level = LevelFor(given.matrices);
+    mode->l = mode->representers = Eigen::VectorXd::Zero(3 * num_sources());
+  } else {
+    mode->l = ApplyCovariance(given.light, mode->representers);
+  }
+  return At(given.matrices, mode->level, mode->l);
+}
+
+// The step's quadratic model of the cost promises `promise` / 2.
+MarginalLikelihood::NewtonStep MarginalLikelihood::FindNewtonStep(
+    const Given& given, const Linearisation& linear, const Point& point,
+    const LightMode& mode) const {
+  const Eigen::VectorXd slope =
+      mode.representers -
+      JacobianTransposedTimes(given, point,
+                              given.weight.cwiseProduct(point.residual));
+  NewtonStep step;
+  step.representers =
+      -SolveHessian(given, point, linear, kNewtonTolerance, slope);
+  step.l = ApplyCovariance(given.light, step.representers);
+  step.promise = -slope.dot(step.l);
+  return step;
+}
+
+double MarginalLikelihood::TakeStep(const Given& given, const NewtonStep& step,
+                                    Point* point, LightMode* mode) const {
+  if (!(step.promise > 0.0)) return 0.0;
+  const double likelihood = NegativeLogLikelihood(given, *point);
+  const double cross = mode->representers.dot(step.l),
+               square = step.representers.dot(step.l);
+  const auto try_step = [&](double s) {
+    const Eigen::VectorXd l = mode->l + s * step.l;
+    Point trial = At(given.matrices, mode->level, l);
+    const double gain = likelihood - NegativeLogLikelihood(given, trial) -
+                        s * cross - 0.5 * s * s * square;
+    const bool accepted =
+        trial.L_o.minCoeff() > kSmallestRadiance &&
+        gain >= kPromisedShare * s * (1.0 - 0.5 * s) * step.promise;
+    if (accepted) {
+      mode->representers += s * step.representers;
+      mode->l = l;
+      *point = std::move(trial);
+    }
+    return LineSearchTrial{gain, accepted};
+  };
+  // From a wide start the whole step may leave the range of exp.
+  const double longest =
+      std::min(1.0, kLongestStep / step.l.lpNorm<Eigen::Infinity>());
+  return LineSearch(longest, kSmallestStepLength, step.promise, try_step);
+}
+
+bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
+                                  Point* point, LightMode* mode) const {
+  std::unique_ptr<const Linearisation> linear;
+  for (int k = 0; k < kMaxIterations; ++k) {
+    if (linear == nullptr) {
+      linear = Linearise(given, *point);
+      if (linear == nullptr) return false;
+    }
+    const NewtonStep step = FindNewtonStep(given, *linear, *point, *mode);
+    if (!step.l.allFinite()) return false;
+    const double taken = TakeStep(given, step, point, mode);
+    if (0.5 * step.promise < tolerance || taken == 0.0) break;
+    // Far from where it was made a linearisation is a poor preconditioner.
+    if (taken * step.l.lpNorm<Eigen::Infinity>() > 1.0) linear = nullptr;
+  }
+  return true;
+}
+
 MarginalValue MarginalLikelihood::Evaluate(
     const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
     const LightHyperparameters& hyperparameters, double tolerance,
     LightMode* mode, MarginalGradient* gradient) const {
-  const Eigen::Index n = num_sources();
-  const Eigen::VectorXd weight = noise.cwiseInverse();
-  const auto likelihood_of = [&](const Point& at) {
-    return 0.5 * at.residual.cwiseAbs2().dot(weight);
-  };
   MarginalValue value;
-  if (!weight.allFinite()) return value;
-  const Light light = LightAt(hyperparameters);
-  if (!std::isfinite(light.amplitude) ||
+  const Given given = GivenBy(matrices, noise, hyperparameters);
+  if (!given.weight.allFinite() || !std::isfinite(given.light.amplitude) ||
       !Roughness(map_height_, hyperparameters).cwiseAbs2().allFinite()) {
     return value;
   }
-  if (mode->l.size() == 0) {
-    mode->level = LevelFor(matrices);
-    mode->l = mode->representers = Eigen::VectorXd::Zero(3 * n);
-  } else {
-    mode->l = ApplyCovariance(light, mode->representers);
-  }
-  Point point = At(matrices, mode->level, mode->l);
+  Point point = FirstPoint(given, mode);
   // Nothing but black: no light explains an image of it.
   if (!point.residual.allFinite() ||
       !(point.L_o.minCoeff() > kSmallestRadiance)) {
     return value;
   }
-  double likelihood = likelihood_of(point);
-  std::unique_ptr<const Linearisation> linear;
-  for (int k = 0; k < kMaxIterations; ++k) {
-    if (linear == nullptr) {
-      linear = Linearise(matrices, noise, light, point);
-      if (linear == nullptr) return value;
-    }
-    const Eigen::VectorXd slope =
-        mode->representers -
-        JacobianTransposedTimes(matrices, point,
-                                weight.cwiseProduct(point.residual));
-    const Eigen::VectorXd d_representers = -SolveHessian(
-        matrices, point, *linear, weight, light, kNewtonTolerance, slope);
-    const Eigen::VectorXd dl = ApplyCovariance(light, d_representers);
-    if (!dl.allFinite()) return value;
-    const double promise = -slope.dot(dl);  // twice the model's gain
-    const double cross = mode->representers.dot(dl),
-                 square = d_representers.dot(dl);
-    const auto try_step = [&](double s) {
-      const Eigen::VectorXd l = mode->l + s * dl;
-      Point trial = At(matrices, mode->level, l);
-      const double trial_likelihood = likelihood_of(trial);
-      const double gain =
-          likelihood - trial_likelihood - s * cross - 0.5 * s * s * square;
-      const bool accepted =
-          trial.L_o.minCoeff() > kSmallestRadiance &&
-          gain >= kSufficientGain * s * (1.0 - 0.5 * s) * promise;
-      if (accepted) {
-        mode->representers += s * d_representers;
-        mode->l = l;
-        point = std::move(trial);
-        likelihood = trial_likelihood;
-      }
-      return LineSearchTrial{gain, accepted};
-    };
-    // From a wide start the whole step may leave the range of exp.
-    const double longest =
-        std::min(1.0, kLongestStep / dl.lpNorm<Eigen::Infinity>());
-    const double taken =
-        promise > 0.0 ? LineSearch(longest, kSmallestStep, promise, try_step)
-                      : 0.0;
-    if (0.5 * promise < tolerance || taken == 0.0) break;
-    // Far from where it was made a linearisation is a poor preconditioner.
-    if (taken * dl.lpNorm<Eigen::Infinity>() > 1.0) {
-      linear = nullptr;
-    }
-  }
-  linear = Linearise(matrices, noise, light, point);
+  if (!FindMode(given, tolerance, &point, mode)) return value;
+  const auto linear = Linearise(given, point);
   if (linear == nullptr) return value;
   const double log_determinant =
       2.0 * linear->factor.diagonal().array().log().sum();
-  value.cost = likelihood + 0.5 * mode->representers.dot(mode->l) +
-               0.5 * log_determinant;
+  value.cost = NegativeLogLikelihood(given, point) +
+               0.5 * mode->representers.dot(mode->l) + 0.5 * log_determinant;
   value.misfit = point.residual.cwiseAbs().mean();
   value.ok = std::isfinite(value.cost);
   if (gradient != nullptr && value.ok) {
-    AddGradient(matrices, weight, light, *mode, point, *linear, gradient);
+    AddGradient(given, *mode, point, *linear, gradient);
   }
   return value;
 }
 
 Eigen::VectorXd MarginalLikelihood::BandWeights(int band) const {
   return ByTexel(roughness_weights_.row(band).transpose(), map_width_);
-}
-
-// With F the cost, Phi its first two terms, l* the mode: dF = (partial of F at
-// fixed l) - v . d(grad_l Phi), v = H^-1 q, H the Hessian of Phi and q the
-// gradient of the log determinant in l.
-void MarginalLikelihood::AddGradient(const std::array<RowMatrix, 3>& matrices,
-                                     const Eigen::VectorXd& weight,
-                                     const Light& light, const LightMode& mode,
-                                     const Point& point,
-                                     const Linearisation& linear,
-                                     MarginalGradient* gradient) const {
-  const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
-  const Eigen::VectorXd& r = point.residual;
-  RowMatrix inverse = linear.factor;
-  InvertFactored(&inverse);
-
-  // G = A^-1 J K per channel; a constant along a row has no effect, as it only
-  // meets differences of a Jacobian's rows. Then centred: G - sum_t G J.
-  std::array<RowMatrix, 3> G;
-  Eigen::VectorXd q(3 * n);
-  // By texel, diag(J^T A^-1 J K_rough) / 2.
-  Eigen::VectorXd rough_share = Eigen::VectorXd::Zero(t);
-  for (int c = 0; c < 3; ++c) {
-    RowMatrix sum = RowMatrix::Zero(P, t),
-              directional_lights = RowMatrix::Zero(P, num_directional_lights_);
-    RowMatrix product;
-    for (int d = 0; d < 3; ++d) {
-      MultiplyInTiles(inverse.block(c * P, d * P, P, P), linear.jacobian[d],
-                      num_threads_, &product);
-      sum += light.amplitude * local_(c, d) * product.leftCols(t);
-      directional_lights +=
-          directional_light_(c, d) * product.rightCols(num_directional_lights_);
-    }
-    light.rough.Multiply(sum, &product);
-    rough_share += product.cwiseProduct(linear.jacobian[c].leftCols(t))
-                       .colwise()
-                       .sum()
-                       .transpose();
-    light.correlation.Multiply(sum, &product);
-    G[c].resize(P, n);
-    G[c] << product, directional_lights;
-    const Eigen::VectorXd means =
-        G[c].cwiseProduct(linear.jacobian[c]).rowwise().sum();
-    G[c].colwise() -= means;
-    q.segment(c * n, n) =
-        G[c].cwiseProduct(linear.jacobian[c]).colwise().sum().transpose();
-  }
-
-  const Eigen::VectorXd weighted = weight.cwiseProduct(r);
-  const Eigen::VectorXd w =
-      SolveHessian(matrices, point, linear, weight, light, kMotionTolerance, q);
-  const Eigen::VectorXd v = ApplyCovariance(light, w);
-  const Eigen::VectorXd Jv = ApplyJacobian(linear, v);
-
-  for (int c = 0; c < 3; ++c) {
-    const auto L = point.L.segment(c * n, n);
-    const Eigen::ArrayXd weighted_c = weighted.segment(c * P, P).array();
-    const Eigen::ArrayXd weight_c = weight.segment(c * P, P).array();
-    const Eigen::ArrayXd Jv_c = Jv.segment(c * P, P).array();
-    const Eigen::ArrayXd inverse_E =
-        point.L_o.segment(c * P, P).array().inverse();
-    RowMatrix& out = gradient->matrices[c];
-    out = std::move(G[c]);
-    // d(grad_l Phi) . v in T is that of -(J v) . r / D.
-    out.colwise() -=
-        (weighted_c + Jv_c * weighted_c + Jv_c * weight_c).matrix();
-    out.noalias() += weighted_c.matrix() * v.segment(c * n, n).transpose();
-    out = inverse_E.matrix().asDiagonal() * out * L.asDiagonal();
-  }
-
-  // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the
-  // rest.
-  double trace = 3.0 * static_cast<double>(P) -
-                 inverse.diagonal().dot(weight.cwiseInverse());
-  for (int c = 0; c < 3; ++c) {
-    for (int d = 0; d < 3; ++d) {
-      trace -= UnscaledBlock(linear, c, d)
-                   .cwiseProduct(inverse.block(c * P, d * P, P, P))
-                   .sum();
-    }
-  }
-  const auto by_scale = [&](const Eigen::VectorXd& K_dual, double its_trace) {
-    return -0.5 * mode.representers.dot(K_dual) + w.dot(K_dual) +
-           0.5 * its_trace;
-  };
-  gradient->hyperparameters[0] = by_scale(
-      ApplyLocal(light, mode.representers) - ApplyHorizon(mode.representers),
-      trace);
-  // Of C, by the log roughness of a band with weights h along the texels:
-  // diag(h) R + R diag(h), R the rough part.
-  const Eigen::Map<const RowMatrix> representers(mode.representers.data(), 3,
-                                                 n);
-  RowMatrix rough_dual;
-  light.rough.Multiply(representers.leftCols(t), &rough_dual);
-  for (int b = 0; b < LightHyperparameters::kBands; ++b) {
-    const Eigen::VectorXd h = BandWeights(b);
-    RowMatrix other;
-    light.rough.Multiply(representers.leftCols(t) * h.asDiagonal(), &other);
-    RowMatrix moved = RowMatrix::Zero(3, n);
-    moved.leftCols(t) =
-        light.amplitude * local_ * (rough_dual * h.asDiagonal() + other);
-    gradient->hyperparameters[1 + b] =
-        by_scale(Eigen::Map<const Eigen::VectorXd>(moved.data(), 3 * n),
-                 2.0 * h.dot(rough_share));
-  }
 }
 
 }  // namespace ibrdf

@@ -125,8 +125,32 @@ class MarginalLikelihood {
     LightSpectrum rough;        // its rough part
   };
   Light LightAt(const LightHyperparameters& hyperparameters) const;
-  // Of the log roughness of a band [texels].
+  // What the search for a mode holds fixed.
+  struct Given {
+    const std::array<RowMatrix, 3>& matrices;  // T_c
+    const Eigen::VectorXd& noise;              // D [3 * points]
+    Eigen::VectorXd weight;                    // D^-1
+    Light light;
+  };
+  // Refers to its arguments.
+  Given GivenBy(const std::array<RowMatrix, 3>& matrices,
+                const Eigen::VectorXd& noise,
+                const LightHyperparameters& hyperparameters) const;
+  // Weights of a band's log roughness [texels].
   Eigen::VectorXd BandWeights(int band) const;
+  // A step of l = K representers; its quadratic model gains promise / 2.
+  struct NewtonStep {
+    Eigen::VectorXd representers, l;  // [3 * sources]
+    double promise = 0.0;
+  };
+  // The log determinant's part of the gradient.
+  struct DeterminantGradient {
+    RowMatrix inverse;           // A^-1
+    std::array<RowMatrix, 3> G;  // A^-1 J K, centred [points][sources]
+    Eigen::VectorXd by_l;        // [3 * sources]
+    // diag(J^T A^-1 J K_rough) / 2 [texels].
+    Eigen::VectorXd rough_share;
+  };
   // Of log L_o in l, d log L_o = J dl, with what its normal equations need.
   struct Linearisation {
     std::array<RowMatrix, 3> jacobian;  // [points][sources] of a channel
@@ -137,9 +161,8 @@ class MarginalLikelihood {
   Point At(const std::array<RowMatrix, 3>& matrices, double level,
            const Eigen::VectorXd& l) const;
   // Null where the normal equations are not positive definite.
-  std::unique_ptr<const Linearisation> Linearise(
-      const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
-      const Light& light, const Point& point) const;
+  std::unique_ptr<const Linearisation> Linearise(const Given& given,
+                                                 const Point& point) const;
   // K g.
   Eigen::VectorXd ApplyCovariance(const Light& light,
                                   const Eigen::VectorXd& g) const;
@@ -159,27 +182,52 @@ class MarginalLikelihood {
   Eigen::VectorXd ApplyJacobianTransposed(const Linearisation& linear,
                                           const Eigen::VectorXd& a) const;
   // J v and J^T a at a point, without its linearisation.
-  Eigen::VectorXd JacobianTimes(const std::array<RowMatrix, 3>& matrices,
-                                const Point& point,
+  Eigen::VectorXd JacobianTimes(const Given& given, const Point& point,
                                 const Eigen::VectorXd& v) const;
-  Eigen::VectorXd JacobianTransposedTimes(
-      const std::array<RowMatrix, 3>& matrices, const Point& point,
-      const Eigen::VectorXd& a) const;
+  Eigen::VectorXd JacobianTransposedTimes(const Given& given,
+                                          const Point& point,
+                                          const Eigen::VectorXd& a) const;
   // w with K w = H^-1 x, H the Hessian of the first two terms at the point, by
   // conjugate gradients preconditioned with a linearisation near it.
-  Eigen::VectorXd SolveHessian(const std::array<RowMatrix, 3>& matrices,
-                               const Point& point, const Linearisation& linear,
-                               const Eigen::VectorXd& weight,
-                               const Light& light, double tolerance,
+  Eigen::VectorXd SolveHessian(const Given& given, const Point& point,
+                               const Linearisation& linear, double tolerance,
                                const Eigen::VectorXd& x) const;
   // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T D^-1 J)^-1 x.
   Eigen::VectorXd SolveRepresenters(const Linearisation& linear,
                                     const Light& light,
                                     const Eigen::VectorXd& x) const;
-  void AddGradient(const std::array<RowMatrix, 3>& matrices,
-                   const Eigen::VectorXd& weight, const Light& light,
-                   const LightMode& mode, const Point& point,
-                   const Linearisation& linear,
+  // (y - log L_o)^T D^-1 (y - log L_o) / 2.
+  static double NegativeLogLikelihood(const Given& given, const Point& at);
+  // Where the search for the mode starts; completes `mode`.
+  Point FirstPoint(const Given& given, LightMode* mode) const;
+  NewtonStep FindNewtonStep(const Given& given, const Linearisation& linear,
+                            const Point& point, const LightMode& mode) const;
+  // Moves point and mode along the step; the share of it that was taken, 0
+  // where none gains.
+  double TakeStep(const Given& given, const NewtonStep& step, Point* point,
+                  LightMode* mode) const;
+  // Newton's method from `point`. False: the equations are not positive
+  // definite, or not finite.
+  bool FindMode(const Given& given, double tolerance, Point* point,
+                LightMode* mode) const;
+
+  // The gradient's parts: marginal_gradient.cc.
+  DeterminantGradient GradientOfDeterminant(const Given& given,
+                                            const Linearisation& linear) const;
+  // v: H^-1 by_l; Jv: J v. Takes G.
+  void GradientByMatrices(const Given& given, const Point& point,
+                          const Eigen::VectorXd& v, const Eigen::VectorXd& Jv,
+                          DeterminantGradient* determinant,
+                          std::array<RowMatrix, 3>* gradient) const;
+  // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the rest.
+  double TraceByAmplitude(const Given& given, const Linearisation& linear,
+                          const RowMatrix& inverse) const;
+  // The derivative of K by the log roughness of a band, applied: with weights h
+  // along the texels that of C is diag(h) R + R diag(h), R the rough part.
+  Eigen::VectorXd ApplyBandDerivative(const Light& light, int band,
+                                      const Eigen::VectorXd& g) const;
+  void AddGradient(const Given& given, const LightMode& mode,
+                   const Point& point, const Linearisation& linear,
                    MarginalGradient* gradient) const;
 
   int num_points_;

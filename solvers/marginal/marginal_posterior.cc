@@ -14,9 +14,9 @@ Eigen::MatrixXd MarginalLikelihood::Information(
   const Eigen::Index P = num_points_, n = G.cols();
   constexpr int kCount = LightHyperparameters::kCount;
   CHECK_EQ(G.rows(), 3 * P);
-  const Light light = LightAt(hyperparameters);
-  const auto linear =
-      Linearise(matrices, noise, light, At(matrices, mode.level, mode.l));
+  const Given given = GivenBy(matrices, noise, hyperparameters);
+  const Light& light = given.light;
+  const auto linear = Linearise(given, At(matrices, mode.level, mode.l));
   if (linear == nullptr) return {};
   const RowMatrix whitened =
       linear->factor.triangularView<Eigen::Lower>().solve(G);
@@ -78,9 +78,9 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
     const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
     const LightHyperparameters& hyperparameters, const LightMode& mode) const {
   const Eigen::Index t = num_texels(), P = num_points_;
-  const Light light = LightAt(hyperparameters);
-  const auto linear =
-      Linearise(matrices, noise, light, At(matrices, mode.level, mode.l));
+  const Given given = GivenBy(matrices, noise, hyperparameters);
+  const Light& light = given.light;
+  const auto linear = Linearise(given, At(matrices, mode.level, mode.l));
   CHECK(linear != nullptr);
   RowMatrix inverse = linear->factor;
   InvertFactored(&inverse);

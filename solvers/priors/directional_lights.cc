@@ -11,7 +11,6 @@
 namespace ibrdf {
 namespace {
 
-constexpr double kDegree = kPi / 180.0;
 // Seen at smaller cosines, mirrored light is Fresnel's as much as a directional
 // light's.
 constexpr double kMinCosine = 0.25;

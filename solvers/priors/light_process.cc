@@ -10,8 +10,6 @@
 namespace ibrdf {
 namespace {
 
-constexpr double kDegree = kPi / 180;
-
 Eigen::Matrix3d GreyAndChroma(double grey, double chroma) {
   return grey * Eigen::Matrix3d::Ones() +
          chroma * (Eigen::Matrix3d::Identity() -

@@ -29,7 +29,7 @@ struct InverseProblem {
 
   // Size of the map; known: its radiance at that size.
   int map_width = 128, map_height = 64;
-  IlluminationPrior illumination_prior = IlluminationPrior::kUNet;
+  IlluminationPrior illumination_prior = IlluminationPrior::kProcess;
   int unet_channels = 32;
   std::optional<Image> known_map;
 

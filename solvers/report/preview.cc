@@ -24,9 +24,9 @@ constexpr int kGap = 28;
 constexpr int kBarGap = 10;
 constexpr int kBarWidth = 18;
 constexpr int kBarTotal = 84;  // gap, bar and its numbers
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr int kLabelFont = cv::FONT_HERSHEY_SIMPLEX;
 
-const cv::Scalar kGround(250, 250, 250);
+const cv::Scalar kPageColour(250, 250, 250);
 const cv::Scalar kInk(25, 25, 25);
 const cv::Scalar kFaintInk(95, 95, 95);
 constexpr uint8_t kNeutralGrey = 176;
@@ -42,7 +42,7 @@ const TextStyle kCaptionStyle{0.45, 19, kFaintInk};
 
 int TextWidth(const std::string& text, const TextStyle& style) {
   int baseline = 0;
-  return cv::getTextSize(text, kFont, style.scale, 1, &baseline).width;
+  return cv::getTextSize(text, kLabelFont, style.scale, 1, &baseline).width;
 }
 
 // Lines no wider than `width` where words allow.
@@ -71,12 +71,8 @@ std::vector<std::string> Wrap(const std::string& text, int width,
 // `top`: of the line.
 void DrawText(cv::Mat* canvas, const std::string& text, int left, int top,
               const TextStyle& style) {
-  cv::putText(*canvas, text, {left, top + style.line_height * 3 / 4}, kFont,
-              style.scale, style.colour, 1, cv::LINE_AA);
-}
-
-bool IsInside(const Mask& mask, size_t pixel) {
-  return mask.empty() || mask.inside[pixel] != 0;
+  cv::putText(*canvas, text, {left, top + style.line_height * 3 / 4},
+              kLabelFont, style.scale, style.colour, 1, cv::LINE_AA);
 }
 
 double ChannelMean(const float* rgb) {
@@ -88,7 +84,7 @@ double ResidualRange(const PreviewPanel& panel) {
   std::vector<double> magnitudes;
   for (size_t i = 0; i < panel.image.num_pixels(); ++i) {
     const double value = std::fabs(ChannelMean(&panel.image.rgb[3 * i]));
-    if (IsInside(panel.mask, i) && std::isfinite(value)) {
+    if (panel.mask.Holds(i) && std::isfinite(value)) {
       magnitudes.push_back(value);
     }
   }
@@ -107,8 +103,7 @@ cv::Mat DisplayColours(const PreviewPanel& panel, double range) {
       const float* rgb = image.At(x, y);
       cv::Vec3f& out = colours.at<cv::Vec3f>(y, x);
       const size_t pixel = static_cast<size_t>(y) * image.width + x;
-      if (!IsInside(panel.mask, pixel) ||
-          std::isnan(rgb[0] + rgb[1] + rgb[2])) {
+      if (!panel.mask.Holds(pixel) || std::isnan(rgb[0] + rgb[1] + rgb[2])) {
         out = {grey, grey, grey};
       } else if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
         uint8_t bytes[3];
@@ -383,7 +378,7 @@ Rgb8Image ComposePanels(const std::vector<std::vector<PreviewPanel>>& rows,
                         const std::string& title,
                         const std::vector<std::string>& notes) {
   const PageLayout page = LayOutPage(rows, title, notes);
-  cv::Mat canvas(page.height(), page.width + 2 * kMargin, CV_8UC3, kGround);
+  cv::Mat canvas(page.height(), page.width + 2 * kMargin, CV_8UC3, kPageColour);
   int top = kMargin - 8;
   top = DrawLines(&canvas, page.title, kMargin, top, kTitleStyle) + 8;
   for (const RowLayout& row : page.rows) {

@@ -90,9 +90,9 @@ double BrdfScale(const MerlTable& estimate, const MerlTable& reference) {
   return ratio.Factor();
 }
 
-// Explained by kScaleNote.
+// Explained by kScaleFootnote.
 std::string Times(double scale) { return Format(", times %.3g", scale); }
-constexpr char kScaleNote[] =
+constexpr char kScaleFootnote[] =
     "An estimate beside its reference is shown times the factor in its label: "
     "one for all channels, which brings its mean logarithm to the reference's.";
 
@@ -192,7 +192,7 @@ Rgb8Image ComposeOverview(const ResultPanels& rows,
   }
   std::vector<std::string> notes = input.metrics;
   if (rows.maps.size() > 1 || rows.spheres.size() > 2) {
-    notes.push_back(kScaleNote);
+    notes.push_back(kScaleFootnote);
   }
   return ComposePanels(shown, input.title, notes);
 }

@@ -8,13 +8,7 @@
 #include <utility>
 
 namespace ibrdf {
-namespace {
-
-bool IsInside(const Mask& mask, size_t pixel) {
-  return mask.empty() || mask.inside[pixel] != 0;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 double Percentile(std::vector<double> values, double percentile) {
   const size_t rank =
@@ -37,7 +31,7 @@ double ExposureOf(const Image& reference, const Mask& mask, double percentile) {
   for (size_t i = 0; i < reference.num_pixels(); ++i) {
     const float* rgb = &reference.rgb[3 * i];
     const double value = std::max({rgb[0], rgb[1], rgb[2]});
-    if (IsInside(mask, i) && std::isfinite(value) && value > 0.0) {
+    if (mask.Holds(i) && std::isfinite(value) && value > 0.0) {
       values.push_back(value);
     }
   }
@@ -56,7 +50,7 @@ Image LogRatio(const Image& image, const Image& reference, const Mask& mask) {
   double largest = 0.0;
   for (size_t k = 0; k < reference.rgb.size(); ++k) {
     const double value = reference.rgb[k];
-    if (IsInside(mask, k / 3) && std::isfinite(value)) {
+    if (mask.Holds(k / 3) && std::isfinite(value)) {
       largest = std::max(largest, value);
     }
   }

@@ -56,7 +56,7 @@ TEST_F(JointSweepTest, WritesRowsAndResumes) {
   EXPECT_NEAR(0.0, std::stod(Cell(row, "relit_log_rmse")), 1e-4);
   EXPECT_NEAR(0.0, std::stod(Cell(row, "relit_dssim")), 1e-4);
   const std::string folder = options_.out + "/cases/paint_b/";
-  for (const char* file : {"input.exr", "mask.png", "joint_unet.yaml"}) {
+  for (const char* file : {"input.exr", "mask.png", "joint_process.yaml"}) {
     EXPECT_TRUE(std::filesystem::exists(folder + file)) << file;
   }
   EXPECT_NE(std::string::npos,

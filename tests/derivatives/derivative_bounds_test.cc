@@ -96,6 +96,12 @@ TEST(Derivatives, RadianceInHarmonics) {
   ExpectWithin(table, kSums);
 }
 
+TEST(Derivatives, RadianceInGaussians) {
+  ErrorTable table;
+  StudyGaussians(Few(80), &table);
+  ExpectWithin(table, kSums);
+}
+
 TEST(Derivatives, MapByNetworkWeights) {
   ErrorTable table;
   StudyUnet(Few(20), &table);

@@ -183,6 +183,9 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
        "found '0'"},
       {least + "illumination: {prior: process, unet_channels: 8}",
        "illumination.unet_channels: expected with illumination.prior: unet"},
+      {least + "illumination: {prior: auto, unet_channels: 0}",
+       "illumination.unet_channels: expected a whole number in [1, 128], "
+       "found '0'"},
       {least + "solver: {quadrature: finest}",
        "solver.quadrature: expected coarse, standard or fine, found 'finest'"},
       {least + "solver: {gauge: grey}",
@@ -268,7 +271,24 @@ TEST_F(ProblemFile, EffectsOfRendersAreNoneOfSolves) {
   }
 }
 
-TEST_F(ProblemFile, DrawsOfTheProcessAreSmall) {
+TEST_F(ProblemFile, ThePriorOfTheLightIsChosen) {
+  const auto prior = [&](const std::string& rest) {
+    return Read(std::string(kLeast) + rest).value().illumination.prior;
+  };
+  EXPECT_EQ(IlluminationPrior::kProcess, prior(""));
+  EXPECT_EQ(IlluminationPrior::kProcess, prior("illumination: {width: 256}"));
+  EXPECT_EQ(IlluminationPrior::kProcess,
+            prior("illumination: {prior: process}\n"
+                  "solver: {estimator: maximum}"));
+  EXPECT_EQ(IlluminationPrior::kUNet, prior("illumination: {width: 258}"));
+  EXPECT_EQ(IlluminationPrior::kUNet,
+            prior("illumination: {prior: auto, unet_channels: 8}"));
+  EXPECT_EQ(IlluminationPrior::kUNet, prior("solver: {estimator: maximum}"));
+  EXPECT_EQ(IlluminationPrior::kNone,
+            prior("illumination: {prior: none}\nsolver: {estimator: maximum}"));
+}
+
+TEST_F(ProblemFile, MapsOfTheProcessAreSmall) {
   const auto check = [&](const std::string& illumination) {
     return CheckSolvable(*Read(kLeast, {"illumination=" + illumination}));
   };

@@ -201,6 +201,8 @@ TEST(ProblemSchema, ChoicesTakeItsWords) {
       EXPECT_EQ("", with.Error());
       std::string pointer = "/" + key.path;
       std::replace(pointer.begin(), pointer.end(), '.', '/');
+      // What `auto` stands for is told in its place.
+      if (key.path == "illumination.prior" && word == "auto") continue;
       EXPECT_EQ(word, with.Json()[nlohmann::json::json_pointer(pointer)]);
     }
     for (const std::string& word : key.ListWords()) {

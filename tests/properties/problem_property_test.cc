@@ -166,7 +166,9 @@ Problem AnyProblem() {
   } else if (rendered || p.kind == ProblemKind::kReflectance) {
     p.illumination.sky = AnySky();
   } else {
-    p.illumination.prior = AnyOf<IlluminationPrior>(3);
+    p.illumination.prior =
+        *rc::gen::element(IlluminationPrior::kProcess, IlluminationPrior::kUNet,
+                          IlluminationPrior::kNone);
     if (p.illumination.prior == IlluminationPrior::kUNet) {
       p.illumination.unet_channels = *rc::gen::inRange(1, 129);
     }

@@ -86,23 +86,21 @@ class Tiers {
   BrdfGrid grid_;
 };
 
-void StudyImage(const std::string& name,
-                const std::vector<ShadingPoint>& points, const Light& light,
-                const Look& look, bool perspective) {
-  const auto row = [&](const std::string& quantity, double value) {
-    Row("gaussians", name, quantity, value);
-  };
-  struct Way {
-    std::string name;
-    std::function<void(const std::vector<ShadingPoint>&, double*)> render;
-    double seconds = 1e300;
-  };
-  const Tiers tiers(light, look);
-  std::vector<Way> ways = {{"quadrature", [&](const auto& some, double* L_o) {
-                              tiers.Quadrature(some, L_o);
-                            }}};
+struct Way {
+  std::string name;
+  std::function<void(const std::vector<ShadingPoint>&, double*)> render;
+  double seconds = 1e300;  // of the image
+};
+
+// An orthographic camera's points may be rendered by their normal. The tiers
+// must outlive the ways.
+std::vector<Way> Ways(const Tiers& tiers, bool perspective) {
+  std::vector<Way> ways = {
+      {"quadrature", [&tiers](const auto& some, double* L_o) {
+         tiers.Quadrature(some, L_o);
+       }}};
   if (!perspective) {
-    ways.push_back({"by_normal", [&](const auto& some, double* L_o) {
+    ways.push_back({"by_normal", [&tiers](const auto& some, double* L_o) {
                       tiers.ByNormal(some, L_o);
                     }});
   }
@@ -118,15 +116,16 @@ void StudyImage(const std::string& name,
                       tiers.Gaussians(spread, some, L_o);
                     }});
   }
+  return ways;
+}
 
-  const std::vector<ShadingPoint> few = SpreadPoints(points, kFew);
-  std::vector<double> truth(3 * few.size()), at_few(truth.size());
-  ReferenceRenderer(light.map, {}).Render(few, look.table, truth.data());
+// The ways take turns. The quadrature takes every point alike, so that some
+// stand for all.
+void TimeWays(const std::vector<ShadingPoint>& points, std::vector<Way>* ways) {
   std::vector<double> L_o(3 * points.size());
-  // In turn. The quadrature takes every point alike.
   const std::vector<ShadingPoint> timed = SpreadPoints(points, kTimed);
   for (int round = 0; round < kRounds; ++round) {
-    for (Way& way : ways) {
+    for (Way& way : *ways) {
       const bool all = way.name != "quadrature";
       const double seconds =
           Seconds([&] { way.render(all ? points : timed, L_o.data()); });
@@ -136,22 +135,41 @@ void StudyImage(const std::string& name,
                                  static_cast<double>(timed.size()));
     }
   }
-  row("points", static_cast<double>(points.size()));
+}
+
+// L_o [few, 3] of some of the points.
+std::vector<double> RenderFew(const Way& way,
+                              const std::vector<ShadingPoint>& points,
+                              const std::vector<ShadingPoint>& few) {
+  std::vector<double> at_few(3 * few.size());
+  if (way.name != "by_normal") {
+    way.render(few, at_few.data());
+    return at_few;
+  }
+  // Few points are not interpolated.
+  std::vector<double> L_o(3 * points.size());
+  way.render(points, L_o.data());
+  for (size_t k = 0, i = 0; k < few.size(); ++k) {
+    while (points[i].index != few[k].index) ++i;
+    std::copy_n(&L_o[3 * i], 3, &at_few[3 * k]);
+  }
+  return at_few;
+}
+
+void StudyImage(const std::string& name,
+                const std::vector<ShadingPoint>& points, const Light& light,
+                const Look& look, bool perspective) {
+  const Tiers tiers(light, look);
+  std::vector<Way> ways = Ways(tiers, perspective);
+  const std::vector<ShadingPoint> few = SpreadPoints(points, kFew);
+  std::vector<double> truth(3 * few.size());
+  ReferenceRenderer(light.map, {}).Render(few, look.table, truth.data());
+  TimeWays(points, &ways);
+  Row("gaussians", name, "points", static_cast<double>(points.size()));
   for (const Way& way : ways) {
-    if (way.name == "by_normal") {
-      // Few points are not interpolated.
-      way.render(points, L_o.data());
-      std::vector<double> whole(L_o);
-      const std::vector<ShadingPoint> spread = SpreadPoints(points, kFew);
-      for (size_t k = 0, i = 0; k < spread.size(); ++k) {
-        while (points[i].index != spread[k].index) ++i;
-        std::copy_n(&whole[3 * i], 3, &at_few[3 * k]);
-      }
-    } else {
-      way.render(few, at_few.data());
-    }
-    row(way.name + "_log_error", LogError(at_few, truth));
-    row(way.name + "_ms", 1e3 * way.seconds);
+    Row("gaussians", name, way.name + "_log_error",
+        LogError(RenderFew(way, points, few), truth));
+    Row("gaussians", name, way.name + "_ms", 1e3 * way.seconds);
   }
 }
 

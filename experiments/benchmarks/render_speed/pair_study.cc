@@ -28,32 +28,39 @@ std::vector<double> Interleaved(
   return least;
 }
 
-}  // namespace
-
-void PairStudy(const std::string& meshes) {
-  const Scene scene = LoadShape(meshes, "bunny");
-  const std::vector<ShadingPoint> points =
-      SpreadPoints(PointsByAngle(scene, 128, 1), kPoints);
-  const Image map = Lights()[1].map;
-  const BrdfGrid grid = BrdfGrid::FromMerl(Materials()[1].table, {});
-  TransportOptions options;
-  options.num_threads = 1;
-  // Pairs are what the quadrature gives.
+// Pairs of a light direction and a BRDF value that the quadrature gives.
+struct PairCounts {
   double near = 0.0, far = 0.0;
+  double all() const { return near + far; }
+};
+
+PairCounts CountPairs(const std::vector<ShadingPoint>& points, const Image& map,
+                      const QuadratureOptions& options) {
   const PointQuadrature quadrature(
-      MapCells(
-          map.height, map.width,
-          FarBlockSize(map.height, map.width, options.quadrature.far_width)),
-      options.quadrature);
+      MapCells(map.height, map.width,
+               FarBlockSize(map.height, map.width, options.far_width)),
+      options);
+  PairCounts counts;
   PointSamples samples;
   for (const ShadingPoint& p : points) {
     quadrature.Sample(p.normal.cast<double>().normalized(),
                       p.wo.cast<double>().normalized(), &samples);
-    near += static_cast<double>(samples.near.size());
-    far += static_cast<double>(samples.far.size());
+    counts.near += static_cast<double>(samples.near.size());
+    counts.far += static_cast<double>(samples.far.size());
   }
-  const double pairs = near + far;
+  return counts;
+}
 
+// What was timed: bytes that it must read from memory, and its least seconds.
+struct Timed {
+  std::string name;
+  double bytes, seconds;
+};
+
+// The stream through memory is the first of them.
+std::vector<Timed> TimeAll(const std::vector<ShadingPoint>& points,
+                           const Image& map, const BrdfGrid& grid,
+                           const TransportOptions& options) {
   const Transport transport(points, map.height, map.width, options);
   const LightOperator by_light = transport.ByLight(grid);
   const ReflectanceOperator by_reflectance =
@@ -78,35 +85,44 @@ void PairStudy(const std::string& meshes) {
       [&] { by_light.ApplyTranspose(adjoint.data(), by_map.data()); },
       [&] { by_reflectance.Apply(fields, 2, lobes.data()); },
   });
-  const char* const names[] = {"stream",
-                               "build",
-                               "render",
-                               "render_two_lobes",
-                               "grid_gradient",
-                               "by_light_apply",
-                               "by_light_transpose",
-                               "by_reflectance_apply"};
-  // What a call must read from memory: its lists.
-  const double lists = static_cast<double>(transport.MemoryBytes());
-  const double bytes[] = {streamed,
-                          lists,
-                          lists,
-                          lists,
-                          lists,
-                          static_cast<double>(by_light.MemoryBytes()),
-                          static_cast<double>(by_light.MemoryBytes()),
-                          static_cast<double>(by_reflectance.MemoryBytes())};
-  Row("pairs", "bunny", "near_pairs_per_point", near / kPoints);
-  Row("pairs", "bunny", "far_pairs_per_point", far / kPoints);
-  for (size_t k = 0; k < seconds.size(); ++k) {
-    Row("pairs", names[k], "gigabytes_per_second",
-        bytes[k] / seconds[k] * 1e-9);
-    Row("pairs", names[k], "share_of_stream",
-        bytes[k] / seconds[k] / (streamed / seconds[0]));
-    if (k == 0) continue;
-    Row("pairs", names[k], "bytes_per_pair", bytes[k] / pairs);
-    Row("pairs", names[k], "million_pairs_per_second",
-        pairs / seconds[k] * 1e-6);
+  // A call must read its lists.
+  const auto lists = static_cast<double>(transport.MemoryBytes());
+  const auto light = static_cast<double>(by_light.MemoryBytes());
+  const auto reflectance = static_cast<double>(by_reflectance.MemoryBytes());
+  return {{"stream", streamed, seconds[0]},
+          {"build", lists, seconds[1]},
+          {"render", lists, seconds[2]},
+          {"render_two_lobes", lists, seconds[3]},
+          {"grid_gradient", lists, seconds[4]},
+          {"by_light_apply", light, seconds[5]},
+          {"by_light_transpose", light, seconds[6]},
+          {"by_reflectance_apply", reflectance, seconds[7]}};
+}
+
+}  // namespace
+
+void PairStudy(const std::string& meshes) {
+  const Scene scene = LoadShape(meshes, "bunny");
+  const std::vector<ShadingPoint> points =
+      SpreadPoints(PointsByAngle(scene, 128, 1), kPoints);
+  const Image map = Lights()[1].map;
+  const BrdfGrid grid = BrdfGrid::FromMerl(Materials()[1].table, {});
+  TransportOptions options;
+  options.num_threads = 1;
+  const PairCounts pairs = CountPairs(points, map, options.quadrature);
+  const std::vector<Timed> all = TimeAll(points, map, grid, options);
+  const Timed& stream = all[0];
+  Row("pairs", "bunny", "near_pairs_per_point", pairs.near / kPoints);
+  Row("pairs", "bunny", "far_pairs_per_point", pairs.far / kPoints);
+  for (const Timed& timed : all) {
+    Row("pairs", timed.name, "gigabytes_per_second",
+        timed.bytes / timed.seconds * 1e-9);
+    Row("pairs", timed.name, "share_of_stream",
+        timed.bytes / timed.seconds / (stream.bytes / stream.seconds));
+    if (&timed == &stream) continue;
+    Row("pairs", timed.name, "bytes_per_pair", timed.bytes / pairs.all());
+    Row("pairs", timed.name, "million_pairs_per_second",
+        pairs.all() / timed.seconds * 1e-6);
   }
 }
 

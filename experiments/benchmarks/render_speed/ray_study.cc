@@ -130,12 +130,9 @@ void Packets(const std::vector<RTCRay>& rays, const Call& call,
   }
 }
 
-void StudyShape(const std::string& meshes, const std::string& name) {
-  const Scene scene = LoadShape(meshes, name);
-  const PlainEmbree plain(LoadMesh(meshes, name));
-  const std::vector<ShadingPoint> points =
-      SpreadPoints(PointsByAngle(scene, 128, 1), kPoints);
-  const std::vector<ShadowRay> list = LatticeRays(points);
+std::vector<RTCRay> EmbreeRays(const PlainEmbree& plain,
+                               const std::vector<ShadingPoint>& points,
+                               const std::vector<ShadowRay>& list) {
   std::vector<RTCRay> rays(list.size());
   for (size_t k = 0; k < list.size(); ++k) {
     const Eigen::Vector3f o =
@@ -152,101 +149,157 @@ void StudyShape(const std::string& meshes, const std::string& name) {
     ray.mask = ~0u;
     rays[k] = ray;
   }
+  return rays;
+}
 
-  const size_t count = rays.size();
-  std::vector<char> ours(count), single(count), eight(count), sixteen(count),
-      stream(count);
-  const double infinite = std::numeric_limits<double>::infinity();
-  double t_trace = infinite, t_ours = infinite, t_single = infinite,
-         t_eight = infinite, t_sixteen = infinite, t_stream = infinite;
-  int64_t traced = 0;
-  const VisibilityGrid grid(scene, 128);
+// The rays of a shape in the library's form and in Embree's. Each function that
+// fills hidden [rays] traces them in another way.
+class ShapeRays {
+ public:
+  ShapeRays(const std::string& meshes, const std::string& name)
+      : scene_(LoadShape(meshes, name)),
+        plain_(LoadMesh(meshes, name)),
+        points_(SpreadPoints(PointsByAngle(scene_, 128, 1), kPoints)),
+        list_(LatticeRays(points_)),
+        rays_(EmbreeRays(plain_, points_, list_)) {}
+
+  const Scene& scene() const { return scene_; }
+  const std::vector<ShadingPoint>& points() const { return points_; }
+  size_t count() const { return rays_.size(); }
+
+  void ByScene(std::vector<char>* hidden) const {
+    for (size_t k = 0; k < count(); ++k) {
+      (*hidden)[k] =
+          scene_.Occluded(points_[list_[k].point].position, list_[k].direction)
+              ? 1
+              : 0;
+    }
+  }
+  void Singly(std::vector<char>* hidden) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    for (size_t k = 0; k < count(); ++k) {
+      RTCRay ray = rays_[k];
+      rtcOccluded1(plain_.scene(), &context, &ray);
+      (*hidden)[k] = ray.tfar < 0.0f ? 1 : 0;
+    }
+  }
+  void ByEight(std::vector<char>* hidden) const {
+    RTCIntersectContext context = Coherent();
+    Packets<RTCRay8, 8>(
+        rays_,
+        [&](const int* valid, RTCRay8* packet) {
+          rtcOccluded8(valid, plain_.scene(), &context, packet);
+        },
+        hidden);
+  }
+  void BySixteen(std::vector<char>* hidden) const {
+    RTCIntersectContext context = Coherent();
+    Packets<RTCRay16, 16>(
+        rays_,
+        [&](const int* valid, RTCRay16* packet) {
+          rtcOccluded16(valid, plain_.scene(), &context, packet);
+        },
+        hidden);
+  }
+  void ByStream(std::vector<char>* hidden) const {
+    constexpr size_t kStream = 1024;
+    RTCIntersectContext context = Coherent();
+    std::vector<RTCRay> block;
+    for (size_t k = 0; k < count(); k += kStream) {
+      const size_t end = std::min(k + kStream, count());
+      block.assign(rays_.begin() + k, rays_.begin() + end);
+      rtcOccluded1M(plain_.scene(), &context, block.data(),
+                    static_cast<unsigned>(end - k), sizeof(RTCRay));
+      for (size_t i = k; i < end; ++i) {
+        (*hidden)[i] = block[i - k].tfar < 0.0f ? 1 : 0;
+      }
+    }
+  }
+
+ private:
+  static RTCIntersectContext Coherent() {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+  }
+
+  const Scene scene_;
+  const PlainEmbree plain_;
+  const std::vector<ShadingPoint> points_;
+  const std::vector<ShadowRay> list_;
+  const std::vector<RTCRay> rays_;
+};
+
+// One way to trace the rays, its answers and the least seconds of all rounds.
+struct Way {
+  std::string name;
+  void (ShapeRays::*trace)(std::vector<char>*) const;
+  std::vector<char> hidden = {};
+  double seconds = std::numeric_limits<double>::infinity();
+
+  double DiffersIn(const Way& other) const {
+    double sum = 0.0;
+    for (size_t k = 0; k < hidden.size(); ++k) {
+      sum += hidden[k] != other.hidden[k] ? 1.0 : 0.0;
+    }
+    return sum;
+  }
+};
+
+// The library's own traversal, which casts fewer rays.
+struct GridTrace {
+  int64_t rays = 0;
+  double seconds = std::numeric_limits<double>::infinity();
+};
+
+// The ways and the grid take turns, round by round.
+GridTrace TimeRounds(const ShapeRays& rays, std::vector<Way>* ways) {
+  GridTrace trace;
+  const VisibilityGrid grid(rays.scene(), 128);
   VisibilityGrid::Scratch scratch;
   VisibilityGrid::Bits bits;
   for (int round = 0; round < kRounds; ++round) {
-    t_ours = std::min(t_ours, Seconds([&] {
-                        for (size_t k = 0; k < count; ++k) {
-                          ours[k] =
-                              scene.Occluded(points[list[k].point].position,
-                                             list[k].direction)
-                                  ? 1
-                                  : 0;
-                        }
-                      }));
-    t_single = std::min(t_single, Seconds([&] {
-                          RTCIntersectContext context;
-                          rtcInitIntersectContext(&context);
-                          for (size_t k = 0; k < count; ++k) {
-                            RTCRay ray = rays[k];
-                            rtcOccluded1(plain.scene(), &context, &ray);
-                            single[k] = ray.tfar < 0.0f ? 1 : 0;
-                          }
-                        }));
-    RTCIntersectContext coherent;
-    rtcInitIntersectContext(&coherent);
-    coherent.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    t_eight =
-        std::min(t_eight, Seconds([&] {
-                   Packets<RTCRay8, 8>(
-                       rays,
-                       [&](const int* valid, RTCRay8* packet) {
-                         rtcOccluded8(valid, plain.scene(), &coherent, packet);
-                       },
-                       &eight);
-                 }));
-    t_sixteen =
-        std::min(t_sixteen, Seconds([&] {
-                   Packets<RTCRay16, 16>(
-                       rays,
-                       [&](const int* valid, RTCRay16* packet) {
-                         rtcOccluded16(valid, plain.scene(), &coherent, packet);
-                       },
-                       &sixteen);
-                 }));
-    t_stream = std::min(t_stream, Seconds([&] {
-                          constexpr size_t kStream = 1024;
-                          std::vector<RTCRay> block;
-                          for (size_t k = 0; k < count; k += kStream) {
-                            const size_t end = std::min(k + kStream, count);
-                            block.assign(rays.begin() + k, rays.begin() + end);
-                            rtcOccluded1M(
-                                plain.scene(), &coherent, block.data(),
-                                static_cast<unsigned>(end - k), sizeof(RTCRay));
-                            for (size_t i = k; i < end; ++i) {
-                              stream[i] = block[i - k].tfar < 0.0f ? 1 : 0;
-                            }
-                          }
-                        }));
-    t_trace = std::min(t_trace, Seconds([&] {
-                         traced = 0;
-                         for (const ShadingPoint& p : points) {
-                           grid.Trace(p, &scratch, &bits, &traced);
-                         }
-                       }));
+    for (Way& way : *ways) {
+      way.hidden.resize(rays.count());
+      way.seconds = std::min(way.seconds,
+                             Seconds([&] { (rays.*way.trace)(&way.hidden); }));
+    }
+    trace.seconds = std::min(trace.seconds, Seconds([&] {
+                               trace.rays = 0;
+                               for (const ShadingPoint& p : rays.points()) {
+                                 grid.Trace(p, &scratch, &bits, &trace.rays);
+                               }
+                             }));
   }
-  const auto differ = [&](const std::vector<char>& other) {
-    double sum = 0.0;
-    for (size_t k = 0; k < count; ++k) sum += ours[k] != other[k] ? 1.0 : 0.0;
-    return sum;
-  };
+  return trace;
+}
+
+void StudyShape(const std::string& meshes, const std::string& name) {
+  const ShapeRays rays(meshes, name);
+  std::vector<Way> ways = {{"scene_occluded", &ShapeRays::ByScene},
+                           {"occluded1", &ShapeRays::Singly},
+                           {"occluded8", &ShapeRays::ByEight},
+                           {"occluded16", &ShapeRays::BySixteen},
+                           {"occluded1M", &ShapeRays::ByStream}};
+  const GridTrace trace = TimeRounds(rays, &ways);
   const auto rate = [&](const std::string& quantity, double seconds,
                         double number) {
     Row("rays", name, quantity + "_per_us", number / seconds * 1e-6);
   };
-  const auto n = static_cast<double>(count);
-  Row("rays", name, "lattice_rays", n);
-  rate("scene_occluded", t_ours, n);
-  rate("embree_occluded1", t_single, n);
-  rate("embree_occluded8", t_eight, n);
-  rate("embree_occluded16", t_sixteen, n);
-  rate("embree_occluded1M", t_stream, n);
-  rate("grid_trace", t_trace, static_cast<double>(traced));
-  Row("rays", name, "rays_per_traced_point",
-      static_cast<double>(traced) / kPoints);
-  Row("rays", name, "occluded8_differs_in", differ(eight));
-  Row("rays", name, "occluded16_differs_in", differ(sixteen));
-  Row("rays", name, "occluded1M_differs_in", differ(stream));
-  Row("rays", name, "occluded1_differs_in", differ(single));
+  const auto count = static_cast<double>(rays.count());
+  const auto traced = static_cast<double>(trace.rays);
+  Row("rays", name, "lattice_rays", count);
+  rate(ways[0].name, ways[0].seconds, count);
+  for (const int k : {1, 2, 3, 4}) {
+    rate("embree_" + ways[k].name, ways[k].seconds, count);
+  }
+  rate("grid_trace", trace.seconds, traced);
+  Row("rays", name, "rays_per_traced_point", traced / kPoints);
+  for (const int k : {2, 3, 4, 1}) {
+    Row("rays", name, ways[k].name + "_differs_in", ways[k].DiffersIn(ways[0]));
+  }
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ namespace derivatives {
 namespace {
 
 constexpr Real kRealPi = 3.14159265358979323846L;
+constexpr double kCostScale = 0.02;  // of the Cook-Torrance cost's loss
 
 // The formula of cook_torrance.h at an angle where nothing is clamped or, where
 // the library clamps a cosine, with its clamp.
@@ -218,14 +219,55 @@ void StudyLogTableCost(int count, std::mt19937_64* rng, ErrorTable* table) {
   }
 }
 
+// The lobe at the nodes, by log roughness and logit f0.
+std::vector<RealDual> LobeAtNodes(const BrdfGridShape& grid,
+                                  const CookTorranceVector& p) {
+  const std::vector<RealDual> x = {RealDual(Real(-1e4)), RealDual(0),
+                                   RealDual(Real(p[6]), 2, 0),
+                                   RealDual(Real(p[7]), 2, 1)};
+  std::vector<RealDual> lobe;
+  for (int i = 0; i < grid.num_nodes(); ++i) {
+    const Eigen::Vector3d a = grid.NodeAngles(i);
+    lobe.push_back(CookTorranceOf(x.data(), a[0], a[1], a[2]));
+  }
+  return lobe;
+}
+
+// The residual of a point's channel c by the parameters. gathered [nodes][3]:
+// the light that the point gathers.
+std::vector<Real> CookTorranceCostRow(const CookTorranceVector& p,
+                                      const std::vector<RealDual>& lobe,
+                                      const std::vector<Real>& gathered, int c,
+                                      double log_observed, double floor) {
+  Real matte = 0, sums[3] = {0, 0, 0};
+  for (size_t n = 0; n < lobe.size(); ++n) {
+    const Real g = gathered[3 * n + c];
+    matte += g / kRealPi;
+    sums[0] += g * lobe[n].value;
+    for (int k = 0; k < 2; ++k) sums[1 + k] += g * lobe[n].derivatives[k];
+  }
+  const Real diffuse = std::exp(Real(p[c])) * matte;
+  const Real colour = std::exp(Real(p[3 + c]));
+  const Real L_o = diffuse + colour * sums[0] + Real(floor);
+  const Real d = std::log(L_o) - Real(log_observed);
+  const Real s = Real(kCostScale), root = std::sqrt(d * d + s * s);
+  const Real slope = std::sqrt((root + s) / 2) / root / L_o;
+  std::vector<Real> row(kCookTorranceParameters, 0);
+  row[c] = slope * diffuse;
+  row[3 + c] = slope * colour * sums[0];
+  row[6] = slope * colour * sums[1];
+  row[7] = slope * colour * sums[2];
+  return row;
+}
+
 void StudyCookTorranceCost(ErrorTable* table) {
   const ReferenceScene scene(testing::SpherePoints(4),
                              testing::SmoothMap(8, 16));
   LogObservations observed;
   observed.floor = 1e-4;
   observed.values.assign(3 * scene.points().size(), 0.3);
-  CookTorranceCost cost(scene.transport(), scene.map(), observed, 0.02, 0);
-  const BrdfGridShape& grid = scene.options().grid;
+  CookTorranceCost cost(scene.transport(), scene.map(), observed, kCostScale,
+                        0);
   const std::vector<Real> light(scene.map().rgb.begin(), scene.map().rgb.end());
   for (const double roughness : {-0.5, -2.0, -5.0, -20.0}) {
     CookTorranceVector p;
@@ -235,46 +277,20 @@ void StudyCookTorranceCost(ErrorTable* table) {
     const double* block[] = {p.data()};
     double* jacobians[] = {J.data()};
     CHECK(cost.Evaluate(block, r.data(), jacobians)) << roughness;
-    // The lobe at the nodes, by log roughness and logit f0.
-    std::vector<RealDual> x = {RealDual(Real(-1e4)), RealDual(0),
-                               RealDual(Real(p[6]), 2, 0),
-                               RealDual(Real(p[7]), 2, 1)};
-    std::vector<RealDual> lobe;
-    for (int i = 0; i < grid.num_nodes(); ++i) {
-      const Eigen::Vector3d a = grid.NodeAngles(i);
-      lobe.push_back(CookTorranceOf(x.data(), a[0], a[1], a[2]));
-    }
+    const std::vector<RealDual> lobe = LobeAtNodes(scene.options().grid, p);
     for (size_t i = 0; i < scene.points().size(); ++i) {
       const std::vector<Real> gathered =
           scene.reference().Gather(static_cast<int>(i), light);
       for (int c = 0; c < 3; ++c) {
-        Real matte = 0, sums[3] = {0, 0, 0};
-        for (size_t n = 0; n < lobe.size(); ++n) {
-          const Real g = gathered[3 * n + c];
-          matte += g / kRealPi;
-          sums[0] += g * lobe[n].value;
-          for (int k = 0; k < 2; ++k) {
-            sums[1 + k] += g * lobe[n].derivatives[k];
-          }
-        }
-        const Real diffuse = std::exp(Real(p[c])) * matte;
-        const Real colour = std::exp(Real(p[3 + c]));
-        const Real L_o = diffuse + colour * sums[0] + Real(observed.floor);
-        const Real d = std::log(L_o) - Real(observed.values[3 * i + c]);
-        const Real s = Real(0.02), root = std::sqrt(d * d + s * s);
-        const Real slope = std::sqrt((root + s) / 2) / root / L_o;
-        std::vector<Real> row(kCookTorranceParameters, 0);
-        row[c] = slope * diffuse;
-        row[3 + c] = slope * colour * sums[0];
-        row[6] = slope * colour * sums[1];
-        row[7] = slope * colour * sums[2];
-        const auto begin =
-            J.begin() +
-            static_cast<std::ptrdiff_t>((3 * i + c) * kCookTorranceParameters);
+        const size_t at = 3 * i + c;
+        const auto begin = J.begin() + static_cast<std::ptrdiff_t>(
+                                           at * kCookTorranceParameters);
         table->Add("Cook-Torrance cost by parameters",
                    "log roughness " + Coordinates({roughness}),
-                   "value " + std::to_string(3 * i + c),
-                   {begin, begin + kCookTorranceParameters}, row);
+                   "value " + std::to_string(at),
+                   {begin, begin + kCookTorranceParameters},
+                   CookTorranceCostRow(p, lobe, gathered, c,
+                                       observed.values[at], observed.floor));
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <random>
 #include <string>
@@ -106,90 +107,126 @@ void AddWall(const std::vector<double>& x, size_t first, int size, Real wall,
   }
 }
 
-void StudyPriors(int count, std::mt19937_64* rng, ErrorTable* table) {
+// A prior's residuals and their Jacobian [residuals][parameters].
+struct ExactPrior {
+  ExactPrior(size_t residuals, size_t parameters)
+      : values(residuals, 0), J(residuals * parameters, 0) {}
+  std::vector<Real> values, J;
+};
+
+ExactPrior ExactBallPrior(const LobePrior& prior, const LobeLayout& layout,
+                          const std::vector<double>& x) {
+  const int size = layout.code_size;
+  const size_t n = x.size(), rows = layout.lobe_size() + 1;  // of a lobe
+  ExactPrior exact(layout.num_lobes * rows, n);
+  for (int k = 0; k < layout.num_lobes; ++k) {
+    const size_t first = layout.code(k), row = k * rows;
+    for (int d = 0; d < size; ++d) {
+      exact.J[(row + d) * n + first + d] = 1 / Real(prior.sigma);
+      exact.values[row + d] = x[first + d] / Real(prior.sigma);
+    }
+    AddWall(x, first, size, prior.wall, &exact.J[(row + size) * n],
+            &exact.values[row + size]);
+    for (int c = 0; c < 3; ++c) {
+      const size_t at = row + size + 1 + c, colour = layout.log_colour(k) + c;
+      exact.J[at * n + colour] = 1 / Real(prior.colour_sigma);
+      exact.values[at] =
+          (x[colour] - Real(prior.colour_mean[c])) / Real(prior.colour_sigma);
+    }
+  }
+  return exact;
+}
+
+using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+
+// precision_root: factor^-1.
+ExactPrior ExactJointPrior(const MaterialPrior& prior,
+                           const RealMatrix& precision_root,
+                           const std::vector<double>& x) {
+  const LobeLayout layout = prior.layout();
+  const size_t n = x.size();
+  ExactPrior exact(n + layout.num_lobes, n);
+  for (size_t i = 0; i < n; ++i) {
+    for (size_t j = 0; j < n; ++j) {
+      exact.J[i * n + j] = precision_root(i, j);
+      exact.values[i] += precision_root(i, j) * (x[j] - Real(prior.mean[j]));
+    }
+  }
+  for (int k = 0; k < layout.num_lobes; ++k) {
+    AddWall(x, layout.code(k), layout.code_size, prior.wall,
+            &exact.J[(n + k) * n], &exact.values[n + k]);
+  }
+  return exact;
+}
+
+// The rows of the Jacobian, and the gradient of half the squares.
+void AddPrior(const std::string& name, const std::string& kind,
+              const ceres::CostFunction& cost, const std::vector<double>& x,
+              const ExactPrior& exact, ErrorTable* table) {
+  const size_t n = x.size();
+  const std::string where = Coordinates(x, 4);
+  std::vector<double> r;
+  const std::vector<double> J = JacobianOf(cost, x, &r);
+  AddRows(name, kind, where, J, exact.J, n, table);
+  std::vector<double> gradient(n, 0.0);
+  std::vector<Real> right(n, 0);
+  for (size_t i = 0; i < r.size(); ++i) {
+    for (size_t j = 0; j < n; ++j) {
+      gradient[j] += r[i] * J[i * n + j];
+      right[j] += exact.values[i] * exact.J[i * n + j];
+    }
+  }
+  table->Add(name + ", gradient", kind, where, gradient, right);
+}
+
+// Random parameters whose codes have this norm; a negative one leaves them as
+// they are drawn.
+std::vector<double> RandomLobes(const LobeLayout& layout, double norm,
+                                std::mt19937_64* rng) {
+  std::normal_distribution<double> normal;
+  std::vector<double> x(layout.num_parameters());
+  for (double& v : x) v = normal(*rng);
+  for (int k = 0; k < layout.num_lobes && norm >= 0.0; ++k) {
+    double* const code = &x[layout.code(k)];
+    double square = 0.0;
+    for (int d = 0; d < layout.code_size; ++d) square += code[d] * code[d];
+    for (int d = 0; d < layout.code_size; ++d) {
+      code[d] *= norm / std::sqrt(square);
+    }
+  }
+  return x;
+}
+
+void StudyLobePriors(int count, std::mt19937_64* rng, ErrorTable* table) {
   const NeuralBrdfModel model = TinyModel(8);
-  const int lobes = 2, size = model.shape.code_size();
-  const size_t lobe_size = size + 3, n = lobes * lobe_size;
-  const MaterialPrior joint = JointMaterialPrior(model, lobes, 0.5);
+  const LobeLayout layout = {2, model.shape.code_size()};
   LobePrior ball;
   for (double& m : ball.colour_mean) m = 4.0;
-  const LobePriorCost ball_cost({lobes, size}, ball);
+  const LobePriorCost ball_cost(layout, ball);
+  const MaterialPrior joint = JointMaterialPrior(model, layout.num_lobes, 0.5);
   const MaterialPriorCost joint_cost(&joint);
-  using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+  const Eigen::Index n = joint.num_parameters();
   const RealMatrix precision_root =
       joint.factor.cast<Real>().triangularView<Eigen::Lower>().solve(
           RealMatrix::Identity(n, n));
-  std::normal_distribution<double> normal;
-
-  const auto add = [&](const std::string& kind, const std::vector<double>& x) {
-    const std::string where = Coordinates(x, 4);
-    std::vector<double> r;
-    std::vector<double> J = JacobianOf(ball_cost, x, &r);
-    std::vector<Real> exact(J.size(), 0), values(r.size());
-    for (int k = 0; k < lobes; ++k) {
-      const size_t first = k * lobe_size, row = k * (lobe_size + 1);
-      for (int d = 0; d < size; ++d) {
-        exact[(row + d) * n + first + d] = 1 / Real(ball.sigma);
-        values[row + d] = x[first + d] / Real(ball.sigma);
-      }
-      AddWall(x, first, size, ball.wall, &exact[(row + size) * n],
-              &values[row + size]);
-      for (int c = 0; c < 3; ++c) {
-        const size_t at = row + size + 1 + c;
-        exact[at * n + first + size + c] = 1 / Real(ball.colour_sigma);
-        values[at] = (x[first + size + c] - Real(4)) / Real(ball.colour_sigma);
-      }
-    }
-    const auto add_gradient = [&](const std::string& name) {
-      std::vector<double> g(n, 0.0);
-      std::vector<Real> right(n, 0);
-      for (size_t i = 0; i < r.size(); ++i) {
-        for (size_t j = 0; j < n; ++j) {
-          g[j] += r[i] * J[i * n + j];
-          right[j] += values[i] * exact[i * n + j];
-        }
-      }
-      table->Add(name + ", gradient", kind, where, g, right);
-    };
-    AddRows("ball prior", kind, where, J, exact, n, table);
-    add_gradient("ball prior");
-
-    J = JacobianOf(joint_cost, x, &r);
-    exact.assign(J.size(), 0);
-    values.assign(r.size(), 0);
-    for (size_t i = 0; i < n; ++i) {
-      for (size_t j = 0; j < n; ++j) {
-        exact[i * n + j] = precision_root(i, j);
-        values[i] += precision_root(i, j) * (x[j] - Real(joint.mean[j]));
-      }
-    }
-    for (int k = 0; k < lobes; ++k) {
-      AddWall(x, k * lobe_size, size, joint.wall, &exact[(n + k) * n],
-              &values[n + k]);
-    }
-    AddRows("materials' prior", kind, where, J, exact, n, table);
-    add_gradient("materials' prior");
-  };
   for (int i = 0; i < count; ++i) {
     for (const double norm :
          {-1.0, 0.0, 1 - 1e-9, 1.0, 1 + 1e-9, 1 + 1e-3, 3.0, 10.0}) {
-      std::vector<double> x(n);
-      for (double& v : x) v = normal(*rng);
-      for (size_t k = 0; k < lobes && norm >= 0.0; ++k) {
-        double square = 0.0;
-        for (int d = 0; d < size; ++d) {
-          square += x[k * lobe_size + d] * x[k * lobe_size + d];
-        }
-        for (int d = 0; d < size; ++d) {
-          x[k * lobe_size + d] *= norm / std::sqrt(square);
-        }
+      const std::vector<double> x = RandomLobes(layout, norm, rng);
+      char kind[32] = "random";
+      if (norm >= 0.0) {
+        std::snprintf(kind, sizeof(kind), "codes of norm %.10g", norm);
       }
-      char kind[32];
-      std::snprintf(kind, sizeof(kind), "codes of norm %.10g", norm);
-      add(norm < 0.0 ? "random" : kind, x);
+      AddPrior("ball prior", kind, ball_cost, x,
+               ExactBallPrior(ball, layout, x), table);
+      AddPrior("materials' prior", kind, joint_cost, x,
+               ExactJointPrior(joint, precision_root, x), table);
     }
   }
+}
 
+void StudyWeightPrior(std::mt19937_64* rng, ErrorTable* table) {
+  std::normal_distribution<double> normal;
   std::vector<float> mean(20), std(20);
   std::vector<double> x(20);
   std::vector<Real> exact(400, 0);
@@ -240,7 +277,8 @@ void StudyProcessPrior(std::mt19937_64* rng, ErrorTable* table) {
 void StudyCosts(const StudyOptions& options, ErrorTable* table) {
   std::mt19937_64 rng(options.seed);
   StudyLikelihood(5 * options.points, &rng, table);
-  StudyPriors(std::max(options.points / 10, 2), &rng, table);
+  StudyLobePriors(std::max(options.points / 10, 2), &rng, table);
+  StudyWeightPrior(&rng, table);
   StudyProcessPrior(&rng, table);
 }
 

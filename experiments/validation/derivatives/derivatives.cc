@@ -35,6 +35,7 @@ int Run(const std::string& csv, const std::string& only,
       {"marginal", [&] { StudyMarginal(model, options, &table); }},
       {"transport", [&] { StudyTransport(options, &table); }},
       {"harmonics", [&] { StudyHarmonics(options, &table); }},
+      {"gaussians", [&] { StudyGaussians(options, &table); }},
   };
   for (const auto& [name, study] : studies) {
     if (!only.empty() && only != name) continue;

@@ -85,6 +85,23 @@ ErrorRow ErrorTable::Row(const std::string& derivative,
   return row;
 }
 
+void AddAdjointIdentity(const std::string& derivative,
+                        const std::string& points, const std::string& where,
+                        const std::vector<double>& a,
+                        const std::vector<double>& Ax,
+                        const std::vector<float>& x,
+                        const std::vector<float>& transposed,
+                        ErrorTable* table) {
+  Real left = 0, right = 0, size = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    left += Real(a[i]) * Ax[i];
+    size += std::abs(Real(a[i]) * Ax[i]);
+  }
+  for (size_t k = 0; k < x.size(); ++k) right += Real(transposed[k]) * x[k];
+  table->Add(derivative, points, where,
+             {static_cast<double>(1 + (left - right) / size)}, {1});
+}
+
 std::vector<double> ToDoubles(const std::vector<float>& v) {
   return {v.begin(), v.end()};
 }

@@ -48,6 +48,16 @@ class ErrorTable {
   std::map<Key, Errors> errors_;
 };
 
+// <a, A x> against <A^T a, x>, relative to the former's sum of magnitudes: adds
+// 1 + the error, of 1. Ax and transposed are A x and A^T a.
+void AddAdjointIdentity(const std::string& derivative,
+                        const std::string& points, const std::string& where,
+                        const std::vector<double>& a,
+                        const std::vector<double>& Ax,
+                        const std::vector<float>& x,
+                        const std::vector<float>& transposed,
+                        ErrorTable* table);
+
 std::vector<double> ToDoubles(const std::vector<float>& v);
 
 // Coordinates for messages: "(0.25, 1, 3e-08)", at most `most` of them.

@@ -18,6 +18,172 @@ Real Quantised(double fraction) {
 
 }  // namespace
 
+// Appends the pairs of one point after the other.
+class ReferenceTransport::Builder {
+ public:
+  // options and transport must outlive the builder.
+  Builder(bool of_patches, int map_height, int map_width,
+          const TransportOptions& options, ReferenceTransport* transport)
+      : of_patches_(of_patches),
+        height_(map_height),
+        width_(map_width),
+        block_(
+            FarBlockSize(map_height, map_width, options.quadrature.far_width)),
+        options_(options),
+        cells_(MapCells(map_height, map_width, block_)),
+        quadrature_(cells_, options.quadrature),
+        padded_(PaddedTexels(map_height, map_width)),
+        to_(*transport) {}
+
+  void AddPoint(const ShadingPoint& point) {
+    const Sight sight = SightOf(point);
+    quadrature_.Sample(sight.n, point.wo.cast<double>().normalized(),
+                       &samples_);
+    for (const FarSample& s : samples_.far) AddFar(sight, s);
+    for (const NearSample& s : samples_.near) AddNear(sight, s);
+    to_.pair_end_.push_back(to_.pairs_.size());
+  }
+
+ private:
+  // What a point sees.
+  struct Sight {
+    Eigen::Vector3d n;                 // unit
+    const uint64_t* hidden = nullptr;  // its bits; null: nothing is hidden
+    SeenPatches seen;
+  };
+
+  Sight SightOf(const ShadingPoint& point) const {
+    Sight sight;
+    sight.n = point.normal.cast<double>().normalized();
+    if (options_.visibility != nullptr) {
+      sight.hidden = options_.visibility->Hidden(point);
+    }
+    if (sight.hidden != nullptr && options_.patches != nullptr) {
+      sight.seen = of_patches_ ? options_.patches->SeenFromPatch(point)
+                               : options_.patches->SeenFrom(point);
+    }
+    return sight;
+  }
+
+  // A pair whose sources are those added until EndPair.
+  template <typename Sample>
+  Pair BeginPair(const Sample& sample, Real weight) const {
+    const BrdfGridShape& shape = options_.grid;
+    const BrdfGridCell cell = FindCell(
+        shape, ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
+    const Real f[3] = {Quantised(cell.fh), Quantised(cell.fd),
+                       Quantised(cell.fp)};
+    Pair pair{};
+    for (int k = 0; k < 8; ++k) {
+      const int h = k >> 2, d = (k >> 1) & 1, p = k & 1;
+      pair.node[k] = shape.Node(cell.h + h, cell.d + d, (cell.p + p) % shape.p);
+      pair.share[k] =
+          (h ? f[0] : 1 - f[0]) * (d ? f[1] : 1 - f[1]) * (p ? f[2] : 1 - f[2]);
+    }
+    pair.weight = weight;
+    pair.source_begin = to_.sources_.size();
+    return pair;
+  }
+  void EndPair(Pair* pair) {
+    pair->source_end = to_.sources_.size();
+    to_.pairs_.push_back(*pair);
+  }
+
+  template <typename Sample>
+  void AddPatch(const Sample& sample, int patch, Real weight) {
+    Pair pair = BeginPair(sample, weight);
+    to_.sources_.push_back({static_cast<uint32_t>(to_.num_texels_ + patch), 1});
+    EndPair(&pair);
+  }
+
+  void AddFar(const Sight& sight, const FarSample& s) {
+    const int columns = width_ / block_;
+    const int row = s.cell / columns, column = s.cell % columns;
+    double share = 1.0;  // of the block that is visible
+    if (sight.hidden != nullptr) {
+      const VisibilityGrid& grid = options_.visibility->grid();
+      const GridRange range =
+          grid.RangeOf(row, column, height_ / block_, columns);
+      share = grid.VisibleShare(sight.hidden, sight.n, range);
+      if (share < 1.0 && !sight.seen.empty()) AddFarPatches(sight, s, range);
+      if (share <= 0.0) return;
+    }
+    // A block that is hidden in part is taken texel by texel.
+    const bool split = share < 1.0 && block_ > 1;
+    Pair pair = BeginPair(s, split ? s.weight : Real(s.weight) * share);
+    AddBlock(sight, row, column, split);
+    EndPair(&pair);
+  }
+
+  void AddFarPatches(const Sight& sight, const FarSample& s,
+                     const GridRange& range) {
+    options_.patches->SharesIn(options_.visibility->grid(), sight.hidden,
+                               sight.n, range, sight.seen, &shares_);
+    for (const PatchShare& e : shares_) {
+      AddPatch(s, e.patch,
+               Real(s.weight) * cells_[s.cell].solid_angle * e.share);
+    }
+  }
+
+  // The texels of a block of the map; `split`: each with its visible share.
+  void AddBlock(const Sight& sight, int row, int column, bool split) {
+    for (int k = 0; k < block_ * block_; ++k) {
+      const int y = row * block_ + k / block_, x = column * block_ + k % block_;
+      Real weight = TexelSolidAngle(y, height_, width_);
+      if (split) {
+        const VisibilityGrid& grid = options_.visibility->grid();
+        weight *= grid.VisibleShare(sight.hidden, sight.n,
+                                    grid.RangeOf(y, x, height_, width_));
+      }
+      to_.sources_.push_back({static_cast<uint32_t>(y * width_ + x), weight});
+    }
+  }
+
+  void AddNear(const Sight& sight, const NearSample& s) {
+    Real weight = s.weight;
+    if (sight.hidden != nullptr) {
+      const double visible =
+          options_.visibility->grid().VisibleAlong(sight.hidden, sight.n, s.wi);
+      const int patch = visible < 1.0 && !sight.seen.empty()
+                            ? options_.patches->Along(sight.seen, s.wi)
+                            : -1;
+      if (patch >= 0) AddPatch(s, patch, weight * (1 - Real(visible)));
+      weight *= visible;
+      if (weight <= 0) return;
+    }
+    Pair pair = BeginPair(s, weight);
+    AddTexelsAround(s.wi);
+    EndPair(&pair);
+  }
+
+  // The four texels that the map is interpolated between.
+  void AddTexelsAround(const Eigen::Vector3d& wi) {
+    double row = 0.0, column = 0.0;
+    FastMapPosition(wi, height_, width_, &row, &column);
+    const double y0 = std::floor(row - 0.5), x0 = std::floor(column - 0.5);
+    const Real y = Quantised(row - 0.5 - y0), x = Quantised(column - 0.5 - x0);
+    const int wrapped = (static_cast<int>(x0) + width_) % width_;
+    const int* at =
+        &padded_[(static_cast<int>(y0) + 1) * (width_ + 1) + wrapped];
+    for (int k = 0; k < 4; ++k) {
+      const int down = k >> 1, right = k & 1;
+      to_.sources_.push_back(
+          {static_cast<uint32_t>(at[down * (width_ + 1) + right]),
+           (down ? y : 1 - y) * (right ? x : 1 - x)});
+    }
+  }
+
+  const bool of_patches_;
+  const int height_, width_, block_;
+  const TransportOptions& options_;
+  const std::vector<FarCell> cells_;
+  const PointQuadrature quadrature_;
+  const std::vector<int> padded_;
+  ReferenceTransport& to_;
+  PointSamples samples_;
+  std::vector<PatchShare> shares_;
+};
+
 ReferenceTransport::ReferenceTransport(const std::vector<ShadingPoint>& points,
                                        int map_height, int map_width,
                                        const TransportOptions& options)
@@ -38,114 +204,8 @@ ReferenceTransport::ReferenceTransport(const std::vector<ShadingPoint>& points,
       num_sources_(num_texels_ +
                    (options.patches ? options.patches->count() : 0)),
       num_nodes_(options.grid.num_nodes()) {
-  const int block =
-      FarBlockSize(map_height, map_width, options.quadrature.far_width);
-  const int columns = map_width / block;
-  const PointQuadrature quadrature(MapCells(map_height, map_width, block),
-                                   options.quadrature);
-  const std::vector<int> padded = PaddedTexels(map_height, map_width);
-  const BrdfGridShape& shape = options.grid;
-  const auto begin_pair = [&](const auto& sample, Real weight) {
-    const BrdfGridCell cell = FindCell(
-        shape, ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
-    const Real f[3] = {Quantised(cell.fh), Quantised(cell.fd),
-                       Quantised(cell.fp)};
-    Pair pair{};
-    for (int k = 0; k < 8; ++k) {
-      const int h = k >> 2, d = (k >> 1) & 1, p = k & 1;
-      pair.node[k] = shape.Node(cell.h + h, cell.d + d, (cell.p + p) % shape.p);
-      pair.share[k] =
-          (h ? f[0] : 1 - f[0]) * (d ? f[1] : 1 - f[1]) * (p ? f[2] : 1 - f[2]);
-    }
-    pair.weight = weight;
-    pair.source_begin = sources_.size();
-    return pair;
-  };
-  const auto end_pair = [&](Pair* pair) {
-    pair->source_end = sources_.size();
-    pairs_.push_back(*pair);
-  };
-  const Visibility* const visibility = options.visibility.get();
-  const RadiosityPatches* const patches = options.patches.get();
-  const std::vector<FarCell> cells = MapCells(map_height, map_width, block);
-  std::vector<PatchShare> shares;
-  const auto add_patch = [&](const auto& sample, int patch, Real weight) {
-    Pair pair = begin_pair(sample, weight);
-    sources_.push_back({static_cast<uint32_t>(num_texels_ + patch), 1});
-    end_pair(&pair);
-  };
-  PointSamples samples;
-  for (const ShadingPoint& point : points) {
-    const Eigen::Vector3d n = point.normal.cast<double>().normalized();
-    const uint64_t* const hidden =
-        visibility != nullptr ? visibility->Hidden(point) : nullptr;
-    SeenPatches seen;
-    if (hidden != nullptr && patches != nullptr) {
-      seen =
-          of_patches ? patches->SeenFromPatch(point) : patches->SeenFrom(point);
-    }
-    quadrature.Sample(n, point.wo.cast<double>().normalized(), &samples);
-    for (const FarSample& s : samples.far) {
-      const int row = s.cell / columns, column = s.cell % columns;
-      const VisibilityGrid* grid =
-          hidden != nullptr ? &visibility->grid() : nullptr;
-      double share = 1.0;
-      if (grid != nullptr) {
-        const GridRange range =
-            grid->RangeOf(row, column, map_height / block, columns);
-        share = grid->VisibleShare(hidden, n, range);
-        if (share < 1.0 && !seen.empty()) {
-          patches->SharesIn(*grid, hidden, n, range, seen, &shares);
-          for (const PatchShare& e : shares) {
-            add_patch(s, e.patch,
-                      Real(s.weight) * cells[s.cell].solid_angle * e.share);
-          }
-        }
-        if (share <= 0.0) continue;
-      }
-      // A block that is hidden in part is taken texel by texel.
-      const bool split = share < 1.0 && block > 1;
-      Pair pair = begin_pair(s, split ? s.weight : Real(s.weight) * share);
-      for (int k = 0; k < block * block; ++k) {
-        const int y = row * block + k / block, x = column * block + k % block;
-        Real weight = TexelSolidAngle(y, map_height, map_width);
-        if (split) {
-          weight *= grid->VisibleShare(
-              hidden, n, grid->RangeOf(y, x, map_height, map_width));
-        }
-        sources_.push_back({static_cast<uint32_t>(y * map_width + x), weight});
-      }
-      end_pair(&pair);
-    }
-    for (const NearSample& s : samples.near) {
-      Real weight = s.weight;
-      if (hidden != nullptr) {
-        const double visible = visibility->grid().VisibleAlong(hidden, n, s.wi);
-        const int patch =
-            visible < 1.0 && !seen.empty() ? patches->Along(seen, s.wi) : -1;
-        if (patch >= 0) add_patch(s, patch, weight * (1 - Real(visible)));
-        weight *= visible;
-        if (weight <= 0) continue;
-      }
-      Pair pair = begin_pair(s, weight);
-      double row = 0.0, column = 0.0;
-      FastMapPosition(s.wi, map_height, map_width, &row, &column);
-      const double y0 = std::floor(row - 0.5), x0 = std::floor(column - 0.5);
-      const Real y = Quantised(row - 0.5 - y0),
-                 x = Quantised(column - 0.5 - x0);
-      const int wrapped = (static_cast<int>(x0) + map_width) % map_width;
-      const int* at =
-          &padded[(static_cast<int>(y0) + 1) * (map_width + 1) + wrapped];
-      for (int k = 0; k < 4; ++k) {
-        const int down = k >> 1, right = k & 1;
-        sources_.push_back(
-            {static_cast<uint32_t>(at[down * (map_width + 1) + right]),
-             (down ? y : 1 - y) * (right ? x : 1 - x)});
-      }
-      end_pair(&pair);
-    }
-    pair_end_.push_back(pairs_.size());
-  }
+  Builder builder(of_patches, map_height, map_width, options, this);
+  for (const ShadingPoint& point : points) builder.AddPoint(point);
 }
 
 std::vector<Real> ReferenceTransport::Gather(

@@ -37,6 +37,7 @@ class ReferenceTransport {
   ReferenceTransport(const std::vector<ShadingPoint>& points, bool of_patches,
                      int map_height, int map_width,
                      const TransportOptions& options);
+  class Builder;  // appends points' pairs
   struct Source {
     uint32_t texel;  // or texels + patch
     Real weight;

@@ -19,6 +19,7 @@ void StudyLobes(const NeuralBrdfModel& model, const StudyOptions& options,
                 ErrorTable* table);
 void StudyTransport(const StudyOptions& options, ErrorTable* table);
 void StudyHarmonics(const StudyOptions& options, ErrorTable* table);
+void StudyGaussians(const StudyOptions& options, ErrorTable* table);
 void StudyUnet(const StudyOptions& options, ErrorTable* table);
 void StudyCosts(const StudyOptions& options, ErrorTable* table);
 void StudyBaselines(const StudyOptions& options, ErrorTable* table);

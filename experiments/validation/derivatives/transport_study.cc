@@ -49,86 +49,124 @@ PointGradients GradientsOf(const Transport& transport,
   return by;
 }
 
+// The same by the reference.
+struct ExactGradients {
+  std::vector<Real> map;   // [texels, 3]
+  std::vector<Real> grid;  // [3, nodes]
+};
+
+// light [texels][3].
+ExactGradients ExactGradientsOf(const ReferenceTransport& reference,
+                                const std::vector<Real>& light,
+                                const BrdfGrid& grid, int point) {
+  const size_t nodes = reference.num_nodes(), texels = reference.num_texels();
+  const std::vector<Real> gathered = reference.Gather(point, light);
+  ExactGradients by{std::vector<Real>(3 * texels),
+                    std::vector<Real>(3 * nodes)};
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
+    const std::vector<Real> row = reference.MapRow(point, field);
+    for (size_t t = 0; t < texels; ++t) by.map[3 * t + c] = row[t];
+    for (size_t n = 0; n < nodes; ++n) {
+      by.grid[c * nodes + n] = gathered[3 * n + c];
+    }
+  }
+  return by;
+}
+
+void AddRadiance(const std::string& kind, const std::string& where,
+                 const PointGradients& by, const ExactGradients& exact,
+                 ErrorTable* table) {
+  table->Add("transport: radiance by map", kind, where, ToDoubles(by.map),
+             exact.map);
+  table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by.grid),
+             exact.grid);
+}
+
+// A point's row of the light matrix [points][texels] of the BRDF's first
+// channel, and the derivative of its radiance by that channel.
+void AddLightMatrix(const std::string& kind, const std::string& where,
+                    const Transport& transport,
+                    const std::vector<float>& matrix, const Image& map,
+                    size_t point, const ExactGradients& exact,
+                    ErrorTable* table) {
+  const size_t texels = map.num_pixels(), nodes = exact.grid.size() / 3;
+  const size_t first = point * texels;
+  std::vector<Real> row(texels);
+  std::vector<float> adjoint(matrix.size(), 0.0f), by_field(nodes);
+  for (size_t t = 0; t < texels; ++t) {
+    row[t] = exact.map[3 * t];
+    adjoint[first + t] = map.rgb[3 * t];
+  }
+  table->Add("transport: light matrix", kind, where,
+             {matrix.begin() + first, matrix.begin() + first + texels}, row);
+  transport.LightMatrixGradient(adjoint.data(), by_field.data());
+  table->Add("transport: light matrix by BRDF", kind, where,
+             ToDoubles(by_field),
+             {exact.grid.begin(), exact.grid.begin() + nodes});
+}
+
+// A point's radiance [3, 3] of the BRDF's channels as fields under each channel
+// of the light, by RenderLobes and by the stored operator. Entry by entry:
+// radiance of signed fields cancels.
+void AddFields(const std::string& kind, const std::string& where,
+               const BrdfGrid& grid, const float* lobes, const float* stored,
+               const ExactGradients& exact, ErrorTable* table) {
+  const size_t nodes = exact.grid.size() / 3;
+  std::vector<Real> L_o(9, 0);
+  Real size = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float* const field = grid.Channel(k);
+    for (int c = 0; c < 3; ++c) {
+      Real magnitude = 0;
+      for (size_t n = 0; n < nodes; ++n) {
+        const Real term = field[n] * exact.grid[c * nodes + n];
+        L_o[3 * k + c] += term;
+        magnitude += std::abs(term);
+      }
+      size = std::max(size, magnitude);
+    }
+  }
+  // Relative to the sum of magnitudes: 1 + the error, of 1.
+  for (int k = 0; k < 9 && size > 0; ++k) {
+    const auto add = [&](const std::string& name, double value) {
+      table->Add(name, kind, where,
+                 {static_cast<double>(1 + (value - L_o[k]) / size)}, {1});
+    };
+    add("transport: radiance of fields / sum of magnitudes", lobes[k]);
+    add("transport: the same by the stored operator", stored[k]);
+  }
+}
+
 void AddScene(const std::string& kind, const std::vector<ShadingPoint>& points,
               const Image& map, const BrdfGrid& grid,
               const TransportOptions& options, ErrorTable* table) {
   const Transport transport(points, map.height, map.width, options);
   const ReferenceTransport reference(points, map.height, map.width, options);
-  const size_t nodes = reference.num_nodes(), texels = reference.num_texels();
   const std::vector<Real> light(map.rgb.begin(), map.rgb.end());
   const LightOperator by_light = transport.ByLight(grid);
-  const ReflectanceOperator stored = transport.ByReflectance(map.rgb.data());
   const float* const fields[] = {grid.Channel(0), grid.Channel(1),
                                  grid.Channel(2)};
-  std::vector<float> lobes(points.size() * 9), lobes_stored(lobes.size());
+  std::vector<float> lobes(points.size() * 9), stored(lobes.size()), matrix;
   transport.RenderLobes(fields, 3, map.rgb.data(), lobes.data());
-  stored.Apply(fields, 3, lobes_stored.data());
-  const bool small =
-      FarBlockSize(map.height, map.width, options.quadrature.far_width) == 1;
-  std::vector<float> matrix(small ? points.size() * texels : 0);
-  if (small) transport.LightMatrix(grid.Channel(0), matrix.data());
-
+  transport.ByReflectance(map.rgb.data()).Apply(fields, 3, stored.data());
+  // There is a light matrix where the map is not taken in blocks.
+  if (FarBlockSize(map.height, map.width, options.quadrature.far_width) == 1) {
+    matrix.resize(points.size() * map.num_pixels());
+    transport.LightMatrix(grid.Channel(0), matrix.data());
+  }
   for (size_t i = 0; i < points.size(); ++i) {
-    const int point = static_cast<int>(i);
     const std::string where = "point " + std::to_string(i) +
                               ", cosine of view " +
                               Coordinates({points[i].normal.dot(points[i].wo)});
-    const std::vector<Real> gathered = reference.Gather(point, light);
-    const PointGradients by = GradientsOf(transport, by_light, grid, map, i);
-    std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
-    for (int c = 0; c < 3; ++c) {
-      const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
-      const std::vector<Real> row = reference.MapRow(point, field);
-      for (size_t t = 0; t < texels; ++t) map_row[3 * t + c] = row[t];
-      for (size_t n = 0; n < nodes; ++n) {
-        grid_row[c * nodes + n] = gathered[3 * n + c];
-      }
-      if (c == 0 && small) {
-        table->Add(
-            "transport: light matrix", kind, where,
-            {matrix.begin() + i * texels, matrix.begin() + (i + 1) * texels},
-            row);
-        std::vector<float> m(points.size() * texels, 0.0f), by_field(nodes);
-        for (size_t t = 0; t < texels; ++t) {
-          m[i * texels + t] = map.rgb[3 * t];
-        }
-        transport.LightMatrixGradient(m.data(), by_field.data());
-        std::vector<Real> expected(nodes);
-        for (size_t n = 0; n < nodes; ++n) expected[n] = gathered[3 * n];
-        table->Add("transport: light matrix by BRDF", kind, where,
-                   ToDoubles(by_field), expected);
-      }
+    const ExactGradients exact =
+        ExactGradientsOf(reference, light, grid, static_cast<int>(i));
+    if (!matrix.empty()) {
+      AddLightMatrix(kind, where, transport, matrix, map, i, exact, table);
     }
-    table->Add("transport: radiance by map", kind, where, ToDoubles(by.map),
-               map_row);
-    table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by.grid),
-               grid_row);
-    // Entry by entry: radiance of signed fields cancels.
-    std::vector<Real> exact(9, 0);
-    std::vector<double> found(9), found_stored(9);
-    Real size = 0;
-    for (int k = 0; k < 3; ++k) {
-      for (int c = 0; c < 3; ++c) {
-        Real magnitude = 0;
-        for (size_t n = 0; n < nodes; ++n) {
-          const Real term = fields[k][n] * gathered[3 * n + c];
-          exact[3 * k + c] += term;
-          magnitude += std::abs(term);
-        }
-        size = std::max(size, magnitude);
-        found[3 * k + c] = lobes[9 * i + 3 * k + c];
-        found_stored[3 * k + c] = lobes_stored[9 * i + 3 * k + c];
-      }
-    }
-    // Relative to the sum of magnitudes: 1 + the error, of 1.
-    for (int k = 0; k < 9 && size > 0; ++k) {
-      const auto add = [&](const std::string& name, double value) {
-        table->Add(name, kind, where,
-                   {static_cast<double>(1 + (value - exact[k]) / size)}, {1});
-      };
-      add("transport: radiance of fields / sum of magnitudes", found[k]);
-      add("transport: the same by the stored operator", found_stored[k]);
-    }
+    AddRadiance(kind, where, GradientsOf(transport, by_light, grid, map, i),
+                exact, table);
+    AddFields(kind, where, grid, &lobes[9 * i], &stored[9 * i], exact, table);
   }
 }
 
@@ -151,20 +189,18 @@ void AddBounces(const std::string& kind,
   for (size_t k = 0; k < few; ++k) {
     const size_t i = seeing[k * seeing.size() / few];
     const std::string where = "point " + std::to_string(i);
-    const PointGradients by = GradientsOf(transport, by_light, grid, map, i);
-    std::vector<Real> map_row(3 * texels), grid_row(3 * nodes);
+    ExactGradients exact{std::vector<Real>(3 * texels),
+                         std::vector<Real>(3 * nodes)};
     for (int c = 0; c < 3; ++c) {
       const std::vector<Real> field(grid.Channel(c), grid.Channel(c) + nodes);
       const ReferenceBounces::Rows rows =
           reference.Derivatives(static_cast<int>(i), c, light, field);
-      for (size_t t = 0; t < texels; ++t) map_row[3 * t + c] = rows.by_map[t];
+      for (size_t t = 0; t < texels; ++t) exact.map[3 * t + c] = rows.by_map[t];
       std::copy(rows.by_grid.begin(), rows.by_grid.end(),
-                grid_row.begin() + c * nodes);
+                exact.grid.begin() + c * nodes);
     }
-    table->Add("transport: radiance by map", kind, where, ToDoubles(by.map),
-               map_row);
-    table->Add("transport: radiance by BRDF", kind, where, ToDoubles(by.grid),
-               grid_row);
+    AddRadiance(kind, where, GradientsOf(transport, by_light, grid, map, i),
+                exact, table);
   }
 }
 
@@ -183,31 +219,14 @@ void AddAdjoints(const std::string& kind,
     for (float& v : tangent) v = static_cast<float>(normal(*rng));
     light.Apply(tangent.data(), L_o.data());
     light.ApplyTranspose(a.data(), by_map.data());
-    Real left = 0, right = 0, size = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-      left += Real(a[i]) * L_o[i];
-      size += std::abs(Real(a[i]) * L_o[i]);
-    }
-    for (size_t t = 0; t < tangent.size(); ++t) {
-      right += Real(by_map[t]) * tangent[t];
-    }
-    table->Add("transport: adjoint identity by map", kind,
-               "trial " + std::to_string(trial),
-               {static_cast<double>(1 + (left - right) / size)}, {1});
+    const std::string where = "trial " + std::to_string(trial);
+    AddAdjointIdentity("transport: adjoint identity by map", kind, where, a,
+                       L_o, tangent, by_map, table);
     transport.Render(grid, map.rgb.data(), L_o.data());
     std::vector<float> by_grid(grid.values.size());
     transport.GridGradient(grid, map.rgb.data(), a.data(), by_grid.data());
-    left = right = size = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-      left += Real(a[i]) * L_o[i];
-      size += std::abs(Real(a[i]) * L_o[i]);
-    }
-    for (size_t n = 0; n < by_grid.size(); ++n) {
-      right += Real(by_grid[n]) * grid.values[n];
-    }
-    table->Add("transport: adjoint identity by BRDF", kind,
-               "trial " + std::to_string(trial),
-               {static_cast<double>(1 + (left - right) / size)}, {1});
+    AddAdjointIdentity("transport: adjoint identity by BRDF", kind, where, a,
+                       L_o, grid.values, by_grid, table);
   }
 }
 

@@ -3,5 +3,6 @@
 namespace ibrdf {
 
 inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kDegree = kPi / 180.0;  // radians
 
 }  // namespace ibrdf

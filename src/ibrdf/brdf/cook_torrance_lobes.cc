@@ -13,7 +13,7 @@ namespace {
 // exp(it) is 0: no diffuse part.
 constexpr double kLogZero = -1000.0;
 // A shape beyond it, 1/sr, is no reflectance: products with it stay floats.
-constexpr double kLargest = 1e30;
+constexpr double kLargestLobe = 1e30;
 // The lobes by name.
 constexpr int kDiffuse = 0, kSpecular = 1;
 
@@ -49,10 +49,10 @@ void CookTorranceLobes::Tabulate(const double* parameters, bool derivatives,
       Eigen::Vector4d gradient;
       const double value = EvaluateCookTorrance(
           at, a[0], a[1], a[2], derivatives ? &gradient : nullptr);
-      lobe[i] = static_cast<float>(std::min(value, kLargest));
+      lobe[i] = static_cast<float>(std::min(value, kLargestLobe));
       for (int d = 1; d < stride; ++d) {
         lobe[d * nodes + i] =
-            value < kLargest ? static_cast<float>(gradient[1 + d]) : 0.0f;
+            value < kLargestLobe ? static_cast<float>(gradient[1 + d]) : 0.0f;
       }
     }
   });

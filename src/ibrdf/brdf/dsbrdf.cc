@@ -8,7 +8,7 @@
 namespace ibrdf {
 namespace {
 // Cosines below it count as it.
-constexpr double kMinCosine = 1e-6;
+constexpr double kMinHalfCosine = 1e-6;
 // Exponents and logarithms above it count as it, with no slope: f stays finite.
 constexpr double kMaxExponent = 60.0;
 }  // namespace
@@ -38,7 +38,7 @@ SplineBasis::SplineBasis(int num_coefficients, double theta) {
 
 DsbrdfGeometry::DsbrdfGeometry(const DsbrdfShape& shape, double theta_h,
                                double theta_d)
-    : log_cos_h(std::log(std::max(std::cos(theta_h), kMinCosine))),
+    : log_cos_h(std::log(std::max(std::cos(theta_h), kMinHalfCosine))),
       basis(shape.coefficients, theta_d) {}
 
 double EvaluateDsbrdf(const DsbrdfShape& shape, const double* parameters,

@@ -12,9 +12,6 @@ namespace ibrdf {
 namespace {
 
 constexpr int kP = kCouplingBlock;
-// The start's last layer, relative to He scaling: near the identity, yet with
-// enough signal for the hidden layers' first gradients.
-constexpr float kLastLayerScale = 0.1f;
 
 // Copies points [begin, begin + n) of a [rows][count] array into [rows][64],
 // repeating the last one to fill the block.
@@ -35,7 +32,7 @@ void Scatter(const float* from, int rows, int64_t count, int64_t begin, int n,
   }
 }
 
-int64_t NumBlocks(int64_t count) { return (count + kP - 1) / kP; }
+int64_t NumPointBlocks(int64_t count) { return (count + kP - 1) / kP; }
 
 }  // namespace
 
@@ -137,27 +134,28 @@ void CouplingFlow::LogDensity(const float* x, int64_t count, const float* code,
     std::vector<float> tape, scratch, dcode;
   };
   std::vector<Worker> workers(num_threads);
-  ParallelFor(NumBlocks(count), num_threads, [&](int64_t block, int worker) {
-    Worker& w = workers[worker];
-    w.tape.resize(CouplingTapeFloats(v));
-    const int64_t begin = block * kP;
-    const int n = static_cast<int>(std::min<int64_t>(kP, count - begin));
-    float points[3 * kP], u[3 * kP], value[kP], gx[3 * kP], ones[kP];
-    Gather(x, 3, count, begin, n, points);
-    kernels_->forward(v, points, w.tape.data(), u, value);
-    Scatter(value, 1, count, begin, n, log_density);
-    if (dcode == nullptr && dx == nullptr) return;
-    w.scratch.resize(CouplingScratchFloats(v.rows));
-    w.dcode.resize(static_cast<size_t>(v.code_size) * kP);
-    std::fill(ones, ones + kP, 1.0f);
-    kernels_->backward(v, w.tape.data(), ones, w.scratch.data(), nullptr,
-                       nullptr, dcode != nullptr ? w.dcode.data() : nullptr,
-                       dx != nullptr ? gx : nullptr);
-    if (dcode != nullptr) {
-      Scatter(w.dcode.data(), v.code_size, count, begin, n, dcode);
-    }
-    if (dx != nullptr) Scatter(gx, 3, count, begin, n, dx);
-  });
+  ParallelFor(
+      NumPointBlocks(count), num_threads, [&](int64_t block, int worker) {
+        Worker& w = workers[worker];
+        w.tape.resize(CouplingTapeFloats(v));
+        const int64_t begin = block * kP;
+        const int n = static_cast<int>(std::min<int64_t>(kP, count - begin));
+        float points[3 * kP], u[3 * kP], value[kP], gx[3 * kP], ones[kP];
+        Gather(x, 3, count, begin, n, points);
+        kernels_->forward(v, points, w.tape.data(), u, value);
+        Scatter(value, 1, count, begin, n, log_density);
+        if (dcode == nullptr && dx == nullptr) return;
+        w.scratch.resize(CouplingScratchFloats(v.rows));
+        w.dcode.resize(static_cast<size_t>(v.code_size) * kP);
+        std::fill(ones, ones + kP, 1.0f);
+        kernels_->backward(v, w.tape.data(), ones, w.scratch.data(), nullptr,
+                           nullptr, dcode != nullptr ? w.dcode.data() : nullptr,
+                           dx != nullptr ? gx : nullptr);
+        if (dcode != nullptr) {
+          Scatter(w.dcode.data(), v.code_size, count, begin, n, dcode);
+        }
+        if (dx != nullptr) Scatter(gx, 3, count, begin, n, dx);
+      });
 }
 
 void CouplingFlow::LogDensityOnColumns(const FlowColumns& x, const float* code,
@@ -180,7 +178,7 @@ void CouplingFlow::Latent(const double* x, int64_t count, const float* code,
   const std::vector<float> bias = FirstBias(code);
   const CouplingView v = View(bias.data());
   const std::vector<float> from(x, x + 3 * count);
-  ParallelFor(NumBlocks(count), num_threads, [&](int64_t block, int) {
+  ParallelFor(NumPointBlocks(count), num_threads, [&](int64_t block, int) {
     std::vector<float> tape(CouplingTapeFloats(v));
     const int64_t begin = block * kP;
     const int n = static_cast<int>(std::min<int64_t>(kP, count - begin));
@@ -197,7 +195,7 @@ void CouplingFlow::Inverse(const double* latent, int64_t count,
   const std::vector<float> bias = FirstBias(code);
   const CouplingView v = View(bias.data());
   const std::vector<float> from(latent, latent + 3 * count);
-  ParallelFor(NumBlocks(count), num_threads, [&](int64_t block, int) {
+  ParallelFor(NumPointBlocks(count), num_threads, [&](int64_t block, int) {
     std::vector<float> scratch(static_cast<size_t>(v.rows) * kP);
     const int64_t begin = block * kP;
     const int n = static_cast<int>(std::min<int64_t>(kP, count - begin));

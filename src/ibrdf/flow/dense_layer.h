@@ -18,6 +18,10 @@ struct DenseLayer {
   size_t padded_offset = 0;
 };
 
+// The start's last layer, relative to He scaling: near the identity, yet with
+// enough signal for the hidden layers' first gradients.
+inline constexpr float kLastLayerScale = 0.1f;
+
 // Whole vectors of any instruction set.
 inline int PaddedCount(int n) { return (n + 31) / 32 * 32; }
 

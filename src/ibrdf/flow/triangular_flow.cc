@@ -13,11 +13,8 @@ namespace ibrdf {
 namespace {
 
 constexpr int kB = kColumnBlock;
-// The start's last layers, relative to He scaling: near the identity, yet with
-// enough signal for the hidden layers' first gradients.
-constexpr float kLastLayerScale = 0.1f;
 
-int64_t NumBlocks(int64_t count) { return (count + kB - 1) / kB; }
+int64_t NumColumnBlocks(int64_t count) { return (count + kB - 1) / kB; }
 
 // [begin, begin + n) of an array into a block, the last one repeated.
 template <typename T>
@@ -188,30 +185,31 @@ void TriangularFlow::LogDensity(const float* x, int64_t count,
   const CodeViews views = Views(code);
   if (num_threads <= 0) num_threads = HardwareThreads();
   std::vector<Block> blocks(num_threads, Block(conditioners_));
-  ParallelFor(NumBlocks(count), num_threads, [&](int64_t index, int worker) {
-    Block& b = blocks[worker];
-    const int64_t begin = index * kB;
-    const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
-    const PointBlock at(x, count, begin, n, &b);
-    float value[kB] = {};
-    for (int dim = 2; dim >= 0; --dim) {
-      float* rows = b.rows[dim].data();
-      kernels_->condition(views.view[dim], rows);
-      kernels_->evaluate(views.view[dim], rows, at.points[dim], 1, value,
-                         value);
-    }
-    std::copy(value, value + n, log_density + begin);
-    if (dcode == nullptr && dx == nullptr) return;
-    float gx[3][kB] = {};
-    BlockGradient(views, at, &b, gx);
-    for (int i = 0; i < 3 && dx != nullptr; ++i) {
-      std::copy(gx[i], gx[i] + n, dx + i * count + begin);
-    }
-    for (int k = 0; k < shape_.code_size && dcode != nullptr; ++k) {
-      std::copy(b.dcode.data() + k * kB, b.dcode.data() + k * kB + n,
-                dcode + k * count + begin);
-    }
-  });
+  ParallelFor(
+      NumColumnBlocks(count), num_threads, [&](int64_t index, int worker) {
+        Block& b = blocks[worker];
+        const int64_t begin = index * kB;
+        const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
+        const PointBlock at(x, count, begin, n, &b);
+        float value[kB] = {};
+        for (int dim = 2; dim >= 0; --dim) {
+          float* rows = b.rows[dim].data();
+          kernels_->condition(views.view[dim], rows);
+          kernels_->evaluate(views.view[dim], rows, at.points[dim], 1, value,
+                             value);
+        }
+        std::copy(value, value + n, log_density + begin);
+        if (dcode == nullptr && dx == nullptr) return;
+        float gx[3][kB] = {};
+        BlockGradient(views, at, &b, gx);
+        for (int i = 0; i < 3 && dx != nullptr; ++i) {
+          std::copy(gx[i], gx[i] + n, dx + i * count + begin);
+        }
+        for (int k = 0; k < shape_.code_size && dcode != nullptr; ++k) {
+          std::copy(b.dcode.data() + k * kB, b.dcode.data() + k * kB + n,
+                    dcode + k * count + begin);
+        }
+      });
 }
 
 void TriangularFlow::BlockGradient(const CodeViews& views, const PointBlock& at,
@@ -257,7 +255,7 @@ void TriangularFlow::LogDensityOnColumns(const FlowColumns& x,
   if (num_threads <= 0) num_threads = HardwareThreads();
   std::vector<Block> blocks(num_threads, Block(conditioners_));
   const ColumnPass pass = PrepareColumns(views, dcode != nullptr, &blocks[0]);
-  ParallelFor(NumBlocks(x.columns), num_threads,
+  ParallelFor(NumColumnBlocks(x.columns), num_threads,
               [&](int64_t index, int worker) {
                 Block& b = blocks[worker];
                 const int64_t begin = index * kB;
@@ -355,44 +353,45 @@ void TriangularFlow::Transform(const double* from, int64_t count,
   const CodeViews views = Views(code);
   if (num_threads <= 0) num_threads = HardwareThreads();
   std::vector<Block> blocks(num_threads, Block(conditioners_));
-  ParallelFor(NumBlocks(count), num_threads, [&](int64_t index, int worker) {
-    Block& b = blocks[worker];
-    const int64_t begin = index * kB;
-    const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
-    // The coordinates of x, which the conditioners read: x_p first.
-    const double* x = kForward ? from : to;
-    float features[kColumnFeatures * kB] = {};
-    for (int dim = 2; dim >= 0; --dim) {
-      for (int i = 0; i < n && dim < 2; ++i) {
-        // x_d's conditioner sees no feature that depends on x_d. Rounded to
-        // float first: a coordinate that comes back a double's rounding away
-        // then makes the same features, and the way back is exact.
-        const double x_d =
-            dim == 0 ? static_cast<float>(x[count + begin + i]) : 0.0;
-        const double x_p = static_cast<float>(x[2 * count + begin + i]);
-        double f[kColumnFeatures];
-        ColumnFeatures<double>(x_d, x_p, f, nullptr, nullptr);
-        for (int k = 0; k < kColumnFeatures; ++k) {
-          features[k * kB + i] = static_cast<float>(f[k]);
+  ParallelFor(
+      NumColumnBlocks(count), num_threads, [&](int64_t index, int worker) {
+        Block& b = blocks[worker];
+        const int64_t begin = index * kB;
+        const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
+        // The coordinates of x, which the conditioners read: x_p first.
+        const double* x = kForward ? from : to;
+        float features[kColumnFeatures * kB] = {};
+        for (int dim = 2; dim >= 0; --dim) {
+          for (int i = 0; i < n && dim < 2; ++i) {
+            // x_d's conditioner sees no feature that depends on x_d. Rounded to
+            // float first: a coordinate that comes back a double's rounding
+            // away then makes the same features, and the way back is exact.
+            const double x_d =
+                dim == 0 ? static_cast<float>(x[count + begin + i]) : 0.0;
+            const double x_p = static_cast<float>(x[2 * count + begin + i]);
+            double f[kColumnFeatures];
+            ColumnFeatures<double>(x_d, x_p, f, nullptr, nullptr);
+            for (int k = 0; k < kColumnFeatures; ++k) {
+              features[k * kB + i] = static_cast<float>(f[k]);
+            }
+          }
+          b.SetFeatures(features);
+          const ConditionerView& v = views.view[dim];
+          float* rows = b.rows[dim].data();
+          kernels_->condition(v, rows);
+          std::vector<double> parameters(v.rows - v.output_row);
+          for (int i = 0; i < n; ++i) {
+            for (size_t k = 0; k < parameters.size(); ++k) {
+              parameters[k] = rows[(v.output_row + k) * kB + i];
+            }
+            const LogLinearSpline<double> spline(parameters.data(), v.bins,
+                                                 v.heights == v.bins);
+            const int64_t at = dim * count + begin + i;
+            to[at] = kForward ? spline.Integral(from[at])
+                              : spline.InverseIntegral(from[at]);
+          }
         }
-      }
-      b.SetFeatures(features);
-      const ConditionerView& v = views.view[dim];
-      float* rows = b.rows[dim].data();
-      kernels_->condition(v, rows);
-      std::vector<double> parameters(v.rows - v.output_row);
-      for (int i = 0; i < n; ++i) {
-        for (size_t k = 0; k < parameters.size(); ++k) {
-          parameters[k] = rows[(v.output_row + k) * kB + i];
-        }
-        const LogLinearSpline<double> spline(parameters.data(), v.bins,
-                                             v.heights == v.bins);
-        const int64_t at = dim * count + begin + i;
-        to[at] = kForward ? spline.Integral(from[at])
-                          : spline.InverseIntegral(from[at]);
-      }
-    }
-  });
+      });
 }
 
 void TriangularFlow::Latent(const double* x, int64_t count, const float* code,
@@ -415,7 +414,7 @@ class TriangularFlow::Pass final : public BrdfFlow::TrainingPass {
     CHECK_EQ(0, x.columns % (num_codes * flow_.TrainingColumns()));
     x_ = &x;
     columns_per_code_ = x.columns / num_codes;
-    blocks_.resize(NumBlocks(x.columns), PassBlock(flow_));
+    blocks_.resize(NumColumnBlocks(x.columns), PassBlock(flow_));
     for (size_t index = 0; index < blocks_.size(); ++index) {
       PassBlock& b = blocks_[index];
       const int64_t begin = static_cast<int64_t>(index) * kB;

@@ -38,6 +38,8 @@ struct Mask {
       : width(w), height(h), inside(static_cast<size_t>(w) * h, value) {}
 
   bool empty() const { return inside.empty(); }
+  // An empty mask holds every pixel.
+  bool Holds(size_t pixel) const { return empty() || inside[pixel] != 0; }
   size_t CountInside() const {
     size_t n = 0;
     for (const uint8_t v : inside) n += v != 0;

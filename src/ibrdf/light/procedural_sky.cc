@@ -11,7 +11,6 @@
 
 namespace ibrdf {
 namespace {
-constexpr double kDegree = kPi / 180.0;
 
 // Beyond so many radii the sun's profile exp(-x^4) is below 1e-7.
 constexpr double kSunReach = 2.0;

@@ -12,8 +12,6 @@
 namespace ibrdf {
 namespace {
 
-constexpr double kRelativeFloor = 1e-6;
-
 // Solid angle of a texel of the row but for a factor common to all rows.
 double RowWeight(int row, int height) {
   return std::cos(kPi * row / height) - std::cos(kPi * (row + 1) / height);

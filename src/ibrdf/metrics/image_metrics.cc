@@ -12,7 +12,6 @@
 namespace ibrdf {
 namespace {
 
-constexpr double kRelativeFloor = 1e-6;
 constexpr int kWindowRadius = 5;
 constexpr double kWindowSigma = 1.5;
 

@@ -7,6 +7,9 @@
 
 namespace ibrdf {
 
+// The floor of maps and images, over the largest value of the reference.
+inline constexpr double kRelativeFloor = 1e-6;
+
 // log(max(estimate, 0) + floor) - log(max(reference, 0) + floor), natural.
 inline double LogDifference(double estimate, double reference, double floor) {
   return std::log(std::fmax(estimate, 0.0) + floor) -

@@ -14,7 +14,6 @@
 
 namespace ibrdf {
 namespace {
-constexpr double kDegree = kPi / 180.0;
 
 // Steps of the view angle and fineness of the rings for the share of the cosine
 // integral that belongs to near: 0.01 % of pi at any view angle.
