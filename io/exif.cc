@@ -53,9 +53,9 @@ class ExifReader {
 
   // depth: tables within tables, so that a loop ends.
   void ReadTable(size_t at, int depth) {
-    constexpr int kMaxDepth = 3;
+    constexpr int kMaxTableDepth = 3;
     uint32_t count = 0;
-    if (depth == kMaxDepth || !Get(at, 2, &count)) {
+    if (depth == kMaxTableDepth || !Get(at, 2, &count)) {
       tags_.damaged = true;
       return;
     }
