@@ -29,7 +29,8 @@ Status Flush(const std::string& path) {
   return OkStatus();
 }
 
-// Of this machine: process numbers of others in a shared folder mean nothing.
+// The prefix names this machine: process numbers of others in a shared folder
+// mean nothing.
 std::string TemporaryPrefix() {
   char host[256] = {};
   ::gethostname(host, sizeof(host) - 1);

@@ -88,9 +88,8 @@ Status DecodeError(const std::string& path, const ReadState& state) {
       path, std::string("expected a PNG image (") + state.message + ")");
 }
 
-StatusOr<Mask> DecodeUnlessTooLarge(const std::string& path,
-                                    const std::string& bytes,
-                                    const ImageLimits& limits) {
+StatusOr<Mask> DecodeOrThrow(const std::string& path, const std::string& bytes,
+                             const ImageLimits& limits) {
   ReadState state(bytes);
   if (!ReadHeader(&state)) return DecodeError(path, state);
   IBRDF_RETURN_IF_ERROR(
@@ -135,7 +134,7 @@ StatusOr<Mask> ReadMask(const std::string& path) {
 StatusOr<Mask> DecodeMask(const std::string& path, const std::string& bytes,
                           const ImageLimits& limits) {
   try {
-    return DecodeUnlessTooLarge(path, bytes, limits);
+    return DecodeOrThrow(path, bytes, limits);
   } catch (const std::bad_alloc&) {
     return InvalidInput(path, "expected an image that fits into memory");
   }

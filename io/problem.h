@@ -51,8 +51,8 @@ enum class IlluminationPrior { kAuto, kProcess, kUNet, kNone };
 inline constexpr int kMaxProcessSide = 256;
 
 struct IlluminationSpec {
-  // Of the estimate, of the map that a sky is made into, or of what a known map
-  // is resampled to.
+  // The size of the estimate, of the map that a sky is made into, or of what a
+  // known map is resampled to.
   int width = 128;
   int height = 64;
   bool sized = false;  // they were asked for
@@ -158,7 +158,7 @@ struct Problem {
   EffectsSpec effects;
   SolverSpec solver;
   TruthSpec truth;
-  // Of ibrdf_render.
+  // For ibrdf_render alone.
   RenderQuality quality = RenderQuality::kReference;
   double noise = 0.0;  // standard deviation of the log-normal noise, >= 0
 };

@@ -242,17 +242,18 @@ void ReadTruth(ProblemReader reader, TruthSpec* truth) {
   reader.Read("illumination", &truth->illumination);
 }
 
-// The first error is the context's.
 // What `auto` stands for.
 void SettlePrior(const SolverSpec& solver, IlluminationSpec* illumination) {
   if (illumination->prior != IlluminationPrior::kAuto) return;
   const bool large =
       std::max(illumination->width, illumination->height) > kMaxProcessSide;
-  illumination->prior = large || solver.estimator == SolverEstimator::kMaximum
+  const bool network = large || solver.estimator == SolverEstimator::kMaximum;
+  illumination->prior = network && !illumination->known()
                             ? IlluminationPrior::kUNet
                             : IlluminationPrior::kProcess;
 }
 
+// The first error is the context's.
 void ReadKeys(ProblemReader root, Problem* problem) {
   for (const char* key : {"image", "geometry"}) {
     if (!root.Has(key)) root.Fail(key, "expected, found nothing");

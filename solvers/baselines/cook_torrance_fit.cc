@@ -10,21 +10,17 @@
 #include <utility>
 
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/metrics/log_difference.h"
 #include "ibrdf/solvers/baselines/cook_torrance_cost.h"
+#include "ibrdf/solvers/baselines/table_cost.h"
 
 namespace ibrdf {
 namespace {
 
-// The floor inside the logarithms, over the largest pixel.
-constexpr double kRelativeFloor = 1e-6;
-
 // Box of starts and results. Beyond it a parameter no longer changes an image.
-struct Bounds {
-  double lower, upper;
-};
-constexpr Bounds kLogColourBounds = {-16.0, 8.0};
-constexpr Bounds kLogRoughness = {-5.5, 0.7};  // 0.004 to 2
-constexpr Bounds kLogitF0 = {-7.0, 7.0};
+constexpr ParameterBounds kLogColourBounds = {-16.0, 8.0};
+constexpr ParameterBounds kLogRoughness = {-5.5, 0.7};  // 0.004 to 2
+constexpr ParameterBounds kLogitF0 = {-7.0, 7.0};
 
 // A pull on every parameter to where it started, natural log: too weak to show
 // in the misfit, it holds what the image does not tell. Bounds instead cost
@@ -33,7 +29,7 @@ constexpr double kPullScale = 30.0;
 // Iterations of a fit of the colours alone, which takes no renders.
 constexpr int kColourIterations = 40;
 
-Bounds BoundsOf(int parameter) {
+ParameterBounds BoundsOf(int parameter) {
   if (parameter < 6) return kLogColourBounds;
   return parameter == 6 ? kLogRoughness : kLogitF0;
 }

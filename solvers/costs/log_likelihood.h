@@ -23,9 +23,9 @@ Observations MakeObservations(const std::vector<double>& radiance);
 struct LikelihoodDerivatives {
   std::vector<double> residual;
   std::vector<double> d_residual;  // d residual / dL_o
-  // Of the iteratively reweighted squares that touch the likelihood at L_o with
-  // its slope: sum weight_i dL_o_i^2 / 2 has the curvature of a Gauss-Newton
-  // step.
+  // Weights of the iteratively reweighted squares that touch the likelihood at
+  // L_o with its slope: sum weight_i dL_o_i^2 / 2 has the curvature of a
+  // Gauss-Newton step.
   std::vector<double> weight;
 };
 

@@ -38,7 +38,8 @@ struct Solution {
   // Posterior covariance of those (Laplace, light integrated out), row-major;
   // empty where it was not found.
   std::vector<double> lobe_covariance;
-  // Of that posterior, see reflectance_spread.h; NaN where it was not found.
+  // The spread of that posterior, see reflectance_spread.h; NaN where it was
+  // not found.
   double spread = std::numeric_limits<double>::quiet_NaN();
   std::vector<Alternative> alternatives;  // joint problems
   // Standard deviation of log radiance given the reflectance, at the
@@ -51,8 +52,8 @@ struct Solution {
   double scale = 0.0;  // b used at the end
   double epsilon = 0.0;
   double misfit = 0.0;
-  // Of the start and of this estimate, both with `scale` on all pixels:
-  // end_cost <= start_cost.
+  // The costs of the start and of this estimate, both with `scale` on all
+  // pixels: end_cost <= start_cost.
   double start_cost = 0.0, end_cost = 0.0;
   double seconds = 0.0;  // with those spent before
   int64_t pixels_used = 0;

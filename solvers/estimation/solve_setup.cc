@@ -13,7 +13,8 @@ namespace {
 constexpr double kInitialScale = 0.1;   // tolerant: scale continuation begins
 constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
 
-// Of directions that stand for a bright texel: finer than the narrowest lobes.
+// The spacing of directions that stand for a bright texel: finer than the
+// narrowest lobes.
 constexpr double kBrightSpacing = 0.75 * M_PI / 180.0;
 int BrightSamplesPerSide(int map_height) {
   const double texel = M_PI / map_height;

@@ -157,7 +157,8 @@ void ApproximateRadiance::PredictReflectanceMap(
 
 std::vector<double> ApproximateRadiance::PredictByOrder(
     const Samples& at) const {
-  return HarmonicTransport(at.points, map_.height, map_.width, ProbeOptions())
+  return HarmonicTransport(at.points, map_.height, map_.width,
+                           Harmonics(kProbeOrder, kProbeViews))
       .PredictLogErrors(grid_, map_.rgb.data());
 }
 
@@ -201,7 +202,8 @@ void ApproximateRadiance::Predict(const Samples& at,
   const GaussianLight light(map_, Spread(candidate->size));
   const Image rest = light.Residual(map_.rgb.data());
   std::vector<double> with_rest(at.quadrature.size());
-  HarmonicTransport(at.points, rest.height, rest.width, ProbeOptions())
+  HarmonicTransport(at.points, rest.height, rest.width,
+                    Harmonics(kProbeOrder, kProbeViews))
       .Render(grid_, rest.rgb.data(), with_rest.data());
   for (size_t k = 0; k < with_rest.size(); ++k) {
     with_rest[k] += at.quadrature[k];
@@ -224,13 +226,8 @@ bool ApproximateRadiance::AnyPromising(const Samples& at,
 
 void ApproximateRadiance::SetUp(Candidate* candidate) const {
   if (candidate->approximation == Approximation::kHarmonics) {
-    HarmonicOptions options;
-    options.order = candidate->size;
-    options.grid = grid_.shape;
-    options.view_angles = kHarmonicViews;
-    options.num_threads = num_threads_;
-    candidate->renderer =
-        std::make_shared<HarmonicRadiance>(map_, grid_, options);
+    candidate->renderer = std::make_shared<HarmonicRadiance>(
+        map_, grid_, Harmonics(candidate->size, kHarmonicViews));
     return;
   }
   GaussianOptions options;
@@ -244,6 +241,7 @@ void ApproximateRadiance::SetUp(Candidate* candidate) const {
 
 void ApproximateRadiance::Verify(const Samples& at,
                                  Candidate* candidate) const {
+  if (candidate->renderer != nullptr) return;
   SetUp(candidate);
   std::vector<double> L_o(at.reference.size());
   candidate->renderer->Render(at.points, nullptr, L_o.data());
@@ -259,7 +257,6 @@ const ApproximateRadiance::Candidate* ApproximateRadiance::FirstWithin(
     if (candidate.predicted > allowed || slower) continue;
     Verify(at, &candidate);
     if (candidate.found <= allowed) return &candidate;
-    candidate.renderer = nullptr;
   }
   return nullptr;
 }
@@ -313,11 +310,12 @@ void ApproximateRadiance::Decline(ApproximationVerdict verdict,
           ->predicted;
 }
 
-HarmonicOptions ApproximateRadiance::ProbeOptions() const {
+HarmonicOptions ApproximateRadiance::Harmonics(int order,
+                                               int view_angles) const {
   HarmonicOptions options;
-  options.order = kProbeOrder;
+  options.order = order;
   options.grid = grid_.shape;
-  options.view_angles = kProbeViews;
+  options.view_angles = view_angles;
   options.num_threads = num_threads_;
   return options;
 }

@@ -72,8 +72,8 @@ class ApproximateRadiance {
     int spots = 0;           // of Gaussians
     int gaussians = 0;       // all of them, once it is verified
     double found = 0.0;      // error, once it is verified
-    std::shared_ptr<const RadianceRenderer>
-        renderer;  // while it is not refused
+    // Null until it is verified.
+    std::shared_ptr<const RadianceRenderer> renderer;
   };
   // Points of the image, and their radiance [points, 3].
   struct Samples {
@@ -102,7 +102,7 @@ class ApproximateRadiance {
                     std::vector<Candidate>* table) const;
   // Sets the candidate's renderer up.
   void SetUp(Candidate* candidate) const;
-  // Sets it up and fills `found` in.
+  // Sets it up and fills `found` in, once.
   void Verify(const Samples& at, Candidate* candidate) const;
   // The first that pays and is predicted and found within `allowed`, or null.
   const Candidate* FirstWithin(double allowed, const Samples& at,
@@ -116,7 +116,7 @@ class ApproximateRadiance {
   void Decline(ApproximationVerdict verdict,
                const std::vector<Candidate>& table);
 
-  HarmonicOptions ProbeOptions() const;
+  HarmonicOptions Harmonics(int order, int view_angles) const;
 
   const Image& map_;
   const KnownBrdf& brdf_;

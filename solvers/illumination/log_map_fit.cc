@@ -12,7 +12,8 @@
 namespace ibrdf {
 namespace {
 
-// Of the squared residual of a step's equations, in the prior's metric.
+// What is left of the squared residual of a step's equations, in the prior's
+// metric.
 constexpr double kForcing = 1e-3;
 // So many steps in a row without a gain are the end: far from its fit a network
 // may have one that gains nothing and then halve the cost with the next.
@@ -96,7 +97,7 @@ class LogMapFit {
     }
     return cost;
   }
-  // Of by_map_.
+  // The gradient by the parameters, from by_map_.
   Eigen::VectorXd Vjp() {
     model_->Vjp(by_map_, by_parameter_.data());
     return Eigen::Map<const Eigen::VectorXf>(

@@ -12,7 +12,8 @@
 namespace ibrdf {
 namespace {
 
-// Of a factor's diagonal: rounding of the highest frequencies at the poles.
+// A factor's diagonal gets it, against the rounding of the highest frequencies
+// at the poles.
 constexpr double kJitter = 1e-10;
 
 // Texels: a process of more would take minutes and gigabytes.
@@ -148,7 +149,7 @@ class ProcessIllumination final : public IlluminationModel {
 
   const LightSpectrum spectrum_;
   const Eigen::Matrix3d axes_;
-  // Of grey and of chroma, by frequency; lower triangular.
+  // The factors of grey and of chroma, by frequency; lower triangular.
   std::vector<RowMatrix> factors_[2];
   const std::vector<DirectionalLightTexel> directional_light_texels_;
   double directional_light_std_[2];

@@ -33,9 +33,9 @@ struct JointIteration {
 };
 
 struct JointMethodOptions {
-  // Of Gauss-Newton or the trust region; rounds of kAlternating; L-BFGS takes
-  // max_cg_iterations times as many, as many gradients as Gauss-Newton would
-  // take products. Not of Adam.
+  // Steps of Gauss-Newton or the trust region; rounds of kAlternating; L-BFGS
+  // takes max_cg_iterations times as many, as many gradients as Gauss-Newton
+  // would take products. Not of Adam.
   int max_iterations = 50;
   int max_cg_iterations = 20;
   // Share of the squared preconditioned residual that conjugate gradients stop
@@ -48,7 +48,7 @@ struct JointMethodOptions {
   std::function<bool()> should_stop;  // likewise; may be empty
   std::function<void(const JointIteration&)> callback;  // may be empty
 
-  // Of a round of kAlternating.
+  // Steps of a round of kAlternating.
   int light_iterations = 3;
   int lobe_iterations = 5;
 

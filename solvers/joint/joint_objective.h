@@ -75,7 +75,7 @@ class JointObjective {
   int num_residuals() const {
     return static_cast<int>(terms_.observed->radiance.size());
   }
-  // Of the diagonal Gaussians of the priors: the metric of the free blocks.
+  // That of the priors' diagonal Gaussians: the metric of the free blocks.
   Eigen::VectorXd InverseVariance() const;
   Eigen::VectorXd ToVector(const JointState& state) const;
   // `state` with its free blocks replaced by x.

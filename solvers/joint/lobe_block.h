@@ -18,7 +18,7 @@ class LobeBlock {
             const LobePrior& prior);
 
   int num_parameters() const { return lobes_->num_parameters(); }
-  // Of the Gaussians of codes and colours.
+  // Those of the Gaussians of codes and colours.
   const std::vector<double>& inverse_variance() const {
     return inverse_variance_;
   }

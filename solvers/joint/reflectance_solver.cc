@@ -12,7 +12,8 @@
 namespace ibrdf {
 namespace {
 
-// Of the problem's normal equations, J^T J, at its parameters' values.
+// Logs the conditioning of the problem's normal equations, J^T J, at its
+// parameters' values.
 void LogConditioning(ceres::Problem* problem, double cost) {
   ceres::CRSMatrix jacobian;
   if (!problem->Evaluate({}, nullptr, nullptr, nullptr, &jacobian)) return;

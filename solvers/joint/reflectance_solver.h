@@ -15,11 +15,12 @@ struct ReflectanceStepOptions {
   LobePrior prior;
   // In place of `prior` where it is not null.
   const MaterialPrior* materials = nullptr;
-  // Of the transport and map, where it is at hand; null: made anew.
+  // The operator of the transport and map, where it is at hand; null: made
+  // anew.
   const ReflectanceOperator* stored = nullptr;
   int max_iterations = 10;
   double tolerance = 1e-4;  // relative decrease of the cost to stop at
-  // Of Ceres' trust region. Few parameters: it may start wide.
+  // The first radius of Ceres' trust region. Few parameters: it may start wide.
   double trust_region_radius = 10.0;
   std::function<bool()> should_stop;
 };

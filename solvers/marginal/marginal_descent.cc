@@ -10,7 +10,7 @@
 namespace ibrdf {
 namespace {
 
-// Of the gain that the slope promises, what a step must bring.
+// A step must bring this share of the gain that the slope promises.
 constexpr double kSufficientGain = 1e-3;
 constexpr double kSmallestStep = 1e-3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

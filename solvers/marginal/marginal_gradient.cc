@@ -98,12 +98,11 @@ double MarginalLikelihood::TraceByAmplitude(const Given& given,
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyBandDerivative(
-    const Light& light, int band, const Eigen::VectorXd& g) const {
+    const Light& light, const Eigen::VectorXd& h, const Eigen::VectorXd& g,
+    const RowMatrix& rough) const {
   const Eigen::Index t = num_texels(), n = num_sources();
   const Eigen::Map<const RowMatrix> in(g.data(), 3, n);
-  const Eigen::VectorXd h = BandWeights(band);
-  RowMatrix rough, other;
-  light.rough.Multiply(in.leftCols(t), &rough);
+  RowMatrix other;
   light.rough.Multiply(in.leftCols(t) * h.asDiagonal(), &other);
   Eigen::VectorXd out = Eigen::VectorXd::Zero(g.size());
   Eigen::Map<RowMatrix>(out.data(), 3, n).leftCols(t) =
@@ -116,8 +115,8 @@ void MarginalLikelihood::AddGradient(const Given& given, const LightMode& mode,
                                      const Linearisation& linear,
                                      MarginalGradient* gradient) const {
   DeterminantGradient determinant = GradientOfDeterminant(given, linear);
-  const Eigen::VectorXd w = SolveHessian(given, point, linear, kMotionTolerance,
-                                         determinant.by_l);
+  const Eigen::VectorXd w =
+      SolveHessian(given, point, linear, kMotionTolerance, determinant.by_l);
   const Eigen::VectorXd v = ApplyCovariance(given.light, w);
   GradientByMatrices(given, point, v, ApplyJacobian(linear, v), &determinant,
                      &gradient->matrices);
@@ -131,10 +130,16 @@ void MarginalLikelihood::AddGradient(const Given& given, const LightMode& mode,
       by_hyperparameter(ApplyLocal(given.light, mode.representers) -
                             ApplyHorizon(mode.representers),
                         TraceByAmplitude(given, linear, determinant.inverse));
+  RowMatrix rough;
+  given.light.rough.Multiply(
+      Eigen::Map<const RowMatrix>(mode.representers.data(), 3, num_sources())
+          .leftCols(num_texels()),
+      &rough);
   for (int b = 0; b < LightHyperparameters::kBands; ++b) {
+    const Eigen::VectorXd h = BandWeights(b);
     gradient->hyperparameters[1 + b] = by_hyperparameter(
-        ApplyBandDerivative(given.light, b, mode.representers),
-        2.0 * BandWeights(b).dot(determinant.rough_share));
+        ApplyBandDerivative(given.light, h, mode.representers, rough),
+        2.0 * h.dot(determinant.rough_share));
   }
 }
 

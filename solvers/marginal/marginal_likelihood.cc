@@ -17,14 +17,14 @@ namespace {
 constexpr int kMaxIterations = 60;
 constexpr double kSmallestStepLength = 1e-4;
 constexpr double kLongestStep = 6.0;
-// Of the gain that a step's quadratic model promises, what it must bring.
+// A step must bring this share of the gain that its quadratic model promises.
 constexpr double kPromisedShare = 0.1;
 constexpr double kSmallestRadiance = 1e-200;
 // Conjugate gradients with the Hessian: steps, and the square of the error,
 // relative, in the Hessian's norm, for Newton's steps.
 constexpr int kMaxHessianSteps = 30;
 constexpr double kNewtonTolerance = 1e-3;
-// Of FindNoise, log radiance.
+// Deviations that FindNoise begins with, log radiance.
 constexpr double kFirstSigma = 0.15;
 
 }  // namespace

@@ -151,7 +151,8 @@ class MarginalLikelihood {
     // diag(J^T A^-1 J K_rough) / 2 [texels].
     Eigen::VectorXd rough_share;
   };
-  // Of log L_o in l, d log L_o = J dl, with what its normal equations need.
+  // A linearisation of log L_o in l, d log L_o = J dl, with what its normal
+  // equations need.
   struct Linearisation {
     std::array<RowMatrix, 3> jacobian;  // [points][sources] of a channel
     std::array<RowMatrix, 3> JC;        // that of texels * correlation
@@ -166,10 +167,10 @@ class MarginalLikelihood {
   // K g.
   Eigen::VectorXd ApplyCovariance(const Light& light,
                                   const Eigen::VectorXd& g) const;
-  // Of the texels' covariance, amplitude M C.
+  // K g by the texels' covariance alone, amplitude M C.
   Eigen::VectorXd ApplyLocal(const Light& light,
                              const Eigen::VectorXd& g) const;
-  // Of its step at the horizon.
+  // The part of that which is its step at the horizon.
   Eigen::VectorXd ApplyHorizon(const Eigen::VectorXd& g) const;
   // J K_d J^T, K_d the covariance of the directional lights, channels c and d.
   RowMatrix DirectionalLightBlock(const Linearisation& linear, int c,
@@ -222,10 +223,13 @@ class MarginalLikelihood {
   // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the rest.
   double TraceByAmplitude(const Given& given, const Linearisation& linear,
                           const RowMatrix& inverse) const;
-  // The derivative of K by the log roughness of a band, applied: with weights h
-  // along the texels that of C is diag(h) R + R diag(h), R the rough part.
-  Eigen::VectorXd ApplyBandDerivative(const Light& light, int band,
-                                      const Eigen::VectorXd& g) const;
+  // The derivative of K by the log roughness of a band of weights h [texels],
+  // applied: that of C is diag(h) R + R diag(h), R the rough part; rough: g R
+  // [3][texels].
+  Eigen::VectorXd ApplyBandDerivative(const Light& light,
+                                      const Eigen::VectorXd& h,
+                                      const Eigen::VectorXd& g,
+                                      const RowMatrix& rough) const;
   void AddGradient(const Given& given, const LightMode& mode,
                    const Point& point, const Linearisation& linear,
                    MarginalGradient* gradient) const;

@@ -20,7 +20,7 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   // The light's mode is taken as found where a step gains less, nats:
   // derivatives are then good to its root.
   static constexpr double kModeTolerance = 1e-6;
-  // Of a directional light's offset, radians.
+  // Deviation of a directional light's offset, radians.
   static constexpr double kDirectionalLightOffsetStd = 0.05;
 
   // All must outlive *this.
@@ -43,8 +43,8 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   std::vector<double> Whitened(
       const Eigen::VectorXd& parameters,
       const LightHyperparameters& hyperparameters) const;
-  // Of the last evaluation with a gradient that succeeded: not of a trial that
-  // a line search turned down.
+  // The value of the last evaluation with a gradient that succeeded: not of a
+  // trial that a line search turned down.
   const MarginalValue& last_value() const { return last_value_; }
 
  private:

@@ -86,7 +86,7 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
   InvertFactored(&inverse);
   const Eigen::ArrayXd roughness =
       ByTexel(Roughness(map_height_, hyperparameters), map_width_);
-  // Of a texel with itself.
+  // The correlation of a texel with itself.
   const Eigen::ArrayXd correlation =
       smooth_share_ + rough_share_ * roughness.square() +
       horizon_.array().square() / light.amplitude;

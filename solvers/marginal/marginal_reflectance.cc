@@ -17,8 +17,8 @@ namespace {
 // half-vectors.
 constexpr double kDirectionalLightStep = 1e-3;
 
-// Of a map of 1, on white: a point whose whole sky is hidden has 1e-4 left at
-// the horizon, which the steps of VisibilityGrid cut.
+// The least radiance under a map of 1, on white: a point whose whole sky is
+// hidden has 1e-4 left at the horizon, which the steps of VisibilityGrid cut.
 constexpr double kLeastSeen = 1e-3;
 
 // Bins that a map of constant radiance lights.

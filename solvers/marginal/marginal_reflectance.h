@@ -44,7 +44,8 @@ class MarginalReflectance {
     return lobes_->num_parameters() +
            2 * static_cast<int>(directional_lights_.size());
   }
-  // Of lobes, with all directional lights where the constructor was told.
+  // Parameters of lobes, with all directional lights where the constructor was
+  // told.
   Eigen::VectorXd WithDirectionalLights(const Eigen::VectorXd& lobes) const;
   std::vector<Eigen::Vector3d> DirectionalLightDirections(
       const double* parameters) const;
@@ -83,7 +84,7 @@ class MarginalReflectance {
   std::vector<RowMatrix> DirectionalLightSlopes(
       const double* parameters, const std::vector<float>& fields,
       int stride) const;
-  // Of each lobe's shape, the first of its `stride` fields.
+  // The matrix of each lobe's shape, the first of its `stride` fields.
   std::vector<FloatMatrix> ShapeMatrices(
       const DirectionalLightResponses& directional_lights,
       const std::vector<float>& fields, int stride) const;

@@ -85,8 +85,8 @@ struct ReflectanceSearchResult {
   std::vector<Eigen::Vector3d> directional_lights;  // their directions
   // By cost: the refined ones, then the others by their first cost.
   std::vector<MaterialCandidate> candidates;
-  // Of the parameters (Laplace, by the Gauss-Newton Hessian); empty where it
-  // was not asked for.
+  // The posterior of the parameters (Laplace, by the Gauss-Newton Hessian);
+  // empty where it was not asked for.
   Eigen::MatrixXd covariance;
   // Most probable log radiance and its standard deviation given the
   // reflectance, [3][H W] of the resolution.

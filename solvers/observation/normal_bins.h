@@ -9,7 +9,7 @@
 namespace ibrdf {
 
 struct NormalBins {
-  // Of each bin up to some pixels, bin by bin; bin i has
+  // Up to some pixels of each bin, bin by bin; bin i has
   // [first[i], first[i + 1]).
   std::vector<ShadingPoint> points;
   std::vector<int> first;

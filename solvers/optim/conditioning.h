@@ -13,10 +13,10 @@ namespace ibrdf {
 // empty, not finite or a diagonal entry is not positive.
 double ScaledCondition(const Eigen::MatrixXd& matrix);
 
-// Of the preconditioned system that conjugate gradients were run on, at least:
-// the ratio of the extreme eigenvalues of Lanczos' tridiagonal matrix, which
-// are inside the system's and reach them as steps are made (Golub and Van Loan,
-// Matrix Computations, 11.3). NaN without a step.
+// The conditioning of the preconditioned system that conjugate gradients were
+// run on, at least: the ratio of the extreme eigenvalues of Lanczos'
+// tridiagonal matrix, which are inside the system's and reach them as steps are
+// made (Golub and Van Loan, Matrix Computations, 11.3). NaN without a step.
 double LanczosCondition(const CgCoefficients& coefficients);
 
 }  // namespace ibrdf

@@ -21,8 +21,8 @@ constexpr double kRim = 14.0;
 constexpr double kContrast = 1.1;
 // Rows of the bins of directions, of 5 degrees: far below the reach.
 constexpr int kBinRows = 36;
-// Of NearDirectionalLights: how far a directional light's direction may be off,
-// one deviation, and the least weight that counts.
+// For NearDirectionalLights: how far a directional light's direction may be
+// off, one deviation, and the least weight that counts.
 constexpr double kSpread = 4.0;
 constexpr double kLeastWeight = 0.05;
 

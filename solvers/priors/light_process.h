@@ -75,7 +75,7 @@ struct LightProcess {
 
   Eigen::Matrix3d Local() const;  // M
   Eigen::Matrix3d Level() const;  // B
-  // Of a directional light, beside B.
+  // The covariance of a directional light, beside B.
   Eigen::Matrix3d DirectionalLight() const;
 
   // The first two parts of C between unit directions, without shares and

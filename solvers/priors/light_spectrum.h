@@ -38,7 +38,7 @@ class LightSpectrum {
   LightSpectrum Scaled(double share, const Eigen::VectorXd& by_row) const;
   // C + value[r] value[r'] between texels of rows r and r', value [H].
   LightSpectrum PlusRows(const Eigen::VectorXd& value) const;
-  // Of the same size.
+  // The other one has the same size.
   LightSpectrum Plus(const LightSpectrum& other) const;
 
  private:

@@ -65,7 +65,8 @@ void AddLobe(int code_size, double longest, Eigen::VectorXd* parameters) {
   lobes.log_colour(last) += kExtraLobe;
 }
 
-// Of a known material's parameters: no step or derivative tells it from 0.
+// The deviation of a known material's parameters: no step or derivative tells
+// it from 0.
 constexpr double kKnownStd = 1e-9;
 
 }  // namespace

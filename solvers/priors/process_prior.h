@@ -29,7 +29,7 @@ class ProcessPrior final : public LightPrior {
   int BlockOf(int row, int column) const {
     return BlockRow(row) * block_columns_ + BlockColumn(column);
   }
-  // Of a texel in the mean of its block.
+  // The weight of a texel in the mean of its block.
   double WeightOf(int row, int column) const {
     return row_weight_[row] * column_weight_[column];
   }

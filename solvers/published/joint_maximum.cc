@@ -10,7 +10,7 @@
 namespace ibrdf {
 namespace {
 
-// Of the time that remains; the last steps take the rest.
+// The share of the time that remains; the last steps take the rest.
 constexpr double kShare = 0.9;
 
 // The mean material, at the scale that the priors prefer, under a constant map.

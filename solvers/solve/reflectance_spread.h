@@ -17,7 +17,7 @@ class LobeDistance {
   const LobeModel& lobes() const { return *lobes_; }
   // Log of raw values plus the metric's floor, [3][nodes].
   std::vector<double> LogValues(const std::vector<double>& parameters) const;
-  // Of two such.
+  // The distance of two such.
   double Aligned(const std::vector<double>& a,
                  const std::vector<double>& b) const;
 

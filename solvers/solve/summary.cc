@@ -22,7 +22,7 @@ constexpr int kSpreadSamples = 64;
 constexpr double kSummaryPerTransport = 1.4;
 constexpr double kTableSeconds = 0.3;
 constexpr size_t kProbePoints = 128;  // that a transport is timed on
-// Of the time that remains when it is predicted.
+// The share of the time that remains when it is predicted.
 constexpr double kMostSummaryShare = 0.6;
 
 // A state at every pixel.

@@ -97,7 +97,7 @@ TEST(GaussianTransport, LambertUnderOneGaussianMatchesBruteForce) {
                  200 * 2.0 * kPi / 60 / kPi;
         }
       }
-      // Of the radiance that faces the axis.
+      // A share of the radiance that faces the axis.
       const double full = GaussianIntegral(sharpness) / kPi;
       mean_error += std::abs(L_o[3 * i] - sum) / full / points.size();
       EXPECT_NEAR(sum, L_o[3 * i], 6e-3 * full) << i << " " << sharpness;

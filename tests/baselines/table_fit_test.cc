@@ -197,7 +197,7 @@ TEST(FitColouredCookTorranceToTable, RecoversItsOwnModel) {
   EXPECT_LT(LogRmse(fit.Function(), true, table), kRecovered);
   EXPECT_TRUE((fit.roughness == fit.roughness[0]).all());
   EXPECT_TRUE((fit.f0 == fit.f0[0]).all());
-  // Of other data it is no better than with lobes of the channels' own.
+  // On other data it is no better than with lobes of the channels' own.
   const MerlTable other = SampleMerl(Paint().Function());
   const double shared =
       LogRmse(FitColouredCookTorranceToTable(other, {}).value().Function(),

@@ -66,7 +66,7 @@ TEST_F(KnownSweepsTest, KnownBrdfComparesPriorsAndSpheres) {
   const auto& columns = KnownBrdfColumns();
   const std::vector<ResultsRow> rows = Rows(columns);
   ASSERT_EQ(2u, rows.size());
-  EXPECT_EQ("unet", Cell(columns, rows[0], "prior"));
+  EXPECT_EQ("process", Cell(columns, rows[0], "prior"));
   EXPECT_EQ("none", Cell(columns, rows[1], "prior"));
   for (const ResultsRow& row : rows) {
     EXPECT_EQ("0.125", Cell(columns, row, "illumination_relative_log_rmse"));

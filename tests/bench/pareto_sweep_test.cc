@@ -48,7 +48,7 @@ class ParetoSweepTest : public testing::SweepTest {
 };
 
 TEST_F(ParetoSweepTest, ListsEachSettingOnceAroundTheDefault) {
-  // Of 128 pixels and two lobes a setting would be the default again.
+  // With 128 pixels and two lobes a setting would be the default again.
   options_.size = 128;
   options_.solver_seconds = 20.0;
   const std::vector<SolverRun> runs = Runs();

@@ -92,7 +92,7 @@ std::vector<int64_t> SampleCells(const BrdfSampler& sampler,
   return cells;
 }
 
-// Of half-vectors, fine enough for a table's narrowest cells: pdf dwi =
+// A grid of half-vectors, fine enough for a table's narrowest cells: pdf dwi =
 // pdf 4 cos_d dwh. Bounds of the pdf's steps are kinks to a midpoint rule.
 double PdfIntegral(const BrdfSampler& sampler, double degrees) {
   const Eigen::Vector3d wo = View(degrees);

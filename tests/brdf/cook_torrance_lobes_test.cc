@@ -39,7 +39,7 @@ TEST(CookTorranceLobes, GridAndTableAreTheModels) {
     EXPECT_NEAR(expected.raw[i], table.raw[i],
                 1e-10 * std::abs(expected.raw[i]));
   }
-  // Of channels with lobes of their own the red one's shape.
+  // Channels with lobes of their own give the red one's shape.
   CookTorrance mixed = paint;
   mixed.roughness[1] = 0.7;
   mixed.f0[2] = 0.9;

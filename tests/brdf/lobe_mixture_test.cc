@@ -62,7 +62,7 @@ TEST_F(LobeMixtureTest, ColoursBeyondTheLargestAreClamped) {
       EXPECT_EQ(std::exp(kMaxLogColour), lobes_.RawColours()(c, 0)) << a;
       EXPECT_EQ(0.0, lobes_.ColourSlopes()(c, 0)) << a;
     }
-    // Of the other lobe as they were.
+    // Those of the other lobe are as they were.
     EXPECT_EQ(lobes_.Colours()(1, 1), lobes_.ColourSlopes()(1, 1));
   }
 }

@@ -19,9 +19,9 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-// Of a column's largest entry. The float kernels leave about 4e-6 in log L_o;
-// over the steps of 0.01 to 0.1 that Ridders' method settles on, this is a few
-// 1e-4 of a derivative of log L_o of order 1.
+// The share of a column's largest entry. The float kernels leave about 4e-6 in
+// log L_o; over the steps of 0.01 to 0.1 that Ridders' method settles on, this
+// is a few 1e-4 of a derivative of log L_o of order 1.
 constexpr double kJacobianTolerance = 1e-3;
 // And of residuals, absolute: that noise over b = 0.2, times dr/dt <= 1.5. A
 // difference over a step carries it however small the column.

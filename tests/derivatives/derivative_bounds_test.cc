@@ -23,7 +23,8 @@ constexpr double kByPoint = 1e-3;    // slopes of the default model's splines
 constexpr double kSums = 5e-6;       // the transport
 constexpr double kDouble = 1e-11;    // formulas in double
 constexpr double kObjective = 1e-4;  // gradients of whole costs
-// Of rows that show what cannot be held: their entries must be finite alone.
+// The bound of rows that show what cannot be held: their entries must be finite
+// alone.
 constexpr double kNotHeld = std::numeric_limits<double>::max();
 
 // Every row of the table within `most`, but for rows whose name contains a word

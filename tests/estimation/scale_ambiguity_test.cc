@@ -13,7 +13,7 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-// Of log reflectance: the shapes are floats.
+// The error of log reflectance: the shapes are floats.
 constexpr double kRounding = 1e-5;
 
 class LevelGaugeTest : public ::testing::Test {

@@ -24,7 +24,7 @@ constexpr double kLatentTolerance = 1e-13;
 // next as a neighbouring float.
 constexpr double kPointTolerance = 1e-6;
 
-// Of the splines' heights: densities of several orders of magnitude.
+// The range of the splines' heights: densities of several orders of magnitude.
 constexpr float kCurvature = 12.0f;
 
 std::unique_ptr<BrdfFlow> SmallFlow(float curvature) {

@@ -10,10 +10,10 @@
 
 namespace ibrdf {
 
-// Of the tables that the parser of `merl` takes here.
+// The bins of the tables that the parser of `merl` takes here.
 inline constexpr std::array<int32_t, 3> kFuzzedMerlBins = {3, 2, 4};
 
-// Of the checkpoint that the parser of `checkpoint` expects.
+// The name of the checkpoint that the parser of `checkpoint` expects.
 inline constexpr char kFuzzedTraining[] = "training";
 // Whole states are of its sizes.
 TrainingState FuzzedTrainingState();

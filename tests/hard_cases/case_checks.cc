@@ -30,7 +30,7 @@ std::vector<std::string> FilesIn(const std::string& folder) {
 
 // What has no value for some results.
 bool MayBeMissing(const std::string& where) {
-  // Of an exact image, of estimates without curvature.
+  // These are null for an exact image, for estimates without curvature.
   return where == "result.json/metrics/psnr" ||
          where == "result.json/posterior/condition_number";
 }

@@ -27,7 +27,7 @@ namespace ibrdf {
 namespace {
 namespace fs = std::filesystem;
 
-// Of a run; sanitizers and loaded machines are slow.
+// The limit of a run; sanitizers and loaded machines are slow.
 constexpr std::chrono::seconds kPatience(600);
 
 std::vector<std::string> CaseNames() {

@@ -91,7 +91,7 @@ LightProcess Proper() {
   return process;
 }
 
-// Of no band like another.
+// No band is like another.
 LightHyperparameters Rough() { return {0.3, {-1.5, 0.4, -0.3, 0.8}}; }
 
 // Scale `k` moved, the amplitude first.

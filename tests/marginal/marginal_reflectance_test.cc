@@ -293,7 +293,7 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
       EXPECT_EQ(0.0, found.row(4).norm());
     }
 
-    // Of the objective: the prior whitened, and the wall of that code.
+    // The objective's terms: the prior whitened, and the wall of that code.
     const MarginalObjective objective(&reflectance, &prior, noise, &mode);
     const std::vector<double> y = objective.Whitened(
         Eigen::Map<const Eigen::VectorXd>(x.data(), n), hyperparameters);

@@ -17,7 +17,7 @@ constexpr int kSize = 72;    // pixels a side
 constexpr int kAcross = 24;  // 3x3 pixels to a bin
 constexpr double kMinCosine = 0.1;
 
-// Of radiance that is another in every pixel; one of them is black.
+// Its radiance is another in every pixel; one of them is black.
 Observation SphereObservation() {
   Image image(kSize, kSize);
   for (size_t i = 0; i < image.rgb.size(); ++i) {

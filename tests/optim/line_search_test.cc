@@ -31,7 +31,7 @@ TEST(LineSearch, TakesTheLongestWhereItIsGood) {
   EXPECT_EQ(std::vector<double>{0.75}, tried.lengths);
 }
 
-// Of a quadratic cost, -2 s + 2 s^2, lowest at 1/2: 2 s - 2 s^2 are its gains.
+// A quadratic cost, -2 s + 2 s^2, lowest at 1/2: 2 s - 2 s^2 are its gains.
 TEST(LineSearch, SecondLengthIsTheLowestPointOfAParabola) {
   for (const double longest : {1.25, 2.0, 4.0}) {
     const Tried tried = Search(longest, 1e-3, 2.0, 0.6,

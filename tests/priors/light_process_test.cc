@@ -8,7 +8,7 @@
 namespace ibrdf {
 namespace {
 
-// Of no band like another.
+// No band is like another.
 constexpr LightHyperparameters kRough = {0.3, {-1.5, 0.4, -0.3, 0.8}};
 
 TEST(LightProcess, ScalesAreWhitened) {

@@ -15,7 +15,7 @@ namespace {
 // acos loses half the digits for texels that are opposite each other; rounding
 // makes it 1.5e-8 or 0, and each texel has one such.
 constexpr double kOpposite = 3e-8;
-// Of sums of up to 32 products of numbers below 1.
+// Rounding of sums of up to 32 products of numbers below 1.
 constexpr double kRounding = 1e-14;
 
 // height, width, degrees of both parts
@@ -73,7 +73,7 @@ TEST_P(LightSpectrumTest, BasisIsOrthonormalAndOrderedByFrequency) {
                 .cwiseAbs()
                 .maxCoeff(),
             kRounding);
-  // Of frequency k, one column of the map apart:
+  // For waves of frequency k, one column of the map apart:
   // f(c - 1) + f(c + 1) = 2 cos(2 pi k / width) f(c).
   for (int j = 0; j < width_; ++j) {
     const int k = LightSpectrum::FrequencyOf(j);

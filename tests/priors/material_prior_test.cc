@@ -41,7 +41,7 @@ TEST_P(MaterialPriorTest, BestLevelIsTheLeastOfAll) {
   }
   const double best = prior_.CostAtBestLevel(AtLevel(GetParam()));
   EXPECT_LE(best, least * (1 + 1e-9));
-  // Of a parabola, within half a step of its lowest point.
+  // The search ends within half a step of a parabola's lowest point.
   EXPECT_GT(best, least - 1e-4);
   EXPECT_GT(prior_.WallCost(lobes_, nullptr), 1.0);
 }

@@ -53,7 +53,7 @@ TEST(ProcessPrior, GradientAndProductMatchDifferences) {
   }
 }
 
-// Of blocks of one texel the covariance is that of the maps that
+// With blocks of one texel the covariance is that of the maps that
 // ProcessIllumination draws: both by unit vectors.
 TEST(ProcessPrior, PrecisionIsOfTheMapsThatAreDrawn) {
   const int height = 8, width = 16, n = 3 * height * width;

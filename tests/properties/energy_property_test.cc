@@ -1,6 +1,6 @@
 // No more light leaves a surface than arrives.
 //
-// Of the analytic models two promise it: Lambertian of an albedo up to 1, and
+// Two of the analytic models promise it: Lambertian of an albedo up to 1, and
 // Cook-Torrance, whose directional albedo is at most diffuse + specular (V
 // grooves hide what they would reflect twice). Of Disney the metal does, a
 // single lobe with Smith's factors. Its diffuse part does not, by design: it
@@ -45,9 +45,9 @@ CookTorrance AnyPassiveCookTorrance(double least_roughness) {
 
 struct Albedo {
   Eigen::Array3d value;
-  // Of the coarser rule against the finer one: by far more than the finer one's
-  // own error, which falls at least as the square of the steps (V grooves and
-  // the horizon leave kinks).
+  // The error of the coarser rule against the finer one: by far more than the
+  // finer one's own error, which falls at least as the square of the steps (V
+  // grooves and the horizon leave kinks).
   Eigen::Array3d error;
 };
 

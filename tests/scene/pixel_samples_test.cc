@@ -49,7 +49,8 @@ TEST(PixelSamples, NothingIsExpectedOfAnEvenOrSteadilyRisingImage) {
   EXPECT_TRUE(PixelsToSample(even, all, 1e-4).empty());
 }
 
-// Of waves from long to shorter than a pixel, and of a hard edge across it.
+// The images are waves, from long ones to some shorter than a pixel, and a hard
+// edge across it.
 TEST(PixelSamples, MeanErrorIsBoundedAndNotFarFromTheTruth) {
   constexpr int kSize = 40;
   const Mask all(kSize, kSize, 255);

@@ -265,8 +265,8 @@ INSTANTIATE_TEST_SUITE_P(Problems, InverseRenderingTest,
                                       : "Illumination";
                          });
 
-// Of one texel of 64 rows, which the coarse rings here miss or take for more.
-// The image is the reference renderer's.
+// The sun is one texel of 64 rows, which the coarse rings here miss or take for
+// more. The image is the reference renderer's.
 TEST_F(InverseRenderingTest, ASmallSunUnderKnownLightIsRendered) {
   Image map = SmoothMap(64, 128);
   for (int c = 0; c < 3; ++c) map.At(20, 20)[c] = 3e3f;

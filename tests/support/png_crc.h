@@ -5,7 +5,8 @@
 
 namespace ibrdf {
 
-// Of `size` bytes, type and data of the chunk (ISO 3309, as in PNG 1.2, D).
+// The checksum of `size` bytes, type and data of the chunk (ISO 3309, as in PNG
+// 1.2, D).
 inline uint32_t PngCrc(const char* bytes, size_t size) {
   uint32_t crc = 0xffffffffu;
   for (size_t i = 0; i < size; ++i) {

@@ -45,7 +45,8 @@ TableColumns SmallTable() {
 class LogTableCostTest : public ::testing::TestWithParam<double> {};
 
 TEST_P(LogTableCostTest, JacobianMatchesDifferences) {
-  // Of the column's largest entry; float kernels against Ridders' differences.
+  // The share of the column's largest entry; float kernels against Ridders'
+  // differences.
   constexpr double kTolerance = 2e-3;
   const NeuralBrdfModel model = SmoothTinyModel(2);
   const auto flow = BrdfFlow::Create(model.shape, model.weights);

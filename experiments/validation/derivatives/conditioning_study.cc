@@ -21,8 +21,8 @@ namespace derivatives {
 namespace {
 
 constexpr double kCodeSigma = 0.5;
-// Of the light's mode, nats: what is left of it enters differences of gradients
-// by its root.
+// The tolerance of the light's mode, nats: what is left of it enters
+// differences of gradients by its root.
 constexpr double kModeTolerance = 1e-9;
 
 Eigen::MatrixXd NormalMatrix(const ceres::CostFunction& cost,

@@ -13,8 +13,8 @@ struct ConditioningRow {
   // ScaledCondition of J^T J under known light: of the likelihood alone and
   // with the materials' prior.
   double image = 0.0, with_prior = 0.0;
-  // Of the marginal posterior's Hessian at its minimum, light unknown; NaN: not
-  // wanted.
+  // Conditioning of the marginal posterior's Hessian at its minimum, light
+  // unknown; NaN: not wanted.
   double marginal = 0.0;
   // Standard deviations of the whitened coordinates by the Gauss-Newton Hessian
   // over those by that Hessian: smallest, median, largest; NaN where that one

@@ -15,8 +15,8 @@ using Real = long double;
 struct ErrorRow {
   std::string derivative, points;
   int count = 0;  // of points
-  // Of |derivative - reference| / |reference|, Euclidean norms of a gradient or
-  // row; where the reference is 0, of |derivative|.
+  // Quantiles of |derivative - reference| / |reference|, Euclidean norms of a
+  // gradient or row; where the reference is 0, of |derivative|.
   double median = 0.0, p99 = 0.0, worst = 0.0;
   std::string worst_point;
   // Largest relative error of an entry that is not below a thousandth of its

@@ -207,7 +207,7 @@ class MarginalStudy {
     const std::vector<Real> fields =
         ReferenceFields(model_, 2, resolution_.grid, at);
     const size_t nodes = transport.num_nodes();
-    // Of each field: the matrix [cells][texels].
+    // For each field the matrix [cells][texels].
     std::vector<Matrix> shape(2 * (1 + codes));
     for (size_t f = 0; f < shape.size(); ++f) {
       const std::vector<Real> field(fields.begin() + f * nodes,

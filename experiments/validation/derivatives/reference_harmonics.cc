@@ -13,8 +13,8 @@ namespace {
 using Vector = Eigen::Matrix<Real, 3, 1>;
 
 const Real kPi = std::acos(Real(-1));
-// Of Gauss-Legendre along each side of a texel: for degrees up to 5 and texels
-// of a sixteenth of a turn it errs by some 1e-14.
+// Nodes of Gauss-Legendre along each side of a texel: for degrees up to 5 and
+// texels of a sixteenth of a turn it errs by some 1e-14.
 constexpr int kNodes = 8;
 
 struct Rule {

@@ -17,7 +17,7 @@ class ReferenceTransport {
  public:
   ReferenceTransport(const std::vector<ShadingPoint>& points, int map_height,
                      int map_width, const TransportOptions& options);
-  // Of the patches of `options`.
+  // The transport of the patches of `options`.
   static ReferenceTransport OfPatches(int map_height, int map_width,
                                       const TransportOptions& options);
 

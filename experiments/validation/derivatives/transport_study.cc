@@ -31,7 +31,8 @@ BrdfGrid RandomGrid(std::mt19937_64* rng) {
   return grid;
 }
 
-// Of a point's radiance, channel c by channel c of the light and of the BRDF.
+// The gradients of a point's radiance, channel c by channel c of the light and
+// of the BRDF.
 struct PointGradients {
   std::vector<float> map;   // [texels, 3]
   std::vector<float> grid;  // [3, nodes]

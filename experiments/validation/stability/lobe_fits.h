@@ -21,7 +21,7 @@ struct SphereScene {
 
   explicit SphereScene(int image_size);
 
-  // Of the points, from an image of image_size.
+  // The radiance of the points, from an image of image_size.
   std::vector<double> RadianceOf(const Image& image) const;
   // The other way; pixels beside the points are 0.
   Image ImageOf(const std::vector<double>& radiance) const;

@@ -30,7 +30,8 @@ CookTorrance Mirror(double roughness) {
   return brdf;
 }
 
-// Of unit directions, z > 0; the tangent from the half-vector's components.
+// The arguments are unit directions, z > 0; the tangent from the half-vector's
+// components.
 Real PreciseCookTorrance(const Vector3& wi, const Vector3& wo, Real m) {
   const Vector3 h = (wi + wo).normalized();
   const Real cos_h = h.z(), cos_d = h.dot(wi);

@@ -44,7 +44,7 @@ std::vector<double> Edges(int n, double end) {
   return edges;
 }
 
-// Of latitudes, as what solid angle is proportional to.
+// Edges of latitudes, as what solid angle is proportional to.
 std::vector<double> HeightEdges(int n) {
   std::vector<double> edges = Edges(n, kPi);
   for (double& e : edges) e = 1.0 - std::cos(e);

@@ -264,7 +264,7 @@ std::vector<double> HarmonicTransport::PredictLogErrors(
   for (size_t i = 0; i < points_.size(); ++i) {
     const HarmonicColours S = SliceAt(slices, points_[i]);
     for (int c = 0; c < 3; ++c) {
-      // Of a normal distribution: mean magnitude over standard deviation.
+      // A normal distribution's mean magnitude over standard deviation.
       const double scale =
           std::sqrt(2.0 / kPi) / std::max(L_o[3 * i + c], kDarkestShare * mean);
       double variance = 0.0;

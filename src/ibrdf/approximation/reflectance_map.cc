@@ -73,6 +73,7 @@ class NormalGrid {
   // there.
   struct HeldOut {
     std::vector<int> index;     // into points_
+    std::vector<int> place;     // of each of points_ in index; -1: not held out
     std::vector<double> truth;  // [index, 3]
   };
 
@@ -287,11 +288,13 @@ bool NormalGrid::RenderHeldOut(HeldOut* held_out) {
   const size_t count = points_.size();
   const size_t tests =
       std::min(count, static_cast<size_t>(std::max(options_.held_out, 1)));
+  held_out->place.assign(count, -1);
   std::vector<ShadingPoint> points;
   for (size_t k = 0; k < tests; ++k) {
-    held_out->index.push_back(
-        static_cast<int>((2 * k + 1) * count / (2 * tests)));
-    points.push_back(points_[held_out->index.back()]);
+    const size_t i = (2 * k + 1) * count / (2 * tests);
+    held_out->index.push_back(static_cast<int>(i));
+    held_out->place[i] = static_cast<int>(k);
+    points.push_back(points_[i]);
   }
   held_out->truth.resize(3 * tests);
   report_.rendered = static_cast<int>(tests);
@@ -343,19 +346,15 @@ bool NormalGrid::FindTolerance(const HeldOut& held_out, double* tolerance) {
 }
 
 void NormalGrid::MeasureError(const HeldOut& held_out, double tolerance) {
-  std::vector<int> test_of(points_.size(), -1);
-  for (size_t k = 0; k < held_out.index.size(); ++k) {
-    test_of[held_out.index[k]] = static_cast<int>(k);
-  }
   double sum = 0.0, squares = 0.0;
   for (const Cell& cell : cells_) {
     if (!IsGood(cell, tolerance)) continue;
     for (const int i : cell.points) {
-      if (test_of[i] < 0) continue;
+      if (held_out.place[i] < 0) continue;
       const Eigen::Array3d guess = Interpolate(cell, places_[i]);
       double error = 0.0;
       for (int c = 0; c < 3; ++c) {
-        const double truth = held_out.truth[3 * test_of[i] + c];
+        const double truth = held_out.truth[3 * held_out.place[i] + c];
         error += std::abs(guess[c] - Log(truth, c)) / 3.0;
       }
       sum += error;

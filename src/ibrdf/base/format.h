@@ -4,7 +4,7 @@
 
 namespace ibrdf {
 
-// Of any length; "" where the format is not one.
+// A text of any length; "" where the format is not one.
 [[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...);
 
 }  // namespace ibrdf

@@ -20,7 +20,7 @@ double RawLobeColour(double log_colour);
 struct LobeLayout {
   int num_lobes = 0, code_size = 0;
 
-  // Of as many lobes as the parameters make.
+  // The layout of as many lobes as the parameters make.
   static LobeLayout OfSize(size_t num_parameters, int code_size) {
     const LobeLayout one = {1, code_size};
     return {static_cast<int>(num_parameters) / one.lobe_size(), code_size};

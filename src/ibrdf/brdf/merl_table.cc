@@ -8,7 +8,7 @@
 namespace ibrdf {
 namespace {
 
-// Of the bins' centres: a table has 1.5 million.
+// Angles of the bins' centres: a table has 1.5 million.
 struct BinTrigonometry {
   BinTrigonometry() {
     for (int i = 0; i < kMerlThetaH; ++i) {

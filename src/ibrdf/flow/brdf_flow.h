@@ -83,8 +83,8 @@ class BrdfFlow {
   virtual std::unique_ptr<TrainingPass> NewTrainingPass() const = 0;
   // Columns of a code in a pass are a multiple of this.
   virtual int TrainingColumns() const = 0;
-  // Of the buffers of Backward, whose layout is the kernels' own; and its sum
-  // into the order of the weights.
+  // The size of the buffers of Backward, whose layout is the kernels' own.
+  // AddGradient adds one to weights in their order.
   virtual size_t GradientSize() const = 0;
   virtual void AddGradient(const float* buffer, float* weights) const = 0;
 };

@@ -13,8 +13,8 @@ struct DenseLayer {
   bool activation = true;
   size_t weight_offset = 0;
   size_t bias_offset = 0;
-  // Of the gradient [out_count][PaddedCount(in_count)] in a kernel's own
-  // layout.
+  // The offset of the gradient [out_count][PaddedCount(in_count)] in a kernel's
+  // own layout.
   size_t padded_offset = 0;
 };
 

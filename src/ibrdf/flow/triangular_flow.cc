@@ -157,6 +157,19 @@ TriangularFlow::CodeViews TriangularFlow::Views(const float* code) const {
   return views;
 }
 
+template <typename Body>
+void TriangularFlow::ForBlocks(int64_t count, int num_threads,
+                               const Body& body) const {
+  if (num_threads <= 0) num_threads = HardwareThreads();
+  std::vector<Block> blocks(num_threads, Block(conditioners_));
+  ParallelFor(
+      NumColumnBlocks(count), num_threads, [&](int64_t index, int worker) {
+        const int64_t begin = index * kB;
+        body(begin, static_cast<int>(std::min<int64_t>(kB, count - begin)),
+             &blocks[worker]);
+      });
+}
+
 // A block of points, each with what its column's features depend on.
 struct TriangularFlow::PointBlock {
   float points[3][kB];
@@ -183,33 +196,28 @@ void TriangularFlow::LogDensity(const float* x, int64_t count,
                                 float* log_density, float* dcode,
                                 float* dx) const {
   const CodeViews views = Views(code);
-  if (num_threads <= 0) num_threads = HardwareThreads();
-  std::vector<Block> blocks(num_threads, Block(conditioners_));
-  ParallelFor(
-      NumColumnBlocks(count), num_threads, [&](int64_t index, int worker) {
-        Block& b = blocks[worker];
-        const int64_t begin = index * kB;
-        const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
-        const PointBlock at(x, count, begin, n, &b);
-        float value[kB] = {};
-        for (int dim = 2; dim >= 0; --dim) {
-          float* rows = b.rows[dim].data();
-          kernels_->condition(views.view[dim], rows);
-          kernels_->evaluate(views.view[dim], rows, at.points[dim], 1, value,
-                             value);
-        }
-        std::copy(value, value + n, log_density + begin);
-        if (dcode == nullptr && dx == nullptr) return;
-        float gx[3][kB] = {};
-        BlockGradient(views, at, &b, gx);
-        for (int i = 0; i < 3 && dx != nullptr; ++i) {
-          std::copy(gx[i], gx[i] + n, dx + i * count + begin);
-        }
-        for (int k = 0; k < shape_.code_size && dcode != nullptr; ++k) {
-          std::copy(b.dcode.data() + k * kB, b.dcode.data() + k * kB + n,
-                    dcode + k * count + begin);
-        }
-      });
+  ForBlocks(count, num_threads, [&](int64_t begin, int n, Block* block) {
+    Block& b = *block;
+    const PointBlock at(x, count, begin, n, &b);
+    float value[kB] = {};
+    for (int dim = 2; dim >= 0; --dim) {
+      float* rows = b.rows[dim].data();
+      kernels_->condition(views.view[dim], rows);
+      kernels_->evaluate(views.view[dim], rows, at.points[dim], 1, value,
+                         value);
+    }
+    std::copy(value, value + n, log_density + begin);
+    if (dcode == nullptr && dx == nullptr) return;
+    float gx[3][kB] = {};
+    BlockGradient(views, at, &b, gx);
+    for (int i = 0; i < 3 && dx != nullptr; ++i) {
+      std::copy(gx[i], gx[i] + n, dx + i * count + begin);
+    }
+    for (int k = 0; k < shape_.code_size && dcode != nullptr; ++k) {
+      std::copy(b.dcode.data() + k * kB, b.dcode.data() + k * kB + n,
+                dcode + k * count + begin);
+    }
+  });
 }
 
 void TriangularFlow::BlockGradient(const CodeViews& views, const PointBlock& at,
@@ -252,23 +260,18 @@ void TriangularFlow::LogDensityOnColumns(const FlowColumns& x,
                                          float* log_density,
                                          float* dcode) const {
   const CodeViews views = Views(code);
-  if (num_threads <= 0) num_threads = HardwareThreads();
-  std::vector<Block> blocks(num_threads, Block(conditioners_));
-  const ColumnPass pass = PrepareColumns(views, dcode != nullptr, &blocks[0]);
-  ParallelFor(NumColumnBlocks(x.columns), num_threads,
-              [&](int64_t index, int worker) {
-                Block& b = blocks[worker];
-                const int64_t begin = index * kB;
-                const std::vector<float> x_h =
-                    EvaluateColumns(pass, x, begin, &b, log_density);
-                if (dcode != nullptr) {
-                  ColumnGradient(pass, x, begin, x_h, &b, dcode);
-                }
-              });
+  const ColumnPass pass = PrepareColumns(views, dcode != nullptr);
+  ForBlocks(x.columns, num_threads, [&](int64_t begin, int n, Block* block) {
+    const std::vector<float> x_h =
+        EvaluateColumns(pass, x, begin, n, block, log_density);
+    if (dcode != nullptr) {
+      ColumnGradient(pass, x, begin, n, x_h, block, dcode);
+    }
+  });
 }
 
 TriangularFlow::ColumnPass TriangularFlow::PrepareColumns(
-    const CodeViews& views, bool gradient, Block* block) const {
+    const CodeViews& views, bool gradient) const {
   int widest = 0, most_bins = 0;
   for (const ConditionerShape& c : conditioners_) {
     most_bins = std::max(most_bins, c.bins);
@@ -278,24 +281,25 @@ TriangularFlow::ColumnPass TriangularFlow::PrepareColumns(
   ColumnPass pass = {
       views, {}, {}, 2 * most_bins * codes * kB, 2 * codes * kB * widest};
   // x_p's spline is the same for all columns.
-  kernels_->condition(views.view[2], block->rows[2].data());
-  pass.last = block->rows[2];
+  Block block(conditioners_);
+  kernels_->condition(views.view[2], block.rows[2].data());
+  pass.last = block.rows[2];
   if (gradient) {
     pass.last_pieces.resize(pass.pieces_size);
-    block->scratch.resize(pass.scratch_size);
-    kernels_->code_pieces(views.view[2], pass.last.data(),
-                          block->scratch.data(), pass.last_pieces.data());
+    block.scratch.resize(pass.scratch_size);
+    kernels_->code_pieces(views.view[2], pass.last.data(), block.scratch.data(),
+                          pass.last_pieces.data());
   }
   return pass;
 }
 
 std::vector<float> TriangularFlow::EvaluateColumns(const ColumnPass& pass,
                                                    const FlowColumns& x,
-                                                   int64_t begin, Block* block,
+                                                   int64_t begin, int n,
+                                                   Block* block,
                                                    float* log_density) const {
   const std::array<ConditionerView, 3>& view = pass.views.view;
   Block& b = *block;
-  const int n = static_cast<int>(std::min<int64_t>(kB, x.columns - begin));
   float x_d[kB], x_p[kB], base[kB];
   Gather(x.x_d.data(), begin, n, x_d);
   Gather(x.x_p.data(), begin, n, x_p);
@@ -321,12 +325,11 @@ std::vector<float> TriangularFlow::EvaluateColumns(const ColumnPass& pass,
 }
 
 void TriangularFlow::ColumnGradient(const ColumnPass& pass,
-                                    const FlowColumns& x, int64_t begin,
+                                    const FlowColumns& x, int64_t begin, int n,
                                     const std::vector<float>& x_h, Block* block,
                                     float* dcode) const {
   const std::array<ConditionerView, 3>& view = pass.views.view;
   Block& b = *block;
-  const int n = static_cast<int>(std::min<int64_t>(kB, x.columns - begin));
   float x_d[kB], x_p[kB];
   Gather(x.x_d.data(), begin, n, x_d);
   Gather(x.x_p.data(), begin, n, x_p);
@@ -351,47 +354,42 @@ void TriangularFlow::Transform(const double* from, int64_t count,
                                const float* code, int num_threads,
                                double* to) const {
   const CodeViews views = Views(code);
-  if (num_threads <= 0) num_threads = HardwareThreads();
-  std::vector<Block> blocks(num_threads, Block(conditioners_));
-  ParallelFor(
-      NumColumnBlocks(count), num_threads, [&](int64_t index, int worker) {
-        Block& b = blocks[worker];
-        const int64_t begin = index * kB;
-        const int n = static_cast<int>(std::min<int64_t>(kB, count - begin));
-        // The coordinates of x, which the conditioners read: x_p first.
-        const double* x = kForward ? from : to;
-        float features[kColumnFeatures * kB] = {};
-        for (int dim = 2; dim >= 0; --dim) {
-          for (int i = 0; i < n && dim < 2; ++i) {
-            // x_d's conditioner sees no feature that depends on x_d. Rounded to
-            // float first: a coordinate that comes back a double's rounding
-            // away then makes the same features, and the way back is exact.
-            const double x_d =
-                dim == 0 ? static_cast<float>(x[count + begin + i]) : 0.0;
-            const double x_p = static_cast<float>(x[2 * count + begin + i]);
-            double f[kColumnFeatures];
-            ColumnFeatures<double>(x_d, x_p, f, nullptr, nullptr);
-            for (int k = 0; k < kColumnFeatures; ++k) {
-              features[k * kB + i] = static_cast<float>(f[k]);
-            }
-          }
-          b.SetFeatures(features);
-          const ConditionerView& v = views.view[dim];
-          float* rows = b.rows[dim].data();
-          kernels_->condition(v, rows);
-          std::vector<double> parameters(v.rows - v.output_row);
-          for (int i = 0; i < n; ++i) {
-            for (size_t k = 0; k < parameters.size(); ++k) {
-              parameters[k] = rows[(v.output_row + k) * kB + i];
-            }
-            const LogLinearSpline<double> spline(parameters.data(), v.bins,
-                                                 v.heights == v.bins);
-            const int64_t at = dim * count + begin + i;
-            to[at] = kForward ? spline.Integral(from[at])
-                              : spline.InverseIntegral(from[at]);
-          }
+  ForBlocks(count, num_threads, [&](int64_t begin, int n, Block* block) {
+    Block& b = *block;
+    // The coordinates of x, which the conditioners read: x_p first.
+    const double* x = kForward ? from : to;
+    float features[kColumnFeatures * kB] = {};
+    for (int dim = 2; dim >= 0; --dim) {
+      for (int i = 0; i < n && dim < 2; ++i) {
+        // x_d's conditioner sees no feature that depends on x_d. Rounded to
+        // float first: a coordinate that comes back a double's rounding
+        // away then makes the same features, and the way back is exact.
+        const double x_d =
+            dim == 0 ? static_cast<float>(x[count + begin + i]) : 0.0;
+        const double x_p = static_cast<float>(x[2 * count + begin + i]);
+        double f[kColumnFeatures];
+        ColumnFeatures<double>(x_d, x_p, f, nullptr, nullptr);
+        for (int k = 0; k < kColumnFeatures; ++k) {
+          features[k * kB + i] = static_cast<float>(f[k]);
         }
-      });
+      }
+      b.SetFeatures(features);
+      const ConditionerView& v = views.view[dim];
+      float* rows = b.rows[dim].data();
+      kernels_->condition(v, rows);
+      std::vector<double> parameters(v.rows - v.output_row);
+      for (int i = 0; i < n; ++i) {
+        for (size_t k = 0; k < parameters.size(); ++k) {
+          parameters[k] = rows[(v.output_row + k) * kB + i];
+        }
+        const LogLinearSpline<double> spline(parameters.data(), v.bins,
+                                             v.heights == v.bins);
+        const int64_t at = dim * count + begin + i;
+        to[at] = kForward ? spline.Integral(from[at])
+                          : spline.InverseIntegral(from[at]);
+      }
+    }
+  });
 }
 
 void TriangularFlow::Latent(const double* x, int64_t count, const float* code,

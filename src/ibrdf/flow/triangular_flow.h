@@ -43,20 +43,23 @@ class TriangularFlow final : public BrdfFlow {
   struct PointBlock;
   struct ColumnPass;
   CodeViews Views(const float* code) const;
+  // Calls body(begin, n, block) for every kColumnBlock of `count` columns, each
+  // thread with a block of its own; n of the last one may be less.
+  template <typename Body>
+  void ForBlocks(int64_t count, int num_threads, const Body& body) const;
   ConditionerView View(int dim) const;
   // Gradients of a block that has been evaluated: in x, and, in block->dcode,
   // in the code.
   void BlockGradient(const CodeViews& views, const PointBlock& at, Block* block,
                      float gx[3][kColumnBlock]) const;
-  // LogDensityOnColumns: what all columns share; a block of columns from
-  // `begin` on, whose x_h [points][kColumnBlock] it returns; its dcode.
-  ColumnPass PrepareColumns(const CodeViews& views, bool gradient,
-                            Block* block) const;
+  // LogDensityOnColumns: what all columns share; n columns from `begin` on,
+  // whose x_h [points][kColumnBlock] it returns; their dcode.
+  ColumnPass PrepareColumns(const CodeViews& views, bool gradient) const;
   std::vector<float> EvaluateColumns(const ColumnPass& pass,
-                                     const FlowColumns& x, int64_t begin,
+                                     const FlowColumns& x, int64_t begin, int n,
                                      Block* block, float* log_density) const;
   void ColumnGradient(const ColumnPass& pass, const FlowColumns& x,
-                      int64_t begin, const std::vector<float>& x_h,
+                      int64_t begin, int n, const std::vector<float>& x_h,
                       Block* block, float* dcode) const;
   template <bool kForward>
   void Transform(const double* from, int64_t count, const float* code,

@@ -108,8 +108,8 @@ struct TriangularShape {
   std::vector<int> widths = {96, 96, 96};       // hidden layers, for x_h
   std::vector<int> marginal_widths = {32, 32};  // for x_d and x_p
 
-  // Of x_h (column features 0 to 4), x_d (3 to 5) and x_p (none). Weights lie
-  // in this order.
+  // The conditioners of x_h (column features 0 to 4), x_d (3 to 5) and x_p
+  // (none). Weights lie in this order.
   std::array<ConditionerShape, 3> Conditioners() const;
   size_t NumWeights() const;
 

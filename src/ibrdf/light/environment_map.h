@@ -12,7 +12,7 @@ namespace ibrdf {
 // theta = pi (r + 1/2) / H from +y, column c is phi = 2 pi (c + 1/2) / W, and
 // the direction is (sin theta sin phi, cos theta, sin theta cos phi).
 
-// Of a map, texels.
+// The size of a map, texels.
 struct MapSize {
   int width = 0, height = 0;
 

@@ -37,9 +37,11 @@ namespace {
 // Prior standard deviation of the biases of hidden layers: small beside the
 // features' 1, so that a feature's offset does not drown its variation.
 constexpr float kHiddenBiasStd = 0.1f;
-// Of the last biases, which are log-radiance itself: a factor e either way.
+// Deviation of the last biases, which are log-radiance itself: a factor e
+// either way.
 constexpr float kOutputBiasStd = 1.0f;
-// Of the last layer's output: features enter log-radiance at this scale.
+// Deviation of the last layer's output: features enter log-radiance at this
+// scale.
 constexpr float kOutputStd = 1.0f;
 
 // L_o a(x)^2 for x ~ N(0, 1): the midpoint rule, exact to rounding here.

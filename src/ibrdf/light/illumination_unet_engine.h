@@ -62,7 +62,7 @@ struct UnetBuffers {
   UnetBuffer transposed;                      // packed
   UnetBuffer gradient;                        // packed
   uint64_t owner = 0;  // id of the engine that sized them
-  // Of SimdLevel::kDouble, in place of all that.
+  // What SimdLevel::kDouble has in place of all that.
   UnetReferencePass<double> plain;
   std::vector<double> plain_weights;
 };

@@ -12,13 +12,13 @@ namespace ibrdf {
 
 // Magnitudes beyond which exp() of log radiance is not taken.
 //
-// Of a map of floats, either way: e^60 is 1e26, which renders may multiply by a
-// BRDF and sum over a map before a float, at most e^88, overflows; and e^-60 is
-// far from float's denormal numbers, which are slow.
+// The limit for a map of floats, either way: e^60 is 1e26, which renders may
+// multiply by a BRDF and sum over a map before a float, at most e^88,
+// overflows; and e^-60 is far from float's denormal numbers, which are slow.
 inline constexpr float kMaxLogRadiance = 60.0f;
-// Of the marginal likelihood's light, from above alone: doubles hold e^80 and
-// its squares, so that a step which goes far too bright has a cost and is
-// turned down for that.
+// The limit for the marginal likelihood's light, from above alone: doubles hold
+// e^80 and its squares, so that a step which goes far too bright has a cost and
+// is turned down for that.
 inline constexpr double kMaxLogRadianceInDouble = 80.0;
 
 // Planes [3][height][width], a channel each, of an equirectangular map's log

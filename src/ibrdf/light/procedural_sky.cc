@@ -71,12 +71,12 @@ double CloudCover(double phi, double elevation) {
 struct SkyView {
   Eigen::Vector3d direction;
   double elevation, phi, to_sun;
+  double ground_irradiance;  // W/m^2
 };
 
 constexpr double kSoft = 1.5 * kDegree;
 
-// Irradiance of the ground, W/m^2.
-double HorizontalIrradiance(const SkyOptions& options) {
+double GroundIrradiance(const SkyOptions& options) {
   return kPi * options.zenith_radiance +
          options.sun_irradiance *
              std::max(std::cos(options.sun_theta_degrees * kDegree), 0.0);
@@ -113,8 +113,8 @@ Eigen::Array3d Ground(const SkyOptions& options, const SkyView& view) {
                          0.35 * std::sin(3.0 * direction.x() + 1.0) *
                              std::cos(4.0 * direction.z()) +
                          0.15 * std::sin(9.0 * direction.x() * direction.z());
-  return (0.01 + options.ground_albedo * texture) *
-         HorizontalIrradiance(options) / kPi * kGroundColour;
+  return (0.01 + options.ground_albedo * texture) * view.ground_irradiance /
+         kPi * kGroundColour;
 }
 
 void AddBuilding(const SkyOptions& options, const SkyView& view,
@@ -128,7 +128,7 @@ void AddBuilding(const SkyOptions& options, const SkyView& view,
   const double facing =
       0.5 - 0.5 * std::cos((building.phi - options.sun_phi_degrees) * kDegree);
   const Eigen::Array3d wall =
-      (0.15 + 0.5 * facing) * HorizontalIrradiance(options) / kPi * kWallColour;
+      (0.15 + 0.5 * facing) * view.ground_irradiance / kPi * kWallColour;
   const double inside =
       Step(across, kSoft) * Step(top - view.elevation, kSoft) *
       Step(view.elevation, kSoft) * std::min(options.skyline * 4.0, 1.0);
@@ -153,7 +153,8 @@ Eigen::Array3d SkyRadiance(const SkyOptions& options,
   const SkyView view = {direction,
                         std::asin(std::clamp(direction.y(), -1.0, 1.0)),
                         std::atan2(direction.x(), direction.z()),
-                        std::acos(std::clamp(direction.dot(sun), -1.0, 1.0))};
+                        std::acos(std::clamp(direction.dot(sun), -1.0, 1.0)),
+                        GroundIrradiance(options)};
   Eigen::Array3d sky = ClearSky(options, view);
   AddClouds(options, view, &sky);
   const Eigen::Array3d ground = Ground(options, view);

@@ -78,7 +78,7 @@ struct ReferenceBatch::Scratch {
   std::vector<float> g;  // [kRayBlock][maps.stride]
   std::vector<double> sums;  // [points of the group][3][maps][tables, rounded]
   VisibilityGrid::Scratch trace;
-  // Of the points of the group; empty where nothing is hidden.
+  // Bits of the group's points; empty where nothing is hidden.
   std::vector<VisibilityGrid::Bits> hidden;
 };
 

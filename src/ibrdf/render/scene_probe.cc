@@ -17,7 +17,7 @@ namespace ibrdf {
 namespace {
 
 constexpr double kGoldenAngle = kPi * (3.0 - 2.23606797749978969641);
-// Of the patches: coarser than a solve takes.
+// Patches are coarser than a solve takes.
 constexpr double kProbePatch = 0.2;
 constexpr int kProbePatches = 500;
 
@@ -124,7 +124,7 @@ OmissionErrors PredictEffects(const Scene& scene,
     };
     without.Render(*look.brdf, look.map->rgb.data(), part.data());
     keep_larger(&omission.unshadowed);
-    // Of a convex object there are no patches.
+    // A convex object has no patches.
     for (int b = 0; b < with.bounces(); ++b) {
       with.RenderBounces(*look.brdf, look.map->rgb.data(), b, part.data());
       keep_larger(&omission.bounces[b]);

@@ -52,9 +52,9 @@ struct OmissionErrors {
   // mean counts as that.
   double unshadowed = 0.0;
   std::array<double, kMostBounces + 1> bounces = {};
-  // Of the rays that a solve would cast from all the points, for shadows and,
-  // beyond those, for bounces: predicted from the time of those cast here. Vary
-  // from run to run; decide nothing.
+  // Seconds of the rays that a solve would cast from all the points, for
+  // shadows and, beyond those, for bounces: predicted from the time of those
+  // cast here. Vary from run to run; decide nothing.
   double shadow_seconds = 0.0, bounce_seconds = 0.0;
 };
 

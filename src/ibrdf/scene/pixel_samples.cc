@@ -11,8 +11,8 @@
 namespace ibrdf {
 namespace {
 
-// Of a second difference between pixels: 1/24 for the mean of a parabola over a
-// pixel, a quarter for an edge at a random place.
+// The share of a second difference between pixels: 1/24 for the mean of a
+// parabola over a pixel, a quarter for an edge at a random place.
 constexpr double kShare = 1.0 / 8;
 
 }  // namespace

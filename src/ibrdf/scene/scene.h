@@ -24,7 +24,7 @@ struct ShadingPoint {
   float coverage;          // share of the pixel's area it stands for, (0, 1]
   int index = 0;           // in the list of FindShadingPoints; copies keep it
   // Where shadow rays start: just above the smooth surface (see SurfaceHit).
-  // Of a normal map, which has no position, the origin.
+  // The origin where a normal map gives no position.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 

@@ -217,7 +217,7 @@ void LightOperator::ApplyTranspose(const double* adjoint,
                                    float* gradient) const {
   std::vector<double> sums(4 * num_sources_, 0.0);
   AddTranspose(adjoint, &sums);
-  // Of R_b, b falling: what is left for R_0 = 0 is dropped.
+  // The adjoint of R_b, b falling: what is left for R_0 = 0 is dropped.
   for (int b = 0; b < bounces_; ++b) {
     std::vector<double> by_emitted(size_t{3} * patches_->num_points());
     for (size_t k = 0; k < by_emitted.size(); ++k) {

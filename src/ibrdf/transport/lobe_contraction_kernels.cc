@@ -7,7 +7,7 @@ namespace {
 
 // Nodes ahead: the fields are larger than the caches near the core.
 constexpr int kPrefetch = 8;
-// Of these sums, three channels each fit in the registers.
+// So many of these sums, three channels each fit in the registers.
 constexpr int kMostVectors = kLanes >= 16 ? 4 : 2;
 
 // kVectors vectors from `fields` on, at which a node has `stride` floats.

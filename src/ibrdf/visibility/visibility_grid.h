@@ -24,7 +24,7 @@ struct GridRange {
 class VisibilityGrid {
  public:
   using Bits = std::vector<uint64_t>;
-  // Of one thread; kept between calls.
+  // Buffers of one thread, kept between calls.
   struct Scratch {
     struct Cell {
       int row_begin, row_end, column_begin, column_end;  // corners
@@ -74,7 +74,7 @@ class VisibilityGrid {
   double VisibleAt(const uint64_t* bits, const Eigen::Vector3d& n, double row,
                    double column) const;
 
-  // Of a texel's centre; unit.
+  // The unit direction of a texel's centre.
   Eigen::Vector3d Direction(int row, int column) const {
     return {sin_theta_[row] * sin_phi_[column], cos_theta_[row],
             sin_theta_[row] * cos_phi_[column]};
