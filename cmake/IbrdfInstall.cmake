@@ -8,6 +8,9 @@ foreach(folder src/ibrdf/ io solvers)
           FILES_MATCHING PATTERN "*.h"
           PATTERN src/ibrdf/io EXCLUDE
           PATTERN src/ibrdf/solvers EXCLUDE
+          PATTERN io/exr_layers.h EXCLUDE  # of the library itself
+          PATTERN io/exr_memory.h EXCLUDE
+          PATTERN io/png_memory.h EXCLUDE
           PATTERN solvers/bench EXCLUDE
           PATTERN solvers/programs EXCLUDE)
 endforeach()

@@ -9,47 +9,20 @@
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
-#include <ImfPartType.h>
-#include <ImfTileDescription.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <exception>
-#include <map>
-#include <stdexcept>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/exr_memory.h"
 
 namespace ibrdf {
 namespace {
-
-// The file is held in memory, so every read is checked against its length.
-class MemoryInput final : public Imf::IStream {
- public:
-  MemoryInput(const std::string& path, const std::string& bytes)
-      : Imf::IStream(path.c_str()), bytes_(bytes) {}
-
-  bool read(char c[], int n) override {
-    if (n < 0 || position_ > bytes_.size() ||
-        static_cast<size_t>(n) > bytes_.size() - position_) {
-      throw std::runtime_error("unexpected end of file");
-    }
-    std::memcpy(c, bytes_.data() + position_, static_cast<size_t>(n));
-    position_ += static_cast<size_t>(n);
-    return position_ < bytes_.size();
-  }
-  uint64_t tellg() override { return position_; }
-  void seekg(uint64_t position) override { position_ = position; }
-
- private:
-  const std::string& bytes_;
-  uint64_t position_ = 0;
-};
 
 class MemoryOutput final : public Imf::OStream {
  public:
@@ -120,126 +93,27 @@ StatusOr<std::array<std::string, 3>> ColourChannels(
                           (found.empty() ? std::string("none") : found));
 }
 
-Status CheckHeader(const std::string& path, const Imf::Header& header,
-                   const ImageLimits& limits) {
-  if (header.hasType() && !Imf::isImage(header.type())) {
-    return InvalidInput(path + ": type",
-                        "expected scanlines or tiles, found " + header.type());
-  }
-  const Imath::Box2i& window = header.dataWindow();
-  IBRDF_RETURN_IF_ERROR(
-      CheckImageSize(path, int64_t{window.max.x} - window.min.x + 1,
-                     int64_t{window.max.y} - window.min.y + 1, limits));
-  if (header.hasTileDescription()) {
-    // OpenEXR allocates whole tiles, even of a small image.
-    const Imf::TileDescription& tile = header.tileDescription();
-    const Status status = CheckImageSize(path, tile.xSize, tile.ySize, limits);
-    if (!status.ok()) {
-      return InvalidInput(path + ": tile size",
-                          "expected at most the limits of an image, found " +
-                              std::to_string(tile.xSize) + "x" +
-                              std::to_string(tile.ySize));
-    }
-  }
-  return OkStatus();
-}
-
-uint32_t LittleEndian32(const std::string& bytes, size_t at) {
-  uint32_t value = 0;
-  for (size_t i = 0; i < 4; ++i) {
-    value |= uint32_t{static_cast<uint8_t>(bytes[at + i])} << (8 * i);
-  }
-  return value;
-}
-
-constexpr size_t kHeaderStart = 8;  // after the magic number and the version
-
-// Whether OpenEXR, which goes by the type where that says how long a value is,
-// reads all of `value` and no more.
-bool SizeFitsType(const std::string& type, std::string_view value) {
-  static const std::map<std::string, size_t> kBytes = {
-      {"box2f", 16},   {"box2i", 16},      {"chromaticities", 32},
-      {"double", 8},   {"compression", 1}, {"deepImageState", 1},
-      {"envmap", 1},   {"float", 4},       {"int", 4},
-      {"keycode", 28}, {"lineOrder", 1},   {"m33d", 72},
-      {"m33f", 36},    {"m44d", 128},      {"m44f", 64},
-      {"rational", 8}, {"tiledesc", 9},    {"timecode", 8},
-      {"v2d", 16},     {"v2f", 8},         {"v2i", 8},
-      {"v3d", 24},     {"v3f", 12},        {"v3i", 12}};
-  if (type == "chlist") {  // names with 16 bytes each, then an empty name
-    size_t at = 0;
-    while (at < value.size() && value[at] != '\0') {
-      at = std::min(value.find('\0', at), value.size()) + 17;
-    }
-    return at + 1 == value.size();
-  }
-  const auto bytes = kBytes.find(type);
-  return bytes == kBytes.end() || bytes->second == value.size();
-}
-
-// OpenEXR allocates what an attribute claims before it reads it: every claim
-// must fit into the file. A header that is cut off is left to OpenEXR.
-Status CheckAttributes(const std::string& path, const std::string& bytes) {
-  constexpr uint32_t kMultiPart = 0x1000;
-  if (bytes.size() < kHeaderStart) return OkStatus();
-  const bool many = (LittleEndian32(bytes, 4) & kMultiPart) != 0;
-  size_t at = kHeaderStart;
-  bool header_is_empty = true;
-  while (true) {
-    const size_t name_end = bytes.find('\0', at);
-    if (name_end == std::string::npos) return OkStatus();
-    if (name_end == at) {  // the end of a header; an empty one is the last
-      if (!many || header_is_empty) return OkStatus();
-      header_is_empty = true;
-      ++at;
-      continue;
-    }
-    header_is_empty = false;
-    const std::string name =
-        bytes.substr(at, std::min(name_end - at, size_t{60}));
-    const size_t type_end = bytes.find('\0', name_end + 1);
-    if (type_end == std::string::npos || bytes.size() - type_end < 5) {
-      return OkStatus();
-    }
-    const uint32_t size = LittleEndian32(bytes, type_end + 1);
-    at = type_end + 5;
-    if (size > bytes.size() - at) {
-      return InvalidInput(path + ": attribute " + name,
-                          "expected a size that fits into the file, found " +
-                              std::to_string(size) + " bytes");
-    }
-    const std::string type =
-        bytes.substr(name_end + 1, type_end - name_end - 1);
-    if (!SizeFitsType(type, std::string_view(bytes).substr(at, size))) {
-      return InvalidInput(path + ": attribute " + name,
-                          "expected the size of its type, found " +
-                              std::to_string(size) + " bytes");
-    }
-    at += size;
-  }
-}
-
 // Before OpenEXR reads tables that grow with the size that the header claims.
 Status CheckFirstHeader(const std::string& path, const std::string& bytes,
                         const ImageLimits& limits) {
-  IBRDF_RETURN_IF_ERROR(CheckAttributes(path, bytes));
-  if (bytes.size() < kHeaderStart) return OkStatus();
-  MemoryInput stream(path, bytes);
-  stream.seekg(kHeaderStart);
-  int version = static_cast<int>(LittleEndian32(bytes, 4));
+  IBRDF_RETURN_IF_ERROR(CheckExrAttributes(path, bytes));
+  if (bytes.size() < kExrHeaderStart) return OkStatus();
+  ExrMemoryInput stream(path, bytes);
+  stream.seekg(kExrHeaderStart);
+  int version = ExrVersion(bytes);
   Imf::Header header;
   header.readFrom(stream, version);
-  return CheckHeader(path, header, limits);
+  return CheckExrHeader(path, header, limits);
 }
 
 StatusOr<Image> Decode(const std::string& path, const std::string& bytes,
                        const ImageLimits& limits) {
   IBRDF_RETURN_IF_ERROR(CheckFirstHeader(path, bytes, limits));
-  MemoryInput stream(path, bytes);
+  ExrMemoryInput stream(path, bytes);
   Imf::MultiPartInputFile file(stream, Imf::globalThreadCount(),
                                /*reconstructChunkOffsetTable=*/false);
   const Imf::Header& header = file.header(0);
-  IBRDF_RETURN_IF_ERROR(CheckHeader(path, header, limits));
+  IBRDF_RETURN_IF_ERROR(CheckExrHeader(path, header, limits));
   if (!file.partComplete(0)) {
     return InvalidInput(path, "incomplete file, expected all its pixels");
   }

@@ -4,31 +4,23 @@
 
 #include <csetjmp>
 #include <cstdint>
-#include <cstring>
 #include <exception>
 #include <new>
 #include <vector>
 
 #include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/png_memory.h"
 
 namespace ibrdf {
 namespace {
 
-// libpng reports errors by longjmp, which must not skip a destructor: the
-// functions that call setjmp own nothing, they work on the state of a caller.
-struct ReadState {
-  const char* bytes = nullptr;
-  size_t size = 0;
-  size_t position = 0;
-  png_structp png = nullptr;
-  png_infop info = nullptr;
+struct ReadState : PngReadState {
+  using PngReadState::PngReadState;
+
   png_uint_32 width = 0;
   png_uint_32 height = 0;
   size_t row_bytes = 0;  // four channels, 8 or 16 bits each
   bool sixteen_bits = false;
-  char message[128] = "";
-
-  ~ReadState() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
 struct WriteState {
@@ -39,25 +31,6 @@ struct WriteState {
 
   ~WriteState() { png_destroy_write_struct(&png, &info); }
 };
-
-// error_ptr is the message buffer of the state.
-void OnError(png_structp png, png_const_charp message) {
-  char* buffer = static_cast<char*>(png_get_error_ptr(png));
-  std::strncpy(buffer, message, 127);
-  buffer[127] = '\0';
-  png_longjmp(png, 1);
-}
-
-void OnWarning(png_structp, png_const_charp) {}
-
-void ReadBytes(png_structp png, png_bytep out, size_t count) {
-  ReadState* state = static_cast<ReadState*>(png_get_io_ptr(png));
-  if (count > state->size - state->position) {
-    png_error(png, "unexpected end of file");
-  }
-  std::memcpy(out, state->bytes + state->position, count);
-  state->position += count;
-}
 
 void WriteBytes(png_structp png, png_bytep data, size_t count) {
   WriteState* state = static_cast<WriteState*>(png_get_io_ptr(png));
@@ -74,14 +47,8 @@ void FlushBytes(png_structp) {}
 
 // Reads the header and asks for four channels a pixel.
 bool ReadHeader(ReadState* state) {
-  state->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, state->message,
-                                      OnError, OnWarning);
-  if (state->png == nullptr) return false;
+  if (!OpenPng(state)) return false;
   if (setjmp(png_jmpbuf(state->png)) != 0) return false;
-  state->info = png_create_info_struct(state->png);
-  if (state->info == nullptr) return false;
-  png_set_user_limits(state->png, kMaxImageSide, kMaxImageSide);
-  png_set_read_fn(state->png, state, ReadBytes);
   png_read_info(state->png, state->info);
   state->width = png_get_image_width(state->png, state->info);
   state->height = png_get_image_height(state->png, state->info);
@@ -95,16 +62,9 @@ bool ReadHeader(ReadState* state) {
   return png_get_channels(state->png, state->info) == 4;
 }
 
-bool ReadRows(ReadState* state, png_bytepp rows) {
-  if (setjmp(png_jmpbuf(state->png)) != 0) return false;
-  png_read_image(state->png, rows);
-  png_read_end(state->png, nullptr);
-  return true;
-}
-
 bool WriteRows(WriteState* state, const Rgb8Image& image) {
   state->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, state->message,
-                                       OnError, OnWarning);
+                                       OnPngError, OnPngWarning);
   if (state->png == nullptr) return false;
   if (setjmp(png_jmpbuf(state->png)) != 0) return false;
   state->info = png_create_info_struct(state->png);
@@ -130,9 +90,7 @@ Status DecodeError(const std::string& path, const ReadState& state) {
 
 StatusOr<Mask> DecodeOrThrow(const std::string& path, const std::string& bytes,
                              const ImageLimits& limits) {
-  ReadState state;
-  state.bytes = bytes.data();
-  state.size = bytes.size();
+  ReadState state(bytes);
   if (!ReadHeader(&state)) return DecodeError(path, state);
   IBRDF_RETURN_IF_ERROR(
       CheckImageSize(path, state.width, state.height, limits));
@@ -148,7 +106,7 @@ StatusOr<Mask> DecodeOrThrow(const std::string& path, const std::string& bytes,
   for (size_t y = 0; y < rows.size(); ++y) {
     rows[y] = pixels.data() + y * state.row_bytes;
   }
-  if (!ReadRows(&state, rows.data())) return DecodeError(path, state);
+  if (!ReadPngRows(&state, rows.data())) return DecodeError(path, state);
 
   Mask mask(static_cast<int>(state.width), static_cast<int>(state.height), 0);
   const size_t channel_bytes = state.sixteen_bits ? 2 : 1;

@@ -10,7 +10,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 packages=(
   g++ cmake make
   libceres-dev libopenblas-dev libeigen3-dev libgoogle-glog-dev libembree-dev
-  libopenexr-dev libpng-dev
+  libopenexr-dev libpng-dev libjpeg-dev libtiff-dev
   libopencv-core-dev libopencv-imgproc-dev
   libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
 )

@@ -1,8 +1,13 @@
 // fuzz_seeds DIR: writes small valid inputs of every fuzzer into DIR/NAME/.
 #include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfTileDescription.h>
 #include <ImfTiledOutputFile.h>
 #include <glog/logging.h>
@@ -19,6 +24,7 @@
 #include "ibrdf/io/radiance_hdr.h"
 #include "ibrdf/solvers/bench/results_table.h"
 #include "tests/fuzz/parsers.h"
+#include "tests/support/photo_files.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/tiny_model.h"
 
@@ -194,6 +200,194 @@ void WritePngs(const std::string& folder) {
   }
 }
 
+// Sizes, curves, profiles, EXIF, alpha and palettes; of JPEG baseline,
+// progressive and restarted; of TIFF strips, tiles, planes and compressions.
+void WritePhotoPngs(const std::string& folder) {
+  WritePngs(folder);
+  PngSpec spec;
+  spec.width = 3;
+  spec.height = 2;
+  spec.rows = std::string(18, '!');
+  spec.before = {
+      {"gAMA", BigEndianBytes(45455, 4)},
+      {"cICP", std::string("\1\15\0\1", 4)},
+      {"sBIT", "\5\6\7"},
+      {"iCCP", std::string("p\0\0", 3) + ZlibBytes(RgbIcc("a", SrgbCurve()))},
+      {"pHYs", BigEndianBytes(2, 4) + BigEndianBytes(1, 4) + '\0'},
+      {"eXIf", ExifOfOrientation(6)}};
+  WriteBytes(folder + "/tags", "\1" + PngBytes(spec));
+  spec.before = {{"sRGB", std::string(1, '\0')},
+                 {"tRNS", std::string("\0!\0!\0!", 6)}};
+  spec.after = {{"eXIf", ExifOfOrientation(8)}};
+  WriteBytes(folder + "/srgb", "\1" + PngBytes(spec));
+}
+
+void WriteJpegs(const std::string& folder) {
+  for (const int channels : {1, 3, 4}) {
+    for (const bool progressive : {false, true}) {
+      JpegSpec spec;
+      spec.width = 17;
+      spec.height = 9;
+      spec.channels = channels;
+      spec.colours = channels == 1   ? JCS_GRAYSCALE
+                     : channels == 3 ? JCS_RGB
+                                     : JCS_CMYK;
+      spec.quality = 50;
+      spec.subsample = progressive;
+      spec.progressive = progressive;
+      spec.restart_interval = progressive ? 0 : 2;
+      for (int i = 0; i < 17 * 9 * channels; ++i) {
+        spec.values.push_back(static_cast<uint8_t>(3 * i));
+      }
+      if (progressive) {
+        spec.markers = {ExifMarker(ExifOfOrientation(5))};
+        spec.icc = RgbIcc("a", IccPower(2.2));
+      }
+      WriteBytes(folder + "/channels" + std::to_string(channels) +
+                     (progressive ? "_progressive" : ""),
+                 JpegBytes(spec));
+    }
+  }
+}
+
+void WriteTiffs(const std::string& folder) {
+  TiffSpec spec;
+  spec.width = 18;
+  spec.height = 5;
+  spec.values = std::string(18 * 5 * 3, '#');
+  int number = 0;
+  const auto write = [&](const TiffSpec& s) {
+    WriteTiff(folder + "/" + std::to_string(number++), {s});
+  };
+  for (const uint16_t compression :
+       {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
+        COMPRESSION_PACKBITS, COMPRESSION_ZSTD}) {
+    spec.compression = compression;
+    for (const int tile : {0, 16}) {
+      spec.tile = tile;
+      spec.planes = tile == 0;
+      spec.mode = tile == 0 ? "wl" : "wb";
+      write(spec);
+    }
+  }
+  spec.tile = 0;
+  spec.planes = false;
+  spec.compression = COMPRESSION_LZW;
+  spec.predictor = PREDICTOR_HORIZONTAL;
+  spec.orientation = 6;
+  spec.icc = RgbIcc("a", IccPower(1.8));
+  write(spec);
+  TiffSpec floats = spec;
+  floats.predictor = PREDICTOR_FLOATINGPOINT;
+  floats.format = SAMPLEFORMAT_IEEEFP;
+  floats.bits = 32;
+  floats.values = std::string(4 * spec.values.size(), '?');
+  floats.mode = "w8";
+  write(floats);
+  TiffSpec palette;
+  palette.width = 4;
+  palette.height = 2;
+  palette.bits = 4;
+  palette.samples = 1;
+  palette.photometric = PHOTOMETRIC_PALETTE;
+  palette.values = "\1\2\3\4";
+  palette.palette.assign(48, 257);
+  write(palette);
+  TiffSpec jpeg = spec;
+  jpeg.predictor = 0;
+  jpeg.compression = COMPRESSION_JPEG;
+  jpeg.photometric = PHOTOMETRIC_YCBCR;
+  jpeg.rows_per_strip = 16;
+  write(jpeg);
+}
+
+// Layers, parts, windows, chromaticities, luminance and chroma.
+void WritePhotoExrs(const std::string& folder) {
+  const TempDir dir;
+  const Image image = Gradient(6, 4);
+  const auto write = [&](const std::string& name, Imf::Header header,
+                         const std::vector<std::string>& channels,
+                         int sampling) {
+    Imf::FrameBuffer frame;
+    for (size_t k = 0; k < channels.size(); ++k) {
+      const int s = k == 0 ? 1 : sampling;
+      header.channels().insert(channels[k], Imf::Channel(Imf::HALF, s, s));
+    }
+    std::vector<std::vector<half>> planes(channels.size(),
+                                          std::vector<half>(24, half(0.5f)));
+    for (size_t k = 0; k < channels.size(); ++k) {
+      const int s = k == 0 ? 1 : sampling;
+      frame.insert(
+          channels[k],
+          Imf::Slice::Make(Imf::HALF, planes[k].data(), header.dataWindow(), 2,
+                           static_cast<size_t>(12 / s), s, s));
+    }
+    for (const char flag : {'\0', '\1'}) {
+      const std::string path = dir.File(name + (flag ? "_normals" : ""));
+      Imf::OutputFile file(path.c_str(), header);
+      file.setFrameBuffer(frame);
+      file.writePixels(4);
+    }
+  };
+  Imf::Header plain(6, 4);
+  write("layers", plain, {"a.Combined.R", "a.Combined.G", "a.Combined.B"}, 1);
+  write("xyz", plain, {"N.X", "N.Y", "N.Z", "R", "G", "B", "A"}, 1);
+  write("chroma", plain, {"Y", "RY", "BY"}, 2);
+  Imf::Header window({{-2, 0}, {9, 9}}, {{0, -2}, {5, 1}});
+  Imf::addChromaticities(window,
+                         Imf::Chromaticities({0.7f, 0.3f}, {0.2f, 0.7f}));
+  write("window", window, {"R", "G", "B"}, 1);
+  std::vector<Imf::Header> headers;
+  for (const char* part : {"beauty", "albedo"}) {
+    headers.push_back(plain);
+    headers.back().setName(part);
+    headers.back().setType(Imf::SCANLINEIMAGE);
+    headers.back().channels().insert("Y", Imf::Channel(Imf::FLOAT));
+  }
+  {
+    Imf::MultiPartOutputFile file(dir.File("parts").c_str(), headers.data(), 2);
+    Imf::FrameBuffer frame;
+    frame.insert("Y", Imf::Slice::Make(Imf::FLOAT, image.rgb.data(),
+                                       plain.dataWindow(), 4, 24));
+    for (int k = 0; k < 2; ++k) {
+      Imf::OutputPart part(file, k);
+      part.setFrameBuffer(frame);
+      part.writePixels(4);
+    }
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(dir.path())) {
+    const std::string name = entry.path().filename();
+    const bool normals = name.find("_normals") != std::string::npos;
+    WriteBytes(folder + "/" + name,
+               (normals ? "\1" : "\2") + ReadBytes(entry.path()));
+  }
+}
+
+void WriteArrays(const std::string& npy, const std::string& pfm,
+                 const std::string& exif, const std::string& icc) {
+  for (const char* type : {"|u1", "<u2", "<f4", "<f8"}) {
+    const std::string header = std::string("{'descr': '") + type +
+                               "', 'fortran_order': False, 'shape': (1, 2), }";
+    const size_t bytes = static_cast<size_t>(type[2] - '0');
+    WriteBytes(npy + "/" + type[1] + type[2],
+               std::string("\x93NUMPY\1\0", 8) +
+                   LittleEndianBytes(static_cast<uint32_t>(header.size()), 2) +
+                   header + std::string(2 * bytes, '\1'));
+  }
+  WriteBytes(pfm + "/colour", "PF\n1 2\n-1.0\n" + std::string(24, '?'));
+  WriteBytes(pfm + "/grey", "Pf\n1 2\n2.5\n" + std::string(8, '?'));
+  WriteBytes(exif + "/little", ExifOfOrientation(6));
+  WriteBytes(exif + "/big", ExifBlock({{0x0112, 3, 1, 8},
+                                       {0xA001, 3, 1, 1},
+                                       {0x8827, 3, 1, 400},
+                                       {0x829A, 5, 1, 0},
+                                       {0x8769, 4, 1, 8}},
+                                      true));
+  WriteBytes(icc + "/srgb", RgbIcc("sRGB", SrgbCurve()));
+  WriteBytes(icc + "/power", RgbIcc("Adobe", IccPower(2.2)));
+  WriteBytes(icc + "/grey", IccBytes("GRAY", {{"kTRC", IccPower(1.8)}}));
+}
+
 // A table of ones.
 void WriteMerl(const std::string& folder) {
   std::string bytes(sizeof(kFuzzedMerlBins), '\0');
@@ -222,6 +416,11 @@ void WriteSeeds(const std::string& folder) {
                          "FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n"
                          "\x10\x20\x30\x80\1\1\1\x8"));
   WritePngs(in("png"));
+  WritePhotoPngs(in("photo_png"));
+  WriteJpegs(in("photo_jpeg"));
+  WriteTiffs(in("photo_tiff"));
+  WritePhotoExrs(in("photo_exr"));
+  WriteArrays(in("npy"), in("pfm"), in("exif"), in("icc"));
   WriteMerl(in("merl"));
   WriteMeshes(in("obj"), in("ply"));
   WriteProblems(in("problem"));

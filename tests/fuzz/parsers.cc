@@ -2,16 +2,21 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <optional>
 
 #include "ibrdf/io/checksum.h"
+#include "ibrdf/io/exif.h"
 #include "ibrdf/io/exr.h"
+#include "ibrdf/io/icc_profile.h"
 #include "ibrdf/io/image_limits.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/mesh.h"
 #include "ibrdf/io/model_file.h"
+#include "ibrdf/io/photo_file.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/io/radiance_hdr.h"
@@ -79,6 +84,74 @@ void FuzzPng(const std::string& input) {
   CHECK_EQ(mask->inside.size(),
            static_cast<size_t>(mask->width) * mask->height);
   for (const uint8_t v : mask->inside) CHECK_LE(v, 1);
+}
+
+void CheckOneLine(const std::string& text) {
+  for (const char c : text) CHECK_GE(static_cast<unsigned char>(c), 0x20);
+}
+
+void CheckMask(const Mask& mask, const Photo& photo) {
+  if (mask.empty()) return;
+  CHECK_EQ(mask.width, photo.image.width);
+  CHECK_EQ(mask.inside.size(), photo.image.num_pixels());
+  for (const uint8_t v : mask.inside) CHECK_LE(v, 1);
+}
+
+// `magic`: the format is this one, whatever the bytes begin with.
+void FuzzPhoto(const std::string& bytes, const std::string& magic,
+               PhotoContent content = PhotoContent::kColour) {
+  std::string file = bytes;
+  file.replace(0, std::min(magic.size(), file.size()), magic);
+  PhotoOptions options;
+  options.content = content;
+  options.limits = kLimits;
+  const StatusOr<Photo> photo = DecodePhoto("a.photo", file, options);
+  if (!photo.ok()) return CheckError(photo.status(), "a.photo");
+  CHECK(CheckImageSize("a.photo", photo->image.width, photo->image.height,
+                       kLimits)
+            .ok());
+  CHECK_EQ(photo->image.rgb.size(), 3 * photo->image.num_pixels());
+  CheckMask(photo->opaque, *photo);
+  CheckMask(photo->has_data, *photo);
+  CHECK(photo->bits >= 0 && photo->bits <= 16);
+  CHECK(photo->significant_bits >= 0 && photo->significant_bits <= photo->bits);
+  if (photo->bits > 0) {
+    const float largest = static_cast<float>((1 << photo->bits) - 1);
+    for (const float v : photo->image.rgb) CHECK(v >= 0.0f && v <= largest);
+  }
+  CHECK(photo->pixel_aspect > 0.0 && std::isfinite(photo->pixel_aspect));
+  CHECK(photo->orientation >= 1 && photo->orientation <= 8);
+  CheckOneLine(photo->curve.source);
+  CheckOneLine(photo->layer);
+  for (const std::string& note : photo->notes) CheckOneLine(note);
+}
+
+void FuzzPhotoPng(const std::string& input) {
+  if (input.empty()) return;
+  std::string bytes = input.substr(1);
+  if (input[0] & 1) FixPngChecksums(&bytes);
+  FuzzPhoto(bytes, "\x89PNG\r\n\x1a\n");
+}
+
+void FuzzPhotoExr(const std::string& input) {
+  if (input.empty()) return;
+  FuzzPhoto(input.substr(1), "\x76\x2f\x31\x01",
+            input[0] & 1 ? PhotoContent::kNormals : PhotoContent::kColour);
+}
+
+void FuzzExif(const std::string& bytes) {
+  const ExifTags exif = ParseExif(bytes);
+  CHECK(exif.orientation >= 1 && exif.orientation <= 8);
+  for (const auto& value : {exif.exposure_seconds, exif.f_number, exif.iso}) {
+    CHECK(!value || (*value > 0.0 && std::isfinite(*value)));
+  }
+}
+
+void FuzzIcc(const std::string& bytes) {
+  const std::optional<IccProfile> profile = ParseIccProfile(bytes);
+  if (!profile) return;
+  CheckOneLine(profile->description);
+  CHECK(profile->exponent > 0.0 && std::isfinite(profile->exponent));
 }
 
 // A table of few bins goes the way of a whole one.
@@ -193,6 +266,16 @@ const std::vector<Parser>& Parsers() {
       {"exr", FuzzExr},
       {"hdr", FuzzHdr},
       {"png", FuzzPng},
+      {"photo_png", FuzzPhotoPng},
+      {"photo_jpeg",
+       [](const std::string& b) { FuzzPhoto(b, "\xff\xd8\xff"); }},
+      // Of either byte order: the first bytes stay.
+      {"photo_tiff", [](const std::string& b) { FuzzPhoto(b, ""); }},
+      {"photo_exr", FuzzPhotoExr},
+      {"npy", [](const std::string& b) { FuzzPhoto(b, "\x93NUMPY"); }},
+      {"pfm", [](const std::string& b) { FuzzPhoto(b, "P"); }},
+      {"exif", FuzzExif},
+      {"icc", FuzzIcc},
       {"merl", FuzzMerl},
       {"obj", [](const std::string& b) { FuzzMesh("a.obj", b); }},
       {"ply", [](const std::string& b) { FuzzMesh("a.ply", b); }},

@@ -20,8 +20,9 @@ TrainingState FuzzedTrainingState();
 // The columns that the parser of `results` expects.
 const std::vector<std::string>& FuzzedColumns();
 
-// Names of the parsers: exr, hdr, png, merl, obj, ply, problem, model, and of
-// what programs leave for themselves: checkpoint (a training's), results (a
+// Names of the parsers: exr, hdr, png, merl, obj, ply, problem, model; of
+// photographs, photo_png, photo_jpeg, photo_tiff, photo_exr, npy, pfm, and what
+// is inside of them, exif, icc; and of what programs leave for themselves: checkpoint (a training's), results (a
 // sweep's table), trace (in result.json).
 const std::vector<std::string>& FuzzedParsers();
 
@@ -29,8 +30,13 @@ const std::vector<std::string>& FuzzedParsers();
 // where its answer breaks the parser's promises: values of a size that fits,
 // finite where promised, indices in range, or else an error of one line that
 // names the file. How an input becomes a file:
-//   png      after the first byte; where that is odd, every chunk gets the
+//   png, photo_png
+//            after the first byte; where that is odd, every chunk gets the
 //            checksum that fits it
+//   photo_exr
+//            after the first byte; where that is odd, as normals
+//   photo_png, photo_jpeg, photo_exr, npy
+//            with the first bytes that the format has
 //   model, checkpoint
 //            after the first byte; where that is odd, with the checksum that
 //            fits it at the end

@@ -15,12 +15,14 @@ amount=${1:?usage: tests/fuzz/run.sh SECONDSs|EXECUTIONS [PARSER...]}
 shift
 parsers=("$@")
 if [ ${#parsers[@]} -eq 0 ]; then
-  parsers=(checkpoint results trace hdr merl png ply model obj exr problem)
+  parsers=(checkpoint results trace hdr merl npy pfm exif icc png photo_png
+           photo_jpeg photo_tiff ply model obj exr photo_exr problem)
 fi
 # What the seeds take and more.
-declare -A max_len=([checkpoint]=256 [exr]=4096 [hdr]=1024 [merl]=1200 [model]=4096
-                    [obj]=1024 [ply]=1024 [png]=1024 [problem]=2048 [results]=512
-                    [trace]=1024)
+declare -A max_len=([checkpoint]=256 [exif]=512 [exr]=4096 [hdr]=1024 [icc]=2048 [merl]=1200
+                    [model]=4096 [npy]=512 [obj]=1024 [pfm]=512 [photo_exr]=4096
+                    [photo_jpeg]=2048 [photo_png]=2048 [photo_tiff]=4096 [ply]=1024
+                    [png]=1024 [problem]=2048 [results]=512 [trace]=1024)
 mkdir -p build/fuzz/findings
 [ -f "${table}" ] || echo "parser,executions,seconds,features,findings" > "${table}"
 # What is freed goes to the system soon: small inputs, large tables of libraries.
