@@ -29,8 +29,9 @@ double SrgbInverse(double y) {
   return std::max(std::pow((y + 0.055) / 1.055, 2.4), kSrgbMeetX);
 }
 
-// Below, kPower is a straight line.
+// Below, powers become a straight line.
 constexpr double kLeastPowerCode = 0x1p-18;
+constexpr double kLeastPower = 0.2, kMostPower = 5.0;
 
 CurvePoint PowerForward(double p, double least_x, double x) {
   if (x < least_x) {
@@ -96,7 +97,7 @@ double LogInverse(double mu, double log_all, double y) {
 }
 
 constexpr double kLeastNode = 1e-12, kMostNodeCode = 2.0;
-constexpr double kLeastExponent = 0.01, kMostExponent = 100.0;
+constexpr double kLeastExponent = 1e-4, kMostExponent = 1e4;
 
 double Exponent(const CurveNode& a, const CurveNode& b) {
   return std::log(b.y / a.y) / std::log(b.x / a.x);
@@ -168,7 +169,7 @@ StatusOr<ResponseKind> ResponseKindOf(const std::string& where,
 std::optional<ResponseParameter> ParameterOf(ResponseKind kind) {
   switch (kind) {
     case ResponseKind::kPower:
-      return ResponseParameter{"p", 0.2, 5.0, 2.2};
+      return ResponseParameter{"p", kLeastPower, kMostPower, 2.2};
     case ResponseKind::kAces:
       // The range and the initial value of RobIR's code.
       return ResponseParameter{"gamma", 1e-4, 1.0, 0.5};
@@ -243,6 +244,15 @@ void ResponseCurve::SetTable(const std::vector<CurveNode>& table) {
     exponents_.push_back(Exponent(nodes_[i], nodes_[i + 1]));
   }
   exponents_.push_back(std::min(exponents_.back(), 1.0));
+  const CurveNode first = nodes_[0];
+  if (first.y > kLeastPowerCode) {
+    const double exponent =
+        std::clamp(exponents_[0], 1.0 / kMostPower, 1.0 / kLeastPower);
+    nodes_.insert(nodes_.begin(), {first.x * std::pow(kLeastPowerCode / first.y,
+                                                      1.0 / exponent),
+                                   kLeastPowerCode});
+    exponents_.insert(exponents_.begin(), exponent);
+  }
 }
 
 CurvePoint ResponseCurve::TableForward(double x) const {
@@ -315,7 +325,9 @@ CurvePoint ResponseCurve::EncodePoint(double x) const {
   if (std::isnan(x)) return {x, x, x};
   if (x < 0.0) return {};
   if (kind_ == ResponseKind::kLinear || x < kMaxCurveRadiance) {
-    return Forward(x);
+    CurvePoint point = Forward(x);
+    point.value = std::min(point.value, max_code_);
+    return point;
   }
   const CurvePoint end = Forward(kMaxCurveRadiance);
   return {end.value, 0.0, end.parameter_slope};
