@@ -61,11 +61,13 @@ CodeLevels AnyLevels() {
     levels.black += 0.4 * *Unit();
   }
   if (*Choice(4) == 0) {
-    levels.clip =
-        levels.black + (levels.white - levels.black) * *Between(0.5, 1.0);
+    const double share = *Between(0.5, 1.0);
+    levels.clip = (1.0 - share) * levels.black + share * levels.white;
+    // The sum is rounded.
+    levels.clip = std::min(*levels.clip, levels.white);
   }
   levels.exposure = *rc::gen::oneOf(rc::gen::just(1.0), Magnitude(1e-3, 1e3),
-                                    Magnitude(1e-100, 1e100));
+                                    Magnitude(1e-99, 1e99));
   return levels;
 }
 

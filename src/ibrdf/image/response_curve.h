@@ -25,10 +25,11 @@ enum class ResponseKind {
   // straight line through the origin, so that slopes are finite.
   kPower,
   // y = gamma^(-1/5) f(x), f(x) = x (2.51 x + 0.03) / (x (2.43 x + 0.59) +
-  // 0.14): Narkowicz's fit of the ACES curve (2016), scaled as in RobIR's
-  // supplement. f(1) = 0.8038 and f(7.2417) = 1; f stays below 2.51 / 2.43 =
-  // 1.0329. RobIR raises 8-bit values to the power 2.2 before it compares them
-  // with this curve; here y is what the curve says, without a power.
+  // 0.14): Narkowicz's fit of the ACES curve (2016), scaled as by RobIR (Yang
+  // et al. 2024, supplement, Fig. 9; the factor is in their code). f(1) =
+  // 0.8038, f(7.2417) = 1, and f stays below 2.51 / 2.43 = 1.0329. RobIR raises
+  // 8-bit values to the power 2.2 before it compares them with this curve; here
+  // y is what the curve says, without a power.
   kAces,
   // y = x (1 + x / white^2) / (1 + x), Reinhard et al. 2002, Eq. 4; Eq. 3 where
   // white is infinite. Encode(white) = 1.
