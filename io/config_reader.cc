@@ -101,7 +101,8 @@ std::string Describe(const ConfigNode& node) {
       break;
   }
   const bool cut = node.scalar.size() > kMaxShown;
-  return "'" + node.scalar.substr(0, kMaxShown) + (cut ? "...'" : "'");
+  return "'" + node.scalar.substr(0, kMaxShown) + (cut ? "...'" : "'") +
+         (node.quoted ? " in quotes, which is text" : "");
 }
 
 std::string JoinWords(const std::vector<std::string>& words) {
@@ -225,6 +226,16 @@ void ConfigReader::Choice(const std::string& key,
     }
   }
   FailExpected(key, JoinWords(words));
+}
+
+void ConfigReader::Text(const std::string& key, std::string* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  if (node->kind != Kind::kScalar || node->scalar.empty()) {
+    FailExpected(key, "text");
+    return;
+  }
+  *out = node->scalar;
 }
 
 void ConfigReader::Path(const std::string& key, std::string* out) {

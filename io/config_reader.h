@@ -51,6 +51,7 @@ class ConfigReader {
   // Index in `words` of the value.
   void Choice(const std::string& key, const std::vector<std::string>& words,
               int* out);
+  void Text(const std::string& key, std::string* out);
   // A file's name, resolved against the folder.
   void Path(const std::string& key, std::string* out);
   // Three numbers; with `one_for_all` one number stands for three.

@@ -135,6 +135,20 @@ Status AtLine(const std::string& where, int line, const std::string& what) {
   return InvalidInput(where, "line " + std::to_string(line) + ": " + what);
 }
 
+// Whether the line, from 0, or the one before it begins with white space that
+// holds a tab.
+bool LineHasTab(const std::string& text, int line) {
+  std::istringstream lines(text);
+  std::string one;
+  for (int i = 0; i <= line && std::getline(lines, one); ++i) {
+    const size_t indent = one.find_first_not_of(" \t");
+    if (i + 1 >= line && one.substr(0, indent).find('\t') != one.npos) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 const ConfigNode* ConfigNode::Find(const std::string& key) const {
@@ -165,7 +179,10 @@ StatusOr<ConfigNode> ParseConfig(const std::string& where,
   } catch (const Refusal& refusal) {
     return AtLine(where, refusal.line, refusal.what);
   } catch (const YAML::Exception& e) {
-    return AtLine(where, e.mark.line + 1, e.msg);
+    return AtLine(where, e.mark.line + 1,
+                  LineHasTab(text, e.mark.line)
+                      ? e.msg + "; tabs cannot indent, use spaces"
+                      : e.msg);
   } catch (const std::exception& e) {
     return InvalidInput(where,
                         std::string("cannot be read as YAML: ") + e.what());

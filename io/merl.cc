@@ -1,7 +1,10 @@
 #include "ibrdf/io/merl.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "ibrdf/io/atomic_file.h"
@@ -10,6 +13,23 @@ namespace ibrdf {
 namespace {
 constexpr size_t kHeaderBytes = 3 * sizeof(int32_t);
 constexpr size_t kTableBytes = size_t{3} * kMerlBins * sizeof(double);
+
+// Files that are taken for MERL tables; empty: none of those.
+std::optional<std::string> WhatItIs(const std::string& bytes,
+                                    const std::array<int32_t, 3>& found,
+                                    const std::array<int32_t, 3>& bins) {
+  if (bytes.rfind("tensor_file", 0) == 0) {
+    return "found a tensor_file, as of the RGL database; resample it to MERL's "
+           "angles";
+  }
+  std::array<int32_t, 3> swapped = found;
+  for (int32_t& v : swapped) {
+    v = static_cast<int32_t>(__builtin_bswap32(static_cast<uint32_t>(v)));
+  }
+  if (swapped == bins) return "found them in big-endian byte order";
+  return std::nullopt;
+}
+
 }  // namespace
 
 StatusOr<MerlTable> ReadMerl(const std::string& path) {
@@ -20,6 +40,12 @@ StatusOr<MerlTable> ReadMerl(const std::string& path) {
   if (!raw.ok()) return raw.status();
   MerlTable table;
   table.raw = *std::move(raw);
+  if (std::all_of(table.raw.begin(), table.raw.end(),
+                  [](double v) { return v < 0.0; })) {
+    return InvalidInput(path,
+                        "expected a valid bin, found none: all values are "
+                        "below 0");
+  }
   return table;
 }
 
@@ -36,8 +62,10 @@ StatusOr<std::vector<double>> DecodeMerl(const std::string& path,
   }
   std::memcpy(found.data(), bytes.data(), kHeaderBytes);
   if (found != bins) {
-    return InvalidInput(path + ": dimensions",
-                        "expected " + text(bins) + ", found " + text(found));
+    return InvalidInput(
+        path + ": dimensions",
+        "expected " + text(bins) + " as of a MERL table, " +
+            WhatItIs(bytes, found, bins).value_or("found " + text(found)));
   }
   std::vector<double> raw(size_t{3} * bins[0] * bins[1] * bins[2]);
   const size_t size = kHeaderBytes + raw.size() * sizeof(double);

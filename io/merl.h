@@ -11,8 +11,8 @@
 namespace ibrdf {
 
 // Layout: int32 90, 90, 180, then float64 planes red, green, blue, little
-// endian. Refuses other dimensions, a file of another length, and NaN or
-// infinite entries; the message names the file.
+// endian. Refuses other dimensions, a file of another length, NaN or infinite
+// entries, and a table without a valid bin; the message names the file.
 StatusOr<MerlTable> ReadMerl(const std::string& path);
 
 // The entries of a file's bytes, with `bins` in place of 90, 90, 180; messages

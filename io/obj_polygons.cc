@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -83,6 +84,19 @@ bool Resolve(std::string_view text, int64_t so_far, int64_t total,
   return *index >= 1 && *index <= total;
 }
 
+std::string_view WithoutByteOrderMark(std::string_view text) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  if (text.substr(0, kMark.size()) == kMark) text.remove_prefix(kMark.size());
+  return text;
+}
+
+// Keywords of OBJ are ASCII; lines of others would pass for unknown ones, and
+// what they say be lost.
+bool IsPlain(std::string_view word) {
+  return std::all_of(word.begin(), word.end(),
+                     [](char c) { return c > ' ' && c < '\x7f'; });
+}
+
 struct Counts {
   int64_t vertices = 0;
   int64_t normals = 0;
@@ -129,9 +143,15 @@ StatusOr<PolygonMesh> ParseObj(const std::string& path,
   Counts total;
   bool all_have_normals = true, has_faces = false;
   std::vector<std::string_view> words;
-  LineReader survey(bytes);
+  const std::string_view text = WithoutByteOrderMark(bytes);
+  LineReader survey(text);
   while (survey.Next(&words)) {
     if (words.empty()) continue;
+    if (!IsPlain(words[0])) {
+      return InvalidInput(survey.Where(path),
+                          "expected a keyword of OBJ, found bytes that are no "
+                          "text");
+    }
     total.Add(words[0]);
     if (words[0] != "f") continue;
     has_faces = true;
@@ -150,7 +170,7 @@ StatusOr<PolygonMesh> ParseObj(const std::string& path,
 
   PolygonMesh mesh;
   Counts so_far;
-  LineReader reader(bytes);
+  LineReader reader(text);
   while (reader.Next(&words)) {
     if (words.empty()) continue;
     so_far.Add(words[0]);

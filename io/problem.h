@@ -16,20 +16,47 @@ namespace ibrdf {
 
 enum class ProblemKind { kJoint, kReflectance, kIllumination };
 
+// Which curve made an image's values of radiance (response_curve.h). kAuto:
+// what the file says; sRGB of 8 bits that say nothing.
+enum class ImageResponse {
+  kAuto,
+  kLinear,
+  kSrgb,
+  kPower,
+  kAces,
+  kReinhard,
+  kLog,
+};
+// Name in problem files, e.g. "srgb".
+const std::string& WordOf(ImageResponse response);
+
 struct ImageSpec {
-  std::string file;  // .exr or .hdr; empty: to be rendered
-  std::string mask;  // .png; empty: none
-  int width = 0;     // pixels, of an image to be rendered; 0 with a file
+  std::string file;   // any of photo_file.h; empty: to be rendered
+  std::string mask;   // .png; empty: none
+  std::string layer;  // of OpenEXR; empty: the beauty part
+  ImageResponse response = ImageResponse::kAuto;
+  std::optional<double> response_parameter;  // unset: the curve's usual one
+  // Codes of a file of whole numbers: from `white` on they are clipped, up to
+  // `black` they are 0. Unset: the largest code, and 0.
+  std::optional<double> white, black;
+  double exposure = 1.0;  // values are the curve of exposure times radiance
+  int width = 0;          // pixels, of an image to be rendered; 0 with a file
   int height = 0;
 };
 
 enum class GeometryKind { kSphere, kMesh, kNormals };
 enum class MeshFit { kUnitSphere, kNone };
+// kOpenGl: x right, y up, z towards the camera. kOpenCv: y down, z away.
+enum class NormalFrame { kOpenGl, kOpenCv };
+// kFloat: the vector. kUnit01: (n + 1) / 2. kAuto: see LoadNormals.
+enum class NormalEncoding { kAuto, kFloat, kUnit01 };
 
 struct GeometrySpec {
   GeometryKind kind = GeometryKind::kSphere;  // the unit sphere at the origin
-  std::string file;  // mesh (.obj, .ply) or normals (.exr)
+  std::string file;  // mesh (.obj, .ply) or normals (any of photo_file.h)
   MeshFit fit = MeshFit::kUnitSphere;
+  NormalFrame frame = NormalFrame::kOpenGl;
+  NormalEncoding encoding = NormalEncoding::kAuto;
 };
 
 struct ReflectanceSpec {

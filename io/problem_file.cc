@@ -19,6 +19,12 @@ constexpr size_t kMaxFileBytes = size_t{1} << 20;
 void ReadImageSpec(ProblemReader reader, ImageSpec* image) {
   reader.Read("file", &image->file);
   reader.Read("mask", &image->mask);
+  reader.Read("layer", &image->layer);
+  reader.Read("response", &image->response);
+  reader.Read("response_parameter", &image->response_parameter);
+  reader.Read("white", &image->white);
+  reader.Read("black", &image->black);
+  reader.Read("exposure", &image->exposure);
   reader.Read("width", &image->width);
   reader.Read("height", &image->height);
   if (reader.Has("file") == (reader.Has("width") || reader.Has("height"))) {
@@ -75,6 +81,11 @@ void ReadGeometry(ProblemReader reader, GeometrySpec* geometry) {
   }
   reader.CheckNeeds("fit", reader.Has("mesh"));
   reader.Read("fit", &geometry->fit);
+  for (const char* key : {"frame", "encoding"}) {
+    reader.CheckNeeds(key, reader.Has("normals"));
+  }
+  reader.Read("frame", &geometry->frame);
+  reader.Read("encoding", &geometry->encoding);
 }
 
 void ReadAnalyticBrdf(ProblemReader reader, ReflectanceSpec* reflectance) {

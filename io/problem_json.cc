@@ -25,6 +25,15 @@ json ImageJson(const ImageSpec& image) {
   }
   json out = {{"file", image.file}};
   if (!image.mask.empty()) out["mask"] = image.mask;
+  if (!image.layer.empty()) out["layer"] = image.layer;
+  out["response"] = WordOf(image.response);
+  const auto or_auto = [](const std::optional<double>& value) {
+    return value.has_value() ? json(*value) : json("auto");
+  };
+  out["response_parameter"] = or_auto(image.response_parameter);
+  out["white"] = or_auto(image.white);
+  out["black"] = or_auto(image.black);
+  out["exposure"] = image.exposure;
   return out;
 }
 
@@ -47,7 +56,9 @@ json GeometryJson(const GeometrySpec& geometry) {
       return {{"mesh", geometry.file},
               {"fit", WordOf("geometry.fit", geometry.fit)}};
     case GeometryKind::kNormals:
-      return {{"normals", geometry.file}};
+      return {{"normals", geometry.file},
+              {"frame", WordOf("geometry.frame", geometry.frame)},
+              {"encoding", WordOf("geometry.encoding", geometry.encoding)}};
   }
   return {{"sphere", json::object()}};
 }

@@ -17,6 +17,7 @@ enum class ValueType {
   kChoice,        // one of `words`
   kWordOrList,    // one of `words`, or a list of some of `list_words`
   kPath,          // the name of a file, or the default's word
+  kText,          // any text that is not empty
   kMap,           // of the keys below this one
   kPathOrMap,     // the name of a file, or such a map
   kEmptyMap,      // {}

@@ -51,6 +51,10 @@ void ProblemReader::Read(const std::string& name, std::optional<int64_t>* out) {
 
 void ProblemReader::Read(const std::string& name, std::string* path) {
   const ProblemKey& key = Key(name);
+  if (key.type == ValueType::kText) {
+    reader_.Text(name, path);
+    return;
+  }
   CHECK(key.type == ValueType::kPath || key.type == ValueType::kPathOrMap)
       << key.path;
   const bool by_default =

@@ -131,6 +131,8 @@ std::string RangeText(const ProblemKey& key) {
       return "a word or a list, below";
     case ValueType::kPath:
       return key.files;
+    case ValueType::kText:
+      return "text";
     case ValueType::kMap:
       return "a map";
     case ValueType::kPathOrMap:

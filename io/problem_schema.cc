@@ -76,6 +76,7 @@ class Row {
     key_.files = files;
     return Type(ValueType::kPath, default_value);
   }
+  Row& Text() { return Type(ValueType::kText, ""); }
   Row& PathOrMap(const std::string& files) {
     key_.files = files;
     return Type(ValueType::kPathOrMap, "");
@@ -144,12 +145,48 @@ Keys ImageKeys() {
                   "An image has at most " + std::to_string(kMaxImagePixels) +
                       " pixels."}),
       Row("image.file",
-          "Image of linear radiance, up to one factor that may be unknown.")
-          .Path(".exr, .hdr")
+          "The image: radiance up to one factor that may be unknown, or codes "
+          "that `image.response` makes radiance.")
+          .Path(".exr, .hdr, .pfm, .png, .jpg, .tif, .npy")
           .Unit("W/(m² sr)")
           .Without("needed by a solve")
           .UsedBy(kUsedBySolve)
           .Example("photo.exr"),
+      Row("image.layer",
+          "Layer or part of an OpenEXR file, as `ViewLayer.Combined`.")
+          .Text()
+          .Without("the beauty part")
+          .UsedBy(kUsedBySolve),
+      Row("image.response", "The curve that made the image's values.")
+          .Choice("auto",
+                  {{"auto",
+                    "What the file says (cICP, ICC, sRGB, gAMA, EXIF). Floats "
+                    "are linear, 8 bits that say nothing are sRGB; 16 bits "
+                    "that say nothing are refused."},
+                   {"linear", "Values are proportional to radiance."},
+                   {"srgb", "IEC 61966-2-1."},
+                   {"power", "value = radiance^(1/p)."},
+                   {"aces",
+                    "Narkowicz's fit of the ACES curve, scaled by "
+                    "gamma^(-1/5)."},
+                   {"reinhard", "Reinhard et al. 2002, Eq. 4, by `white`."},
+                   {"log", "log(1 + mu x) / log(1 + mu)."}})
+          .UsedBy(kUsedBySolve),
+      Row("image.response_parameter",
+          "p, gamma, white or mu of the response. `auto`: the usual one.")
+          .AutoOrNumber(kPositive)
+          .UsedBy(kUsedBySolve),
+      Row("image.white",
+          "Codes from here on are clipped: their pixels take no part. `auto`: "
+          "the file's largest code.")
+          .AutoOrNumber(kPositive)
+          .UsedBy(kUsedBySolve),
+      Row("image.black", "The code of no light. `auto`: 0.")
+          .AutoOrNumber(kNotNegative)
+          .UsedBy(kUsedBySolve),
+      Row("image.exposure", "Radiance is divided by it.")
+          .Number(kPositive, "1")
+          .UsedBy(kUsedBySolve),
       Row("image.mask",
           "White pixels are the object. Without a mask, all pixels whose "
           "centre sees the geometry are.")
@@ -212,9 +249,22 @@ Keys GeometryKeys() {
           "(`effects`).")
           .Path(".obj, .ply"),
       Row("geometry.normals",
-          "One unit normal per pixel, in the frame of the orthographic camera; "
+          "One normal per pixel, in the frame of the orthographic camera; "
           "zero is outside. Without positions there are no shadows.")
-          .Path(".exr"),
+          .Path(".exr, .hdr, .pfm, .png, .tif, .npy"),
+      Row("geometry.frame", "The axes of a normal map.")
+          .Choice("opengl",
+                  {{"opengl", "x right, y up, z towards the camera."},
+                   {"opencv", "x right, y down, z away from the camera."}})
+          .Needs("geometry.normals"),
+      Row("geometry.encoding", "How a normal map stores a component n.")
+          .Choice("auto",
+                  {{"auto",
+                    "Files of whole numbers as `unit_0_1`; floats too, where "
+                    "none is negative and lengths are far from 1."},
+                   {"float", "As it is."},
+                   {"unit_0_1", "(n + 1) / 2."}})
+          .Needs("geometry.normals"),
       Row("geometry.fit", "How a mesh is placed before the camera sees it.")
           .Choice("unit_sphere",
                   {{"unit_sphere",

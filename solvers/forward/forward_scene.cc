@@ -62,7 +62,9 @@ StatusOr<ForwardScene> LoadForwardScene(const Problem& problem,
                                         int num_threads) {
   StatusOr<ViewPoints> view = FindViewPoints(problem, num_threads);
   if (!view.ok()) return view.status();
-  StatusOr<Image> map = LoadKnownIllumination(problem.illumination);
+  std::vector<std::string> warnings;
+  StatusOr<Image> map =
+      LoadKnownIllumination(problem.illumination, &warnings);
   if (!map.ok()) return map.status();
   StatusOr<KnownBrdf> brdf = LoadBrdf(problem.reflectance);
   if (!brdf.ok()) return brdf.status();
@@ -70,6 +72,7 @@ StatusOr<ForwardScene> LoadForwardScene(const Problem& problem,
   ForwardScene scene;
   scene.view = *std::move(view);
   scene.map = *std::move(map);
+  scene.warnings = std::move(warnings);
   scene.brdf = *std::move(brdf);
   if (scene.view.scene.CastsShadows()) {
     scene.grid = scene.brdf.Grid();

@@ -1,5 +1,6 @@
 // The files of a renderable problem, read.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "ibrdf/base/status.h"
@@ -28,6 +29,7 @@ struct ForwardScene {
   // Whether the object may see itself as in a mirror: it casts shadows, and its
   // lobe is narrower than kNarrowLobe.
   bool narrow_lobe = false;
+  std::vector<std::string> warnings;  // of the inputs: sentences for the user
 };
 
 // Sorts points by the angle between normal and view.

@@ -40,6 +40,7 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
   if (!planned.ok()) return planned.status();
   RenderedScene out;
   out.plan = planned->plan;
+  out.warnings = std::move(scene->warnings);
   if (options.plan_only) return out;
 
   PixelRenderer pixels(problem, *scene, *planned, options.num_threads,

@@ -26,6 +26,7 @@ struct RenderedScene {
   Image illumination;  // the map used
   RenderPlan plan;
   PixelCounts counts;
+  std::vector<std::string> warnings;  // of the inputs: sentences for the user
 };
 
 // One line for the user: what was simulated, how, and why. Holds seconds, which

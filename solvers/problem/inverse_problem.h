@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "ibrdf/brdf/brdf_grid.h"
@@ -19,6 +20,9 @@ struct InverseProblem {
   ProblemKind kind = ProblemKind::kJoint;
   Image image;                       // observed radiance
   std::vector<ShadingPoint> points;  // of the object's pixels, at most one each
+  // What makes the inputs doubtful or was taken for granted: sentences that
+  // name the file.
+  std::vector<std::string> warnings;
 
   // Unknown reflectance: the trained model, which copies of the problem share;
   // known: null, and its grid.

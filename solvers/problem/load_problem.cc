@@ -1,16 +1,16 @@
 #include "ibrdf/solvers/problem/load_problem.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "ibrdf/io/image_file.h"
-#include "ibrdf/io/png.h"
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/problem/load_photograph.h"
 #include "ibrdf/solvers/problem/load_scene.h"
 #include "ibrdf/solvers/problem/open_model.h"
 #include "ibrdf/solvers/problem/quadrature_level.h"
@@ -26,50 +26,73 @@ constexpr int kMostKnownWidth = 256;
 // patches and bright samples.
 constexpr int kMostFarCells = 3 * kMaxFarSources / 4;
 
-struct ObservedImage {
-  Image image;
-  Mask mask;  // empty: all pixels
-};
-
-StatusOr<ObservedImage> LoadObservedImage(const ImageSpec& spec) {
-  ObservedImage observed;
-  StatusOr<Image> image = ReadImage(spec.file);
-  if (!image.ok()) return image.status();
-  observed.image = *std::move(image);
-  if (spec.mask.empty()) return observed;
-  StatusOr<Mask> mask = ReadMask(spec.mask);
-  if (!mask.ok()) return mask.status();
-  observed.mask = *std::move(mask);
-  const auto size = [](int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
-  if (observed.mask.width != observed.image.width ||
-      observed.mask.height != observed.image.height) {
-    return InvalidInput(spec.mask,
-                        "expected the image's size " +
-                            size(observed.image.width, observed.image.height) +
-                            ", found " +
-                            size(observed.mask.width, observed.mask.height));
-  }
-  return observed;
-}
+// Below this share of the mask's pixels that see the object there is nothing to
+// estimate from; below this overlap (intersection over union) of mask and
+// object it is worth a word. The same silhouette drawn by two programs overlaps
+// by 0.95 and more.
+constexpr double kLeastCovered = 0.05;
+constexpr double kUsualOverlap = 0.92;
 
 struct ObjectPoints {
   Scene scene = Scene::UnitSphere();
   std::vector<ShadingPoint> points;  // at pixels' centres
 };
 
-StatusOr<ObjectPoints> FindObjectPoints(const Problem& problem,
-                                        const ObservedImage& observed,
-                                        int num_threads) {
-  const StatusOr<Scene> scene = LoadScene(problem.geometry);
-  if (!scene.ok()) return scene.status();
-  StatusOr<std::vector<ShadingPoint>> points =
-      FindShadingPoints(*scene, problem.camera, observed.image.width,
-                        observed.image.height, observed.mask, 1, num_threads);
-  if (!points.ok()) {
-    return InvalidInput(problem.path, points.status().message());
+// Follows "geometry".
+std::string FitAdvice(const Problem& problem) {
+  const bool moved = problem.geometry.kind == GeometryKind::kMesh &&
+                     problem.geometry.fit == MeshFit::kUnitSphere;
+  return moved ? ".fit: unit_sphere moved and scaled the mesh, not the camera"
+               : "";
+}
+
+// Holds the object's silhouette against the mask, of whose pixels `covered` see
+// the object.
+Status CheckSilhouette(const Problem& problem, const Photograph& observed,
+                       const Scene& scene, size_t covered, int num_threads,
+                       std::vector<std::string>* warnings) {
+  if (problem.image.mask.empty()) return OkStatus();
+  const auto of_mask = static_cast<size_t>(
+      std::count_if(observed.mask.inside.begin(), observed.mask.inside.end(),
+                    [](uint8_t inside) { return inside != 0; }));
+  const StatusOr<std::vector<ShadingPoint>> all =
+      FindShadingPoints(scene, problem.camera, observed.radiance.width,
+                        observed.radiance.height, Mask(), 1, num_threads);
+  if (!all.ok()) return OkStatus();  // a map of another size was told before
+  const auto both = static_cast<double>(covered);
+  const double overlap =
+      both / (static_cast<double>(of_mask + all->size()) - both);
+  if (overlap >= kUsualOverlap) return OkStatus();
+  char iou[16];
+  std::snprintf(iou, sizeof(iou), "%.2f", overlap);
+  const std::string text =
+      "the object covers " + std::to_string(covered) + " of the mask's " +
+      std::to_string(of_mask) + " pixels (overlap " + iou +
+      "): check the camera, its field of view and up axis, and geometry" +
+      FitAdvice(problem);
+  if (both < kLeastCovered * static_cast<double>(of_mask)) {
+    return InvalidInput(problem.image.mask, text);
   }
+  warnings->push_back(problem.image.mask + ": " + text);
+  return OkStatus();
+}
+
+StatusOr<ObjectPoints> FindObjectPoints(const Problem& problem,
+                                        const Photograph& observed,
+                                        int num_threads,
+                                        std::vector<std::string>* warnings) {
+  const StatusOr<Scene> scene = LoadScene(problem.geometry, warnings);
+  if (!scene.ok()) return scene.status();
+  StatusOr<std::vector<ShadingPoint>> points = FindShadingPoints(
+      *scene, problem.camera, observed.radiance.width, observed.radiance.height,
+      observed.mask, 1, num_threads);
+  if (!points.ok()) {
+    return InvalidInput(problem.path, points.status().message() +
+                                          "; check the camera and geometry" +
+                                          FitAdvice(problem));
+  }
+  IBRDF_RETURN_IF_ERROR(CheckSilhouette(problem, observed, *scene,
+                                        points->size(), num_threads, warnings));
   return ObjectPoints{*scene, *std::move(points)};
 }
 
@@ -118,7 +141,8 @@ int KnownMapWidth(int width) {
 Status LoadIllumination(const Problem& problem, InverseProblem* inverse) {
   const IlluminationSpec& illumination = problem.illumination;
   if (!illumination.known()) return OkStatus();
-  const StatusOr<Image> map = LoadKnownIllumination(illumination);
+  const StatusOr<Image> map =
+      LoadKnownIllumination(illumination, &inverse->warnings);
   if (!map.ok()) return map.status();
   if (std::none_of(map->rgb.begin(), map->rgb.end(),
                    [](float v) { return v > 0.0f; })) {
@@ -210,12 +234,13 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   InverseProblem inverse = SettingsOf(problem, default_seed, num_threads);
   IBRDF_RETURN_IF_ERROR(
       CheckMapSize(problem, inverse.transport.quadrature.far_width));
-  StatusOr<ObservedImage> observed = LoadObservedImage(problem.image);
+  StatusOr<Photograph> observed = LoadPhotograph(problem.image);
   if (!observed.ok()) return observed.status();
+  inverse.warnings = std::move(observed->warnings);
   StatusOr<ObjectPoints> object =
-      FindObjectPoints(problem, *observed, num_threads);
+      FindObjectPoints(problem, *observed, num_threads, &inverse.warnings);
   if (!object.ok()) return object.status();
-  inverse.image = std::move(observed->image);
+  inverse.image = std::move(observed->radiance);
   inverse.points = std::move(object->points);
   IBRDF_RETURN_IF_ERROR(LoadReflectance(problem.reflectance, &inverse));
   IBRDF_RETURN_IF_ERROR(LoadIllumination(problem, &inverse));

@@ -1,17 +1,20 @@
 #include "ibrdf/solvers/problem/load_scene.h"
 
-#include <cmath>
 #include <string>
+#include <vector>
 
 #include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/io/image_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/mesh.h"
+#include "ibrdf/light/negative_radiance.h"
 #include "ibrdf/light/procedural_sky.h"
+#include "ibrdf/solvers/problem/load_normals.h"
 
 namespace ibrdf {
 
-StatusOr<Scene> LoadScene(const GeometrySpec& geometry) {
+StatusOr<Scene> LoadScene(const GeometrySpec& geometry,
+                          std::vector<std::string>* warnings) {
   switch (geometry.kind) {
     case GeometryKind::kSphere:
       break;
@@ -26,9 +29,13 @@ StatusOr<Scene> LoadScene(const GeometrySpec& geometry) {
       return scene;
     }
     case GeometryKind::kNormals: {
-      const StatusOr<Image> normals = ReadImage(geometry.file);
-      if (!normals.ok()) return normals.status();
-      StatusOr<Scene> scene = Scene::FromNormalMap(*normals);
+      const StatusOr<NormalMap> map = LoadNormals(geometry);
+      if (!map.ok()) return map.status();
+      if (warnings != nullptr) {
+        warnings->insert(warnings->end(), map->warnings.begin(),
+                         map->warnings.end());
+      }
+      StatusOr<Scene> scene = Scene::FromNormalMap(map->normals);
       if (!scene.ok()) {
         return InvalidInput(geometry.file, scene.status().message());
       }
@@ -38,21 +45,22 @@ StatusOr<Scene> LoadScene(const GeometrySpec& geometry) {
   return Scene::UnitSphere();
 }
 
-StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination) {
+StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination,
+                                      std::vector<std::string>* warnings) {
   if (illumination.sky.has_value()) {
     return RenderSky(*illumination.sky, illumination.height,
                      illumination.width);
   }
   StatusOr<Image> map = ReadImage(illumination.known_file);
   if (!map.ok()) return map.status();
-  for (size_t k = 0; k < map->rgb.size(); ++k) {
-    if (std::isfinite(map->rgb[k]) && map->rgb[k] >= 0.0f) continue;
-    const size_t pixel = k / 3;
-    return InvalidInput(illumination.known_file,
-                        "row " + std::to_string(pixel / map->width) +
-                            ", column " + std::to_string(pixel % map->width) +
-                            ": expected finite radiance >= 0, found " +
-                            std::to_string(map->rgb[k]));
+  const std::string& path = illumination.known_file;
+  const StatusOr<NegativeRadiance> below =
+      ClampNegativeRadiance(path, MapFrame::kIbrdf01, &*map);
+  if (!below.ok()) return below.status();
+  if (below->values > 0 && warnings != nullptr) {
+    warnings->push_back(path + ": " + std::to_string(below->values) +
+                        " values below 0, down to " +
+                        std::to_string(below->lowest) + ", were set to 0");
   }
   if (map->width % 2 != 0) {
     return InvalidInput(

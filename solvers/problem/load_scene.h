@@ -1,5 +1,8 @@
 // The known parts of a problem: its shape, light and reflectance.
 #pragma once
+#include <string>
+#include <vector>
+
 #include "ibrdf/base/status.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
@@ -8,12 +11,18 @@
 
 namespace ibrdf {
 
-// The geometry of a problem; reads its mesh or normal map.
-StatusOr<Scene> LoadScene(const GeometrySpec& geometry);
+// `warnings` receives sentences for the user; it may be null.
 
-// The known illumination: the file as it is, or the sky made into a map of the
-// problem's size. Refuses values that are negative or not finite.
-StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination);
+// The geometry of a problem; reads its mesh or normal map.
+StatusOr<Scene> LoadScene(const GeometrySpec& geometry,
+                          std::vector<std::string>* warnings = nullptr);
+
+// The known illumination: the file, or the sky made into a map of the problem's
+// size. A few values below 0 count as 0; refuses many, and values that are not
+// finite.
+StatusOr<Image> LoadKnownIllumination(
+    const IlluminationSpec& illumination,
+    std::vector<std::string>* warnings = nullptr);
 
 // The known reflectance as a table: the file, or the analytic BRDF at the bin
 // centres.

@@ -17,6 +17,7 @@
 #include "ibrdf/solvers/optim/blas_memory.h"
 #include "ibrdf/solvers/problem/load_problem.h"
 #include "ibrdf/solvers/programs/common_flags.h"
+#include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/report/write_results.h"
 #include "ibrdf/solvers/solve/solve.h"
 
@@ -48,7 +49,12 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
                 inverse->points.size(), inverse->map_width, inverse->map_height,
                 Describe(inverse->effects).c_str());
   }
-  if (explain) return OkStatus();
+  if (explain) {
+    for (const std::string& warning : inverse->warnings) {
+      std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    }
+    return OkStatus();
+  }
   // What the end needs, before time is spent.
   const StatusOr<Truth> truth =
       LoadTruth(problem->truth, inverse->map_width, inverse->map_height);
@@ -73,8 +79,11 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
   const StatusOr<ResultMetrics> metrics =
       MeasureResult(*inverse, *truth, *estimate);
   if (!metrics.ok()) return metrics.status();
-  IBRDF_RETURN_IF_ERROR(
-      WriteResults({*problem, *inverse, *truth, *estimate, *metrics}, folder));
+  const SolvedProblem solved{*problem, *inverse, *truth, *estimate, *metrics};
+  IBRDF_RETURN_IF_ERROR(WriteResults(solved, folder));
+  for (const std::string& warning : ResultWarnings(solved)) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
   if (!flags.quiet) {
     for (const std::string& line : MetricLines(*metrics)) {
       std::printf("  %s\n", line.c_str());

@@ -47,7 +47,10 @@ std::string Summary(const SolvedProblem& solved) {
 
 std::string WarningList(const SolvedProblem& solved) {
   std::string items;
-  for (const std::string& warning : ResultWarnings(solved)) {
+  std::vector<std::string> warnings = ResultWarnings(solved);
+  const std::string note = EffectsNote(solved);
+  if (!note.empty()) warnings.push_back(note);
+  for (const std::string& warning : warnings) {
     items += HtmlElement("li", warning) + "\n";
   }
   if (items.empty()) return "";

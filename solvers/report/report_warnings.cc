@@ -95,8 +95,9 @@ std::string RivalWarning(const std::vector<Alternative>& alternatives) {
   return "";
 }
 
-// No word of a sphere, which is convex.
-std::string EffectsWarning(const SolvedProblem& solved) {
+}  // namespace
+
+std::string EffectsNote(const SolvedProblem& solved) {
   const EffectsPlan& effects = solved.inverse.effects;
   if (solved.problem.geometry.kind == GeometryKind::kSphere ||
       effects.visibility) {
@@ -105,15 +106,13 @@ std::string EffectsWarning(const SolvedProblem& solved) {
   return "Effects: " + Describe(effects) + ".";
 }
 
-}  // namespace
-
 std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = solved.inverse.warnings;
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
         MisfitWarning(solved), PixelWarning(solved),
         UncertainWarning(solved.solution),
-        RivalWarning(solved.solution.alternatives), EffectsWarning(solved)}) {
+        RivalWarning(solved.solution.alternatives)}) {
     if (!warning.empty()) warnings.push_back(std::move(warning));
   }
   return warnings;

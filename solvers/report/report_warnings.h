@@ -7,7 +7,11 @@
 
 namespace ibrdf {
 
-// Sentences; none: nothing stands out.
+// Sentences, those of the inputs first; none: nothing stands out.
 std::vector<std::string> ResultWarnings(const SolvedProblem& solved);
+
+// What the report adds where no shadows were simulated; empty for a sphere,
+// which is convex.
+std::string EffectsNote(const SolvedProblem& solved);
 
 }  // namespace ibrdf

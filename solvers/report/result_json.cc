@@ -156,6 +156,7 @@ std::string ResultJson(const SolvedProblem& solved) {
   const Solution& solution = solved.solution;
   return Text({{"ibrdf_version", kVersion},
                {"status", StatusName(solution.status)},
+               {"warnings", ResultWarnings(solved)},
                {"problem", ProblemToJson(solved.problem)},
                {"effects", Describe(inverse.effects)},
                {"effects_plan", EffectsJson(inverse)},

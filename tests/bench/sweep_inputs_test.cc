@@ -105,7 +105,7 @@ TEST_F(SweepInputsTest, StopBetweenSteps) {
 TEST_F(SweepInputsTest, BadFilesAreNamed) {
   options_.materials = {"metal"};
   Image map = testing::SmoothMap(8, 16);
-  map.rgb[5] = -1.0f;
+  map.rgb[5] = -100.0f;
   ASSERT_TRUE(WriteExr(map, dir_.File("maps/b.exr")).ok());
   EXPECT_NE(std::string::npos,
             RunRenderInputs(options_).message().find("b.exr"));

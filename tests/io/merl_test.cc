@@ -44,6 +44,33 @@ TEST_F(MerlFile, RoundTripKeepsEveryBit) {
   EXPECT_EQ(1, dir_.CountFiles());
 }
 
+TEST_F(MerlFile, ATableWithoutAValidBinIsRefused) {
+  MerlTable table;
+  table.raw.assign(size_t{3} * kMerlBins, -1.0);
+  ASSERT_TRUE(WriteMerl(table, path_).ok());
+  const Status status = ReadMerl(path_).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+  EXPECT_NE(std::string::npos, status.message().find("valid bin"));
+  table.raw[1000] = 0.5;
+  ASSERT_TRUE(WriteMerl(table, path_).ok());
+  EXPECT_TRUE(ReadMerl(path_).ok());
+}
+
+TEST_F(MerlFile, OtherFilesAreNamed) {
+  const auto message = [&](const std::string& bytes) {
+    WriteBytes(path_, bytes);
+    const Status status = ReadMerl(path_).status();
+    EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+    return status.message();
+  };
+  EXPECT_NE(std::string::npos,
+            message("tensor_file" + std::string(60, '\0')).find("RGL"));
+  EXPECT_NE(std::string::npos,
+            message(std::string("\0\0\0\x5a\0\0\0\x5a\0\0\0\xb4", 12) +
+                    std::string(24, '\0'))
+                .find("big-endian"));
+}
+
 TEST_F(MerlFile, BytesAreThoseOfTheFormat) {
   MerlTable table;
   table.raw.assign(size_t{3} * kMerlBins, 0.0);

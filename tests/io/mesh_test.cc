@@ -241,6 +241,17 @@ TEST(Mesh, RelativeIndicesAndContinuedLines) {
   EXPECT_EQ(Eigen::Vector3f(1, 0, 0), corner(1, 2));
 }
 
+TEST(Mesh, AByteOrderMarkIsNoPartOfTheFirstLine) {
+  const TempDir dir;
+  WriteBytes(dir.File("a.obj"), kCubeObj);
+  WriteBytes(dir.File("b.obj"), "\xef\xbb\xbf" + std::string(kCubeObj));
+  const StatusOr<TriangleMesh> a = ReadMesh(dir.File("a.obj"));
+  const StatusOr<TriangleMesh> b = ReadMesh(dir.File("b.obj"));
+  ASSERT_TRUE(a.ok() && b.ok()) << b.status().message();
+  EXPECT_EQ(a->vertices, b->vertices);
+  EXPECT_EQ(a->triangles, b->triangles);
+}
+
 TEST(Mesh, BadMeshesAreRefused) {
   const TempDir dir;
   const std::string obj = dir.File("a.obj"), ply = dir.File("a.ply");
@@ -253,8 +264,9 @@ TEST(Mesh, BadMeshesAreRefused) {
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   refused(obj, "");
   refused(obj, "this is no mesh");
-  refused(obj, triangle);                // no faces
-  refused(obj, triangle + "f 1 2 4\n");  // out of range
+  refused(obj, triangle);                                      // no faces
+  refused(obj, "\xfe\xffv 9 9 9\n" + triangle + "f 1 2 3\n");  // UTF-16's mark
+  refused(obj, triangle + "f 1 2 4\n");                        // out of range
   refused(obj, triangle + "f 1 2 -9\n");
   refused(obj, triangle + "f 1 2 0\n");
   refused(obj, triangle + "f 1 2 99999999999\n");

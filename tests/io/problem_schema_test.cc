@@ -85,6 +85,7 @@ std::string OtherValue(const ProblemKey& key) {
     case ValueType::kWordOrList:
       return "[" + key.list_words.front().word + "]";
     case ValueType::kPath:
+    case ValueType::kText:
     case ValueType::kPathOrMap:
       return "other.file";
     case ValueType::kMap:

@@ -285,8 +285,19 @@ TEST(ResultWarnings, NameEachCause) {
   // An expected error of 0.9.
   warned([](Example* e) { e->solution.spread = 0.9 / ExpectError(1.0).median; },
          "a factor of 2.46");
-  warned([](Example* e) { e->problem.geometry.kind = GeometryKind::kMesh; },
-         "convex");
+  warned([](Example* e) { e->inverse.warnings = {"a.png: clipped"}; },
+         "a.png: clipped");
+}
+
+TEST(ResultWarnings, EffectsAreANoteOfTheReportAlone) {
+  Example example;
+  EXPECT_EQ("", EffectsNote(example.Solved()));
+  example.problem.geometry.kind = GeometryKind::kMesh;
+  EXPECT_TRUE(Contains(EffectsNote(example.Solved()), "convex"));
+  EXPECT_TRUE(ResultWarnings(example.Solved()).empty());
+  const StatusOr<std::string> page = ReportPage(example.Solved(), {});
+  ASSERT_TRUE(page.ok());
+  EXPECT_TRUE(Contains(*page, "convex"));
 }
 
 }  // namespace

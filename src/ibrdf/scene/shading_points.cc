@@ -113,7 +113,10 @@ StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
     points.insert(points.end(), row.begin(), row.end());
   }
   if (points.empty()) {
-    return InvalidInput("geometry", "no pixel inside the mask sees the object");
+    return InvalidInput("geometry",
+                        mask.inside.empty()
+                            ? "no pixel sees the object"
+                            : "no pixel inside the mask sees the object");
   }
   for (size_t i = 0; i < points.size(); ++i) {
     points[i].index = static_cast<int>(i);

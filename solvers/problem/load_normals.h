@@ -1,0 +1,27 @@
+// Normal maps in the frames and encodings that programs write.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/io/problem.h"
+
+namespace ibrdf {
+
+struct NormalMap {
+  // Unit normals in the camera's frame: x right, y up, z towards the camera;
+  // zero outside the object.
+  Image normals;
+  std::vector<std::string> warnings;  // sentences for the user
+};
+
+// Reads geometry.file by its encoding and frame (GeometrySpec). Under kAuto,
+// files of whole numbers hold (n + 1) / 2, and so do floats none of which is
+// negative and whose lengths are far from 1; the latter is a warning. Values
+// (0, 0, 0) are outside the object in every encoding.
+//
+// Fails where most normals face away from the camera, which is at +z.
+StatusOr<NormalMap> LoadNormals(const GeometrySpec& geometry);
+
+}  // namespace ibrdf

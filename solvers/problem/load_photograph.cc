@@ -1,0 +1,259 @@
+#include "ibrdf/solvers/problem/load_photograph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "ibrdf/image/code_interval.h"
+#include "ibrdf/image/response_curve.h"
+#include "ibrdf/io/photo_file.h"
+#include "ibrdf/io/png.h"
+
+namespace ibrdf {
+namespace {
+
+// Of the object's values, before it is said that they look saturated.
+constexpr double kSaturatedShare = 0.01;
+// Above it the values are alike, as of an even grey, and nothing is cut off.
+constexpr double kAlikeShare = 0.9;
+// Values that say whether floats are multiples of 1/255.
+constexpr size_t kFewestValues = 100;
+
+std::string Percent(double share) {
+  const double percent = 100.0 * share;
+  const int rounded = static_cast<int>(std::lround(percent));
+  return percent < 1.0 ? "less than 1 %" : std::to_string(rounded) + " %";
+}
+
+std::string Size(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
+
+// What the file says of its curve; the error asks for image.response.
+StatusOr<ResponseDefinition> StatedCurve(const std::string& path,
+                                         const Photo& photo,
+                                         std::vector<std::string>* warnings) {
+  ResponseDefinition curve;
+  switch (photo.curve.kind) {
+    case CurveKind::kLinear:
+      return curve;
+    case CurveKind::kSrgb:
+      curve.kind = ResponseKind::kSrgb;
+      return curve;
+    case CurveKind::kPower:
+      curve.kind = ResponseKind::kPower;
+      curve.parameter = photo.curve.exponent;
+      IBRDF_RETURN_IF_ERROR(curve.Check(path + ": " + photo.curve.source));
+      return curve;
+    case CurveKind::kUnknown:
+      if (photo.bits > 8) break;
+      curve.kind = ResponseKind::kSrgb;
+      warnings->push_back(
+          path +
+          ": no response curve is stated; sRGB is assumed (image.response)");
+      return curve;
+    case CurveKind::kOther:
+      break;
+  }
+  return InvalidInput(
+      path, std::string("the response curve of a ") + NameOf(photo.format) +
+                " file of " + std::to_string(photo.bits) + " bits is not " +
+                (photo.curve.source.empty()
+                     ? std::string("stated")
+                     : "understood (" + photo.curve.source + ")") +
+                "; say image.response, as srgb or linear");
+}
+
+StatusOr<ResponseCurve> CurveOf(const ImageSpec& spec, const Photo& photo,
+                                std::vector<std::string>* warnings) {
+  if (spec.response == ImageResponse::kAuto) {
+    if (photo.bits == 0) return ResponseCurve();
+    const StatusOr<ResponseDefinition> stated =
+        StatedCurve(spec.file, photo, warnings);
+    if (!stated.ok()) return stated.status();
+    return ResponseCurve(*stated);
+  }
+  ResponseDefinition curve;
+  const auto kind = ResponseKindOf("image.response", WordOf(spec.response));
+  if (!kind.ok()) return kind.status();
+  curve.kind = *kind;
+  curve.parameter = spec.response_parameter;
+  IBRDF_RETURN_IF_ERROR(curve.Check("image.response_parameter"));
+  return ResponseCurve(curve);
+}
+
+StatusOr<CodeLevels> LevelsOf(const ImageSpec& spec, const Photo& photo) {
+  CodeLevels levels = CodeLevels::OfBits(photo.bits);
+  levels.black = spec.black.value_or(levels.black);
+  levels.white = spec.white.value_or(levels.white);
+  levels.exposure = spec.exposure;
+  if (photo.significant_bits > 0 && photo.significant_bits < photo.bits) {
+    levels.step = std::exp2(photo.bits - photo.significant_bits);
+  }
+  IBRDF_RETURN_IF_ERROR(levels.Check("image.white"));
+  return levels;
+}
+
+// Radiance of each code: that of its middle. NaN: clipped, bounded from below
+// alone.
+std::vector<float> RadianceOfCodes(const ResponseCurve& curve,
+                                   const CodeLevels& levels) {
+  const CodeIntervals intervals(curve, levels);
+  std::vector<float> radiance(size_t{1} << levels.bits);
+  for (size_t code = 0; code < radiance.size(); ++code) {
+    const double y = (static_cast<double>(code) - levels.black) /
+                     (levels.white - levels.black);
+    const bool clipped = !intervals.Interval(static_cast<int>(code)).HasHigh();
+    radiance[code] =
+        clipped ? std::numeric_limits<float>::quiet_NaN()
+                : static_cast<float>(curve.Decode(y) / levels.exposure);
+  }
+  return radiance;
+}
+
+Status Linearise(const ImageSpec& spec, const ResponseCurve& curve,
+                 const Photo& photo, Image* image) {
+  if (photo.bits > 0) {
+    const StatusOr<CodeLevels> levels = LevelsOf(spec, photo);
+    if (!levels.ok()) return levels.status();
+    const std::vector<float> radiance = RadianceOfCodes(curve, *levels);
+    for (float& v : image->rgb) v = radiance[static_cast<size_t>(v)];
+    return OkStatus();
+  }
+  if (spec.white.has_value() || spec.black.has_value()) {
+    return InvalidInput(spec.file,
+                        "image.white and image.black are of files of whole "
+                        "numbers, found one of floats");
+  }
+  if (curve.kind() == ResponseKind::kLinear && spec.exposure == 1.0) {
+    return OkStatus();
+  }
+  for (float& v : image->rgb) {
+    v = static_cast<float>(curve.Decode(v) / spec.exposure);
+  }
+  return OkStatus();
+}
+
+StatusOr<Mask> LoadMask(const std::string& path, const Image& image) {
+  StatusOr<Mask> mask = ReadMask(path);
+  if (!mask.ok()) return mask.status();
+  if (mask->width == image.width && mask->height == image.height) return mask;
+  return InvalidInput(path, "expected the image's size " +
+                                Size(image.width, image.height) + ", found " +
+                                Size(mask->width, mask->height));
+}
+
+// Takes pixels out of the mask that are not in `kept`; either may be empty.
+void Restrict(const Mask& kept, Mask* mask) {
+  if (kept.inside.empty()) return;
+  if (mask->inside.empty()) {
+    *mask = kept;
+    return;
+  }
+  for (size_t i = 0; i < kept.inside.size(); ++i) {
+    mask->inside[i] = mask->inside[i] && kept.inside[i] ? 1 : 0;
+  }
+}
+
+bool IsInside(const Mask& mask, size_t pixel) {
+  return mask.inside.empty() || mask.inside[pixel] != 0;
+}
+
+void WarnOfClipped(const std::string& path, const Photograph& photograph,
+                   std::vector<std::string>* warnings) {
+  size_t clipped = 0, values = 0;
+  for (size_t k = 0; k < photograph.radiance.rgb.size(); ++k) {
+    if (!IsInside(photograph.mask, k / 3)) continue;
+    ++values;
+    clipped += std::isnan(photograph.radiance.rgb[k]);
+  }
+  if (clipped == 0) return;
+  warnings->push_back(
+      path + ": " +
+      Percent(static_cast<double>(clipped) / static_cast<double>(values)) +
+      " of the object's values are clipped (image.white); their pixels take no "
+      "part");
+}
+
+}  // namespace
+
+std::vector<std::string> DoubtfulValues(const Image& radiance,
+                                        const Mask& mask) {
+  std::vector<float> values;
+  for (size_t k = 0; k < radiance.rgb.size(); ++k) {
+    const float v = radiance.rgb[k];
+    if (IsInside(mask, k / 3) && std::isfinite(v) && v > 0.0f) {
+      values.push_back(v);
+    }
+  }
+  std::vector<std::string> warnings;
+  if (values.size() < kFewestValues) return warnings;
+  const float most = *std::max_element(values.begin(), values.end());
+  const auto count = static_cast<double>(values.size());
+  const double share =
+      static_cast<double>(std::count(values.begin(), values.end(), most)) /
+      count;
+  if (share > kSaturatedShare && share < kAlikeShare) {
+    warnings.push_back(Percent(share) +
+                       " of the object's values are the same greatest one: "
+                       "saturated? Clipped highlights look less glossy than "
+                       "they are");
+  }
+  const bool codes = std::all_of(values.begin(), values.end(), [](float v) {
+    const double code = 255.0 * static_cast<double>(v);
+    return code < 255.5 && std::abs(code - std::round(code)) < 1e-3;
+  });
+  if (codes && share < kAlikeShare) {
+    warnings.push_back(
+        "all values are multiples of 1/255: are they codes of an 8-bit picture "
+        "and no linear radiance? Then say image.response: srgb");
+  }
+  return warnings;
+}
+
+StatusOr<Photograph> LoadPhotograph(const ImageSpec& spec) {
+  PhotoOptions options;
+  options.layer = spec.layer;
+  StatusOr<Photo> photo = ReadPhoto(spec.file, options);
+  if (!photo.ok()) return photo.status();
+  if (photo->pixel_aspect != 1.0) {
+    return InvalidInput(spec.file + ": pixelAspectRatio",
+                        "expected 1, found " +
+                            std::to_string(photo->pixel_aspect) +
+                            "; resample the picture to square pixels");
+  }
+  Photograph photograph;
+  for (const std::string& note : photo->notes) {
+    photograph.warnings.push_back(spec.file + ": " + note);
+  }
+  if (photo->other_primaries) {
+    photograph.warnings.push_back(
+        spec.file +
+        ": its primaries are not those of Rec. 709 and were not converted");
+  }
+  const StatusOr<ResponseCurve> curve =
+      CurveOf(spec, *photo, &photograph.warnings);
+  if (!curve.ok()) return curve.status();
+  photograph.radiance = std::move(photo->image);
+  IBRDF_RETURN_IF_ERROR(Linearise(spec, *curve, *photo, &photograph.radiance));
+  if (!spec.mask.empty()) {
+    StatusOr<Mask> mask = LoadMask(spec.mask, photograph.radiance);
+    if (!mask.ok()) return mask.status();
+    photograph.mask = *std::move(mask);
+  }
+  Restrict(photo->has_data, &photograph.mask);
+  Restrict(photo->opaque, &photograph.mask);
+  if (photo->bits > 0) {
+    WarnOfClipped(spec.file, photograph, &photograph.warnings);
+  } else if (curve->kind() == ResponseKind::kLinear) {
+    for (const std::string& doubt :
+         DoubtfulValues(photograph.radiance, photograph.mask)) {
+      photograph.warnings.push_back(spec.file + ": " + doubt);
+    }
+  }
+  return photograph;
+}
+
+}  // namespace ibrdf

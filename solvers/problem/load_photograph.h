@@ -1,0 +1,36 @@
+// The observed image: a file's values as radiance.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/io/photo.h"
+#include "ibrdf/io/problem.h"
+
+namespace ibrdf {
+
+struct Photograph {
+  // Linear radiance. NaN where the file bounds a channel from one side alone:
+  // clipped codes. 0 at codes of black.
+  Image radiance;
+  Mask mask;  // of the object; empty: all pixels
+  // What was taken for granted or left out: sentences for the user.
+  std::vector<std::string> warnings;
+};
+
+// Reads the image and its mask (ImageSpec). Pixels that the file lacks or that
+// are transparent are outside the mask.
+//
+// Codes become radiance by the response curve (response_curve.h): the spec's,
+// else the one that the file states, else sRGB for 8 bits. Floats are radiance
+// unless the spec has a curve. Errors name file and field: a curve that nobody
+// states, pixels that are not square, a mask of another size.
+StatusOr<Photograph> LoadPhotograph(const ImageSpec& spec);
+
+// Warns of what the object's values say of the file: many of one greatest value
+// (saturated), all multiples of 1/255 (codes in a file of floats).
+std::vector<std::string> DoubtfulValues(const Image& radiance,
+                                        const Mask& mask);
+
+}  // namespace ibrdf

@@ -1,0 +1,132 @@
+#include "ibrdf/solvers/problem/load_normals.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+
+#include "ibrdf/io/exr.h"
+#include "tests/support/photo_files.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+constexpr int kSize = 16;
+
+// Unit normals of a sphere that fills the image; zero outside.
+Image SphereNormals() {
+  Image image(kSize, kSize);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const double X = (x + 0.5) / kSize * 2 - 1, Y = 1 - (y + 0.5) / kSize * 2;
+      const double z = 1 - X * X - Y * Y;
+      if (z <= 0) continue;
+      float* n = image.At(x, y);
+      n[0] = static_cast<float>(X);
+      n[1] = static_cast<float>(Y);
+      n[2] = static_cast<float>(std::sqrt(z));
+    }
+  }
+  return image;
+}
+
+bool IsOutside(const Image& image, size_t pixel) {
+  const float* n = &image.rgb[3 * pixel];
+  return n[0] == 0 && n[1] == 0 && n[2] == 0;
+}
+
+// Each component of the object's pixels through `change`.
+template <typename Change>
+Image Changed(Image image, const Change& change) {
+  for (size_t i = 0; i < image.num_pixels(); ++i) {
+    if (IsOutside(image, i)) continue;
+    for (int c = 0; c < 3; ++c) {
+      image.rgb[3 * i + c] = change(c, image.rgb[3 * i + c]);
+    }
+  }
+  return image;
+}
+
+class LoadNormalsTest : public ::testing::Test {
+ protected:
+  GeometrySpec Spec(const Image& image) const {
+    EXPECT_TRUE(WriteExr(image, dir_.File("n.exr")).ok());
+    GeometrySpec geometry;
+    geometry.kind = GeometryKind::kNormals;
+    geometry.file = dir_.File("n.exr");
+    return geometry;
+  }
+
+  void ExpectNormals(const GeometrySpec& geometry, double tolerance,
+                     size_t num_warnings) const {
+    const StatusOr<NormalMap> map = LoadNormals(geometry);
+    ASSERT_TRUE(map.ok()) << map.status().message();
+    EXPECT_EQ(num_warnings, map->warnings.size());
+    for (size_t k = 0; k < right_.rgb.size(); ++k) {
+      ASSERT_NEAR(right_.rgb[k], map->normals.rgb[k], tolerance) << k;
+    }
+  }
+
+  const TempDir dir_;
+  const Image right_ = SphereNormals();
+};
+
+TEST_F(LoadNormalsTest, FloatsAsTheyAre) {
+  ExpectNormals(Spec(right_), 0.0, 0);
+}
+
+TEST_F(LoadNormalsTest, EncodedFloatsAreFoundAndItIsSaid) {
+  const auto encode = [](int, float v) { return 0.5f * (v + 1.0f); };
+  GeometrySpec geometry = Spec(Changed(right_, encode));
+  ExpectNormals(geometry, 1e-6, 1);
+  geometry.encoding = NormalEncoding::kUnit01;
+  ExpectNormals(geometry, 1e-6, 0);
+}
+
+TEST_F(LoadNormalsTest, CodesOfEightAndSixteenBits) {
+  for (const int bits : {8, 16}) {
+    const double largest = std::exp2(bits) - 1;
+    PngSpec png;
+    png.width = png.height = kSize;
+    png.bits = bits;
+    for (size_t i = 0; i < right_.num_pixels(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        const double v = 0.5 * (right_.rgb[3 * i + c] + 1.0);
+        const long code = IsOutside(right_, i) ? 0 : std::lround(largest * v);
+        png.rows += BigEndianBytes(static_cast<uint32_t>(code), bits / 8);
+      }
+    }
+    WriteBytes(dir_.File("n.png"), PngBytes(png));
+    GeometrySpec geometry;
+    geometry.kind = GeometryKind::kNormals;
+    geometry.file = dir_.File("n.png");
+    ExpectNormals(geometry, 1.1 / largest, 0);
+    geometry.encoding = NormalEncoding::kFloat;
+    EXPECT_EQ(StatusCode::kInvalidInput, LoadNormals(geometry).status().code());
+  }
+}
+
+TEST_F(LoadNormalsTest, OpenCvsFrameIsTurnedWhenAskedForAndNamedWhenNot) {
+  const auto turn = [](int c, float v) { return c == 0 ? v : -v; };
+  GeometrySpec geometry = Spec(Changed(right_, turn));
+  const Status status = LoadNormals(geometry).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+  EXPECT_NE(std::string::npos, status.message().find("n.exr: 100 % of the"));
+  EXPECT_NE(std::string::npos, status.message().find("frame: opencv"));
+  geometry.frame = NormalFrame::kOpenCv;
+  ExpectNormals(geometry, 0.0, 0);
+}
+
+TEST_F(LoadNormalsTest, OtherLengthsAreCounted) {
+  const auto stretch = [](int, float v) { return 1.5f * v; };
+  const StatusOr<NormalMap> map = LoadNormals(Spec(Changed(right_, stretch)));
+  ASSERT_TRUE(map.ok());
+  ASSERT_EQ(size_t{1}, map->warnings.size());
+  EXPECT_NE(std::string::npos, map->warnings[0].find("not of unit length"));
+}
+
+}  // namespace
+}  // namespace ibrdf

@@ -1,0 +1,76 @@
+#include "ibrdf/solvers/problem/load_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "ibrdf/image/rgb8_image.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/png.h"
+#include "ibrdf/io/problem_file.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kSize = 64;
+
+// A sphere's image with a mask that is a disc of `radius` about (right, up);
+// the sphere's own has radius 1 about 0.
+class SilhouetteTest : public ::testing::Test {
+ protected:
+  StatusOr<InverseProblem> Load(double radius, double right, double up) const {
+    Image image(kSize, kSize);
+    image.rgb.assign(image.rgb.size(), 0.5f);
+    EXPECT_TRUE(WriteExr(image, dir_.File("i.exr")).ok());
+    Rgb8Image mask(kSize, kSize);
+    for (int y = 0; y < kSize; ++y) {
+      for (int x = 0; x < kSize; ++x) {
+        const double X = (x + 0.5) / kSize * 2 - 1 - right;
+        const double Y = 1 - (y + 0.5) / kSize * 2 - up;
+        const uint8_t v = X * X + Y * Y < radius * radius ? 255 : 0;
+        for (int c = 0; c < 3; ++c) mask.At(x, y)[c] = v;
+      }
+    }
+    EXPECT_TRUE(WritePng(mask, dir_.File("m.png")).ok());
+    const StatusOr<Problem> problem = ParseProblem(
+        dir_.File("p.yaml"),
+        "problem: illumination\nimage: {file: i.exr, mask: m.png}\n"
+        "geometry: {sphere: {}}\n"
+        "reflectance: {known: {lambertian: [0.5, 0.5, 0.5]}}\n",
+        {});
+    EXPECT_TRUE(problem.ok()) << problem.status().message();
+    return LoadInverseProblem(*problem, 1, 1);
+  }
+
+  const TempDir dir_;
+};
+
+TEST_F(SilhouetteTest, OfTheObjectIsNoCauseForAWord) {
+  for (const double radius : {1.0, 0.97}) {
+    const StatusOr<InverseProblem> loaded = Load(radius, 0.0, 0.0);
+    ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+    EXPECT_TRUE(loaded->warnings.empty()) << loaded->warnings[0];
+  }
+}
+
+TEST_F(SilhouetteTest, ThatIsAnotherIsTold) {
+  const StatusOr<InverseProblem> loaded = Load(1.0, 0.4, 0.0);
+  ASSERT_TRUE(loaded.ok()) << loaded.status().message();
+  ASSERT_EQ(size_t{1}, loaded->warnings.size());
+  const std::string& warning = loaded->warnings[0];
+  EXPECT_NE(std::string::npos, warning.find("m.png: the object covers "))
+      << warning;
+  EXPECT_NE(std::string::npos, warning.find("overlap 0.")) << warning;
+}
+
+TEST_F(SilhouetteTest, ThatIsNearlyAllBesideTheObjectIsRefused) {
+  const Status status = Load(0.3, 0.9, 0.9).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+  EXPECT_NE(std::string::npos, status.message().find("m.png"))
+      << status.message();
+}
+
+}  // namespace
+}  // namespace ibrdf
