@@ -35,7 +35,7 @@ TEST(EvaluateFiles, Brdf) {
             Names(m));
   EXPECT_NEAR(std::log(2.0), m[0].second, kFloorTolerance);
   EXPECT_NEAR(0.0, m[1].second, kFloorTolerance);
-  for (double& v : table.raw) v = -1.0;
+  for (size_t k = 0; k < size_t{kMerlBins}; ++k) table.raw[k] = -1.0;  // red
   ASSERT_TRUE(WriteMerl(table, dir.File("b")).ok());
   EXPECT_EQ(dir.File("b") + ": red: expected a bin with a positive value",
             EvaluateBrdfFiles(dir.File("a"), dir.File("b")).status().message());
