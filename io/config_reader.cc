@@ -228,24 +228,26 @@ void ConfigReader::Choice(const std::string& key,
   FailExpected(key, JoinWords(words));
 }
 
-void ConfigReader::Text(const std::string& key, std::string* out) {
+const std::string* ConfigReader::FindText(const std::string& key,
+                                          const std::string& expected) {
   const ConfigNode* node = Find(key);
-  if (node == nullptr) return;
-  if (node->kind != Kind::kScalar || node->scalar.empty()) {
-    FailExpected(key, "text");
-    return;
+  if (node == nullptr) return nullptr;
+  if (node->kind == Kind::kScalar && !node->scalar.empty()) {
+    return &node->scalar;
   }
-  *out = node->scalar;
+  FailExpected(key, expected);
+  return nullptr;
+}
+
+void ConfigReader::Text(const std::string& key, std::string* out) {
+  const std::string* text = FindText(key, "text");
+  if (text != nullptr) *out = *text;
 }
 
 void ConfigReader::Path(const std::string& key, std::string* out) {
-  const ConfigNode* node = Find(key);
-  if (node == nullptr) return;
-  if (node->kind != Kind::kScalar || node->scalar.empty()) {
-    FailExpected(key, "the name of a file");
-    return;
-  }
-  const std::filesystem::path path(node->scalar);
+  const std::string* name = FindText(key, "the name of a file");
+  if (name == nullptr) return;
+  const std::filesystem::path path(*name);
   *out = path.is_absolute() || context_->folder.empty()
              ? path.string()
              : (std::filesystem::path(context_->folder) / path)

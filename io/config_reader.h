@@ -63,6 +63,11 @@ class ConfigReader {
   void FailExpected(const std::string& key, const std::string& expected);
 
  private:
+  // Null when absent, and, reported as not what is expected, when it is no
+  // text or empty.
+  const std::string* FindText(const std::string& key,
+                              const std::string& expected);
+
   ConfigContext* context_;
   const ConfigNode* node_;
   std::string path_;

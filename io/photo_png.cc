@@ -191,33 +191,20 @@ void ReadOtherTags(const PhotoState& state, Photo* photo) {
   }
 }
 
-Status PhotoError(const std::string& path, const PhotoState& state) {
-  return InvalidInput(
-      path, std::string("expected a PNG image (") + state.message + ")");
-}
-
 }  // namespace
 
 StatusOr<Photo> DecodePngPhoto(const std::string& path,
                                const std::string& bytes,
                                const PhotoOptions& options) {
   PhotoState state(bytes);
-  if (!ReadPhotoHeader(&state)) return PhotoError(path, state);
+  if (!ReadPhotoHeader(&state)) return PngError(path, state);
   IBRDF_RETURN_IF_ERROR(
       CheckImageSize(path, state.width, state.height, options.limits));
-  // Deflate shrinks at most 1032-fold (RFC 1951: 258 bytes in 2 bits), and
-  // unpacking grows one-bit pixels 8-fold.
-  const size_t total = state.row_bytes * state.height;
-  constexpr size_t kMaxGrowth = 1032 * 8;
-  if (total / kMaxGrowth > bytes.size()) {
-    return InvalidInput(path, "truncated PNG, too few bytes for its size");
-  }
-  std::vector<uint8_t> pixels(total);
-  std::vector<png_bytep> rows(state.height);
-  for (size_t y = 0; y < rows.size(); ++y) {
-    rows[y] = pixels.data() + y * state.row_bytes;
-  }
-  if (!ReadPngRows(&state, rows.data())) return PhotoError(path, state);
+  // Unpacking grows one-bit pixels 8-fold.
+  const StatusOr<std::vector<uint8_t>> read =
+      ReadPngPixels(path, state.height, state.row_bytes, 8, &state);
+  if (!read.ok()) return read.status();
+  const std::vector<uint8_t>& pixels = *read;
 
   Photo photo;
   photo.format = PhotoFormat::kPng;

@@ -83,30 +83,17 @@ bool WriteRows(WriteState* state, const Rgb8Image& image) {
   return true;
 }
 
-Status DecodeError(const std::string& path, const ReadState& state) {
-  return InvalidInput(
-      path, std::string("expected a PNG image (") + state.message + ")");
-}
-
 StatusOr<Mask> DecodeOrThrow(const std::string& path, const std::string& bytes,
                              const ImageLimits& limits) {
   ReadState state(bytes);
-  if (!ReadHeader(&state)) return DecodeError(path, state);
+  if (!ReadHeader(&state)) return PngError(path, state);
   IBRDF_RETURN_IF_ERROR(
       CheckImageSize(path, state.width, state.height, limits));
-  // Deflate shrinks at most 1032-fold (RFC 1951: 258 bytes in 2 bits), and
-  // expansion to four channels of 8 bits grows one-bit pixels 32-fold.
-  const size_t total = state.row_bytes * state.height;
-  constexpr size_t kMaxGrowth = 1032 * 32;
-  if (total / kMaxGrowth > bytes.size()) {
-    return InvalidInput(path, "truncated PNG, too few bytes for its size");
-  }
-  std::vector<uint8_t> pixels(total);
-  std::vector<png_bytep> rows(state.height);
-  for (size_t y = 0; y < rows.size(); ++y) {
-    rows[y] = pixels.data() + y * state.row_bytes;
-  }
-  if (!ReadPngRows(&state, rows.data())) return DecodeError(path, state);
+  // Expansion to four channels of 8 bits grows one-bit pixels 32-fold.
+  const StatusOr<std::vector<uint8_t>> read =
+      ReadPngPixels(path, state.height, state.row_bytes, 32, &state);
+  if (!read.ok()) return read.status();
+  const std::vector<uint8_t>& pixels = *read;
 
   Mask mask(static_cast<int>(state.width), static_cast<int>(state.height), 0);
   const size_t channel_bytes = state.sixteen_bits ? 2 : 1;

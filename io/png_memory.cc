@@ -32,6 +32,17 @@ void ReadPngBytes(png_structp png, png_bytep out, size_t count) {
   state->position += count;
 }
 
+// Deflate shrinks at most so many-fold (RFC 1951: 258 bytes in 2 bits).
+constexpr size_t kMaxInflation = 1032;
+
+// png_read_image and png_read_end. False on an error.
+bool ReadRows(PngReadState* state, png_bytepp rows) {
+  if (setjmp(png_jmpbuf(state->png)) != 0) return false;
+  png_read_image(state->png, rows);
+  png_read_end(state->png, state->info);
+  return true;
+}
+
 }  // namespace
 
 void OnPngError(png_structp png, png_const_charp message) {
@@ -63,11 +74,24 @@ bool OpenPng(PngReadState* state) {
   return true;
 }
 
-bool ReadPngRows(PngReadState* state, png_bytepp rows) {
-  if (setjmp(png_jmpbuf(state->png)) != 0) return false;
-  png_read_image(state->png, rows);
-  png_read_end(state->png, state->info);
-  return true;
+StatusOr<std::vector<uint8_t>> ReadPngPixels(const std::string& path,
+                                             size_t height, size_t row_bytes,
+                                             size_t max_growth,
+                                             PngReadState* state) {
+  const size_t total = row_bytes * height;
+  if (total / (kMaxInflation * max_growth) > state->size) {
+    return InvalidInput(path, "truncated PNG, too few bytes for its size");
+  }
+  std::vector<uint8_t> pixels(total);
+  std::vector<png_bytep> rows(height);
+  for (size_t y = 0; y < height; ++y) rows[y] = pixels.data() + y * row_bytes;
+  if (!ReadRows(state, rows.data())) return PngError(path, *state);
+  return pixels;
+}
+
+Status PngError(const std::string& path, const PngReadState& state) {
+  return InvalidInput(
+      path, std::string("expected a PNG image (") + state.message + ")");
 }
 
 }  // namespace ibrdf

@@ -3,7 +3,11 @@
 #include <png.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
 
 namespace ibrdf {
 
@@ -30,8 +34,16 @@ struct PngReadState {
 // The caller sets its own setjmp before it reads.
 bool OpenPng(PngReadState* state);
 
-// png_read_image and png_read_end. False on an error.
-bool ReadPngRows(PngReadState* state, png_bytepp rows);
+// The pixels [height][row_bytes] of a picture whose header was read. Expansion
+// grows pixels at most max_growth-fold; a file too short for them is refused
+// before memory is taken.
+StatusOr<std::vector<uint8_t>> ReadPngPixels(const std::string& path,
+                                             size_t height, size_t row_bytes,
+                                             size_t max_growth,
+                                             PngReadState* state);
+
+// The state's error.
+Status PngError(const std::string& path, const PngReadState& state);
 
 // For both directions; the error pointer is a buffer of 128 characters.
 void OnPngError(png_structp png, png_const_charp message);

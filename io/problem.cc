@@ -18,10 +18,6 @@ const char* SolverGaugeName(SolverGauge gauge) {
   return WordOf("solver.gauge", gauge).c_str();
 }
 
-const std::string& WordOf(ImageResponse response) {
-  return WordOf("image.response", response);
-}
-
 const char* EffectName(Effect effect) {
   const ProblemKey& key = ProblemFileSchema().Key("effects");
   return key.list_words.at(static_cast<size_t>(effect)).word.c_str();

@@ -7,6 +7,7 @@
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/geometry/camera.h"
+#include "ibrdf/image/response_curve.h"
 #include "ibrdf/light/procedural_sky.h"
 
 namespace ibrdf {
@@ -16,25 +17,13 @@ namespace ibrdf {
 
 enum class ProblemKind { kJoint, kReflectance, kIllumination };
 
-// Which curve made an image's values of radiance (response_curve.h). kAuto:
-// what the file says; sRGB of 8 bits that say nothing.
-enum class ImageResponse {
-  kAuto,
-  kLinear,
-  kSrgb,
-  kPower,
-  kAces,
-  kReinhard,
-  kLog,
-};
-// Name in problem files, e.g. "srgb".
-const std::string& WordOf(ImageResponse response);
-
 struct ImageSpec {
   std::string file;   // any of photo_file.h; empty: to be rendered
   std::string mask;   // .png; empty: none
   std::string layer;  // of OpenEXR; empty: the beauty part
-  ImageResponse response = ImageResponse::kAuto;
+  // Which curve made the values of radiance, kTable not among them. Unset: what
+  // the file says; sRGB of 8 bits that say nothing.
+  std::optional<ResponseKind> response;
   std::optional<double> response_parameter;  // unset: the curve's usual one
   // Codes of a file of whole numbers: from `white` on they are clipped, up to
   // `black` they are 0. Unset: the largest code, and 0.

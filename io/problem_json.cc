@@ -26,7 +26,8 @@ json ImageJson(const ImageSpec& image) {
   json out = {{"file", image.file}};
   if (!image.mask.empty()) out["mask"] = image.mask;
   if (!image.layer.empty()) out["layer"] = image.layer;
-  out["response"] = WordOf(image.response);
+  out["response"] =
+      image.response.has_value() ? NameOf(*image.response) : "auto";
   const auto or_auto = [](const std::optional<double>& value) {
     return value.has_value() ? json(*value) : json("auto");
   };

@@ -43,6 +43,16 @@ class ProblemReader {
     *out = static_cast<Enum>(index);
   }
 
+  // The first word, auto, leaves it unset; the next one is value 0.
+  template <typename Enum,
+            typename = std::enable_if_t<std::is_enum<Enum>::value>>
+  void Read(const std::string& name, std::optional<Enum>* out) {
+    int index = out->has_value() ? static_cast<int>(**out) + 1 : 0;
+    ReadChoice(name, &index);
+    *out = index > 0 ? std::optional<Enum>(static_cast<Enum>(index - 1))
+                     : std::nullopt;
+  }
+
   // What is wrong with a key, or with the map itself.
   void Fail(const std::string& name, const std::string& what);
   void Fail(const std::string& what);

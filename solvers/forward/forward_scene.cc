@@ -39,8 +39,9 @@ Status RenderInterrupted(const Problem& problem) {
   return Status(StatusCode::kInterrupted, problem.path + ": interrupted");
 }
 
-StatusOr<ViewPoints> FindViewPoints(const Problem& problem, int num_threads) {
-  const StatusOr<Scene> scene = LoadScene(problem.geometry);
+StatusOr<ViewPoints> FindViewPoints(const Problem& problem, int num_threads,
+                                    std::vector<std::string>* warnings) {
+  const StatusOr<Scene> scene = LoadScene(problem.geometry, warnings);
   if (!scene.ok()) return scene.status();
   const int width = problem.image.width, height = problem.image.height;
   StatusOr<std::vector<ShadingPoint>> found =
@@ -60,11 +61,10 @@ StatusOr<ViewPoints> FindViewPoints(const Problem& problem, int num_threads) {
 
 StatusOr<ForwardScene> LoadForwardScene(const Problem& problem,
                                         int num_threads) {
-  StatusOr<ViewPoints> view = FindViewPoints(problem, num_threads);
-  if (!view.ok()) return view.status();
   std::vector<std::string> warnings;
-  StatusOr<Image> map =
-      LoadKnownIllumination(problem.illumination, &warnings);
+  StatusOr<ViewPoints> view = FindViewPoints(problem, num_threads, &warnings);
+  if (!view.ok()) return view.status();
+  StatusOr<Image> map = LoadKnownIllumination(problem.illumination, &warnings);
   if (!map.ok()) return map.status();
   StatusOr<KnownBrdf> brdf = LoadBrdf(problem.reflectance);
   if (!brdf.ok()) return brdf.status();

@@ -35,9 +35,11 @@ struct ForwardScene {
 // Sorts points by the angle between normal and view.
 void SortByAngle(std::vector<ShadingPoint>* points);
 
-// SamplesPerSide(problem.quality) squared points per pixel.
-StatusOr<ViewPoints> FindViewPoints(const Problem& problem,
-                                    int num_threads = 0);
+// SamplesPerSide(problem.quality) squared points per pixel. `warnings`: as of
+// LoadScene.
+StatusOr<ViewPoints> FindViewPoints(
+    const Problem& problem, int num_threads = 0,
+    std::vector<std::string>* warnings = nullptr);
 
 // Two at reference quality; one in a preview, which samples some pixels anew
 // with as many as the reference (PixelRenderer::Refine).

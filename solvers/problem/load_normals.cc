@@ -67,7 +67,7 @@ Status Decode(const GeometrySpec& geometry, int bits, NormalMap* map) {
   return OkStatus();
 }
 
-// The camera's frame, and unit lengths.
+// Turns them into the camera's frame and counts those of other lengths.
 void Orient(const GeometrySpec& geometry, NormalMap* map) {
   const bool opencv = geometry.frame == NormalFrame::kOpenCv;
   size_t set = 0, other = 0;

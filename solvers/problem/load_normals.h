@@ -10,8 +10,8 @@
 namespace ibrdf {
 
 struct NormalMap {
-  // Unit normals in the camera's frame: x right, y up, z towards the camera;
-  // zero outside the object.
+  // In the camera's frame: x right, y up, z towards the camera; zero outside
+  // the object. Of the file's lengths, which Scene::FromNormalMap makes 1.
   Image normals;
   std::vector<std::string> warnings;  // sentences for the user
 };

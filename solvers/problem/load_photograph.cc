@@ -27,10 +27,6 @@ std::string Percent(double share) {
   return percent < 1.0 ? "less than 1 %" : std::to_string(rounded) + " %";
 }
 
-std::string Size(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
-
 // What the file says of its curve; the error asks for image.response.
 StatusOr<ResponseDefinition> StatedCurve(const std::string& path,
                                          const Photo& photo,
@@ -68,7 +64,7 @@ StatusOr<ResponseDefinition> StatedCurve(const std::string& path,
 
 StatusOr<ResponseCurve> CurveOf(const ImageSpec& spec, const Photo& photo,
                                 std::vector<std::string>* warnings) {
-  if (spec.response == ImageResponse::kAuto) {
+  if (!spec.response.has_value()) {
     if (photo.bits == 0) return ResponseCurve();
     const StatusOr<ResponseDefinition> stated =
         StatedCurve(spec.file, photo, warnings);
@@ -76,11 +72,9 @@ StatusOr<ResponseCurve> CurveOf(const ImageSpec& spec, const Photo& photo,
     return ResponseCurve(*stated);
   }
   ResponseDefinition curve;
-  const auto kind = ResponseKindOf("image.response", WordOf(spec.response));
-  if (!kind.ok()) return kind.status();
-  curve.kind = *kind;
+  curve.kind = *spec.response;
   curve.parameter = spec.response_parameter;
-  IBRDF_RETURN_IF_ERROR(curve.Check("image.response_parameter"));
+  IBRDF_RETURN_IF_ERROR(curve.Check(spec.file + ": image.response_parameter"));
   return ResponseCurve(curve);
 }
 
@@ -92,7 +86,7 @@ StatusOr<CodeLevels> LevelsOf(const ImageSpec& spec, const Photo& photo) {
   if (photo.significant_bits > 0 && photo.significant_bits < photo.bits) {
     levels.step = std::exp2(photo.bits - photo.significant_bits);
   }
-  IBRDF_RETURN_IF_ERROR(levels.Check("image.white"));
+  IBRDF_RETURN_IF_ERROR(levels.Check(spec.file + ": image.white"));
   return levels;
 }
 
@@ -140,9 +134,9 @@ StatusOr<Mask> LoadMask(const std::string& path, const Image& image) {
   StatusOr<Mask> mask = ReadMask(path);
   if (!mask.ok()) return mask.status();
   if (mask->width == image.width && mask->height == image.height) return mask;
-  return InvalidInput(path, "expected the image's size " +
-                                Size(image.width, image.height) + ", found " +
-                                Size(mask->width, mask->height));
+  return InvalidInput(
+      path, "expected the image's size " + SizeName(image.width, image.height) +
+                ", found " + SizeName(mask->width, mask->height));
 }
 
 // Takes pixels out of the mask that are not in `kept`; either may be empty.

@@ -1,13 +1,13 @@
 #include "ibrdf/solvers/problem/load_problem.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/problem/load_photograph.h"
@@ -52,22 +52,23 @@ Status CheckSilhouette(const Problem& problem, const Photograph& observed,
                        const Scene& scene, size_t covered, int num_threads,
                        std::vector<std::string>* warnings) {
   if (problem.image.mask.empty()) return OkStatus();
-  const auto of_mask = static_cast<size_t>(
-      std::count_if(observed.mask.inside.begin(), observed.mask.inside.end(),
-                    [](uint8_t inside) { return inside != 0; }));
-  const StatusOr<std::vector<ShadingPoint>> all =
+  Mask beside = observed.mask;
+  for (uint8_t& inside : beside.inside) inside = inside == 0 ? 1 : 0;
+  const size_t of_mask = beside.inside.size() -
+                         static_cast<size_t>(std::count(
+                             beside.inside.begin(), beside.inside.end(), 1));
+  // Fails where there are none: the sizes fitted before.
+  const StatusOr<std::vector<ShadingPoint>> outside =
       FindShadingPoints(scene, problem.camera, observed.radiance.width,
-                        observed.radiance.height, Mask(), 1, num_threads);
-  if (!all.ok()) return OkStatus();  // a map of another size was told before
+                        observed.radiance.height, beside, 1, num_threads);
   const auto both = static_cast<double>(covered);
   const double overlap =
-      both / (static_cast<double>(of_mask + all->size()) - both);
+      both /
+      static_cast<double>(of_mask + (outside.ok() ? outside->size() : 0));
   if (overlap >= kUsualOverlap) return OkStatus();
-  char iou[16];
-  std::snprintf(iou, sizeof(iou), "%.2f", overlap);
   const std::string text =
       "the object covers " + std::to_string(covered) + " of the mask's " +
-      std::to_string(of_mask) + " pixels (overlap " + iou +
+      std::to_string(of_mask) + " pixels (overlap " + Format("%.2f", overlap) +
       "): check the camera, its field of view and up axis, and geometry" +
       FitAdvice(problem);
   if (both < kLeastCovered * static_cast<double>(of_mask)) {
@@ -119,14 +120,12 @@ Status CheckMapSize(const Problem& problem, int far_width) {
   const int height = problem.illumination.height;
   const int cells = NumFarCells(height, width, far_width);
   if (cells <= kMostFarCells) return OkStatus();
-  const std::string found =
-      std::to_string(width) + "x" + std::to_string(height);
   return InvalidInput(problem.path + ": illumination.width",
                       "expected a map whose width and height can both be "
                       "halved until at most " +
                           std::to_string(kMostFarCells) +
                           " texels are left, as powers of two can, found " +
-                          found);
+                          SizeName(width, height));
 }
 
 // The width of a known map that no size is asked for: its own, to a power of

@@ -62,11 +62,6 @@ StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination,
                         " values below 0, down to " +
                         std::to_string(below->lowest) + ", were set to 0");
   }
-  if (map->width % 2 != 0) {
-    return InvalidInput(
-        illumination.known_file,
-        "width: expected an even number, found " + std::to_string(map->width));
-  }
   return map;
 }
 

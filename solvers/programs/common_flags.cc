@@ -69,4 +69,10 @@ int RunProgram(CLI::App* app, int argc, char** argv,
   return LeaveProgram(FinishProgram(status));
 }
 
+void PrintWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+}
+
 }  // namespace ibrdf

@@ -2,6 +2,8 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "ibrdf/base/status.h"
 
@@ -26,5 +28,8 @@ void AddCommonFlags(CLI::App* app, CommonFlags* flags);
 // line on stderr, "error: <file>: <field>: <what>".
 int RunProgram(CLI::App* app, int argc, char** argv,
                const std::function<Status()>& run);
+
+// A line on stderr for each, "warning: ...", with --quiet too.
+void PrintWarnings(const std::vector<std::string>& warnings);
 
 }  // namespace ibrdf

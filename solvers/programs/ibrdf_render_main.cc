@@ -167,9 +167,7 @@ Status Run(const std::string& scene, const std::vector<std::string>& overrides,
   const StatusOr<RenderedScene> rendered =
       RenderWithProgress(*problem, explain, flags);
   if (!rendered.ok()) return rendered.status();
-  for (const std::string& warning : rendered->warnings) {
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  }
+  PrintWarnings(rendered->warnings);
   if (explain || !flags.quiet) {
     std::printf("effects: %s\n", Describe(*rendered).c_str());
   }

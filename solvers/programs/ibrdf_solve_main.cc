@@ -50,9 +50,7 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
                 Describe(inverse->effects).c_str());
   }
   if (explain) {
-    for (const std::string& warning : inverse->warnings) {
-      std::fprintf(stderr, "warning: %s\n", warning.c_str());
-    }
+    PrintWarnings(inverse->warnings);
     return OkStatus();
   }
   // What the end needs, before time is spent.
@@ -81,9 +79,7 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
   if (!metrics.ok()) return metrics.status();
   const SolvedProblem solved{*problem, *inverse, *truth, *estimate, *metrics};
   IBRDF_RETURN_IF_ERROR(WriteResults(solved, folder));
-  for (const std::string& warning : ResultWarnings(solved)) {
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  }
+  PrintWarnings(ResultWarnings(solved));
   if (!flags.quiet) {
     for (const std::string& line : MetricLines(*metrics)) {
       std::printf("  %s\n", line.c_str());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "tests/image/reference_curve.h"
@@ -14,18 +15,13 @@ namespace ibrdf {
 namespace {
 
 using testing::AllCurves;
+using testing::Curve;
 using testing::Describe;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Intervals are wider than half a code by 1e-9 of it.
 constexpr double kNear = 1e-8;
-
-ResponseCurve Curve(ResponseKind kind, double parameter) {
-  return ResponseCurve({kind, parameter, {}});
-}
-
-ResponseCurve Curve(ResponseKind kind) { return ResponseCurve({kind, {}, {}}); }
 
 TEST(CodeIntervals, AreHalfACodeAround) {
   const CodeIntervals codes(ResponseCurve(), CodeLevels::OfBits(8));
@@ -187,21 +183,16 @@ TEST(CodeIntervals, SlopesAreThoseOfDifferences) {
     for (int code = 0; code < 256; ++code) {
       const RadianceInterval &a = below.Interval(code),
                              &b = above.Interval(code);
-      if (a.HasLow()) {
-        const double expected = slope(a.low, b.low);
-        ASSERT_NEAR(expected, here.Slopes(code).low,
-                    1e-6 * (1.0 + std::abs(expected)))
-            << code;
-      } else {
-        ASSERT_EQ(0.0, here.Slopes(code).low);
-      }
-      if (a.HasHigh()) {
-        const double expected = slope(a.high, b.high);
-        ASSERT_NEAR(expected, here.Slopes(code).high,
-                    1e-6 * (1.0 + std::abs(expected)))
-            << code;
-      } else {
-        ASSERT_EQ(0.0, here.Slopes(code).high);
+      const LogEndSlopes found = here.Slopes(code);
+      for (const auto& [is_there, expected, value] :
+           {std::tuple(a.HasLow(), slope(a.low, b.low), found.low),
+            std::tuple(a.HasHigh(), slope(a.high, b.high), found.high)}) {
+        if (is_there) {
+          ASSERT_NEAR(expected, value, 1e-6 * (1.0 + std::abs(expected)))
+              << code;
+        } else {
+          ASSERT_EQ(0.0, value);
+        }
       }
     }
   }

@@ -13,6 +13,14 @@ namespace testing {
 
 using Number = long double;
 
+inline ResponseCurve Curve(ResponseKind kind, double parameter) {
+  return ResponseCurve({kind, parameter, {}});
+}
+
+inline ResponseCurve Curve(ResponseKind kind) {
+  return ResponseCurve({kind, {}, {}});
+}
+
 struct ReferenceCurve {
   ResponseKind kind;
   Number parameter;

@@ -14,6 +14,7 @@ namespace ibrdf {
 namespace {
 
 using testing::AllCurves;
+using testing::Curve;
 using testing::Describe;
 using testing::Number;
 using testing::ReferenceCurve;
@@ -23,12 +24,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Some operations of double precision.
 constexpr double kRounding = 2e-14;
-
-ResponseCurve Curve(ResponseKind kind, double parameter) {
-  return ResponseCurve({kind, parameter, {}});
-}
-
-ResponseCurve Curve(ResponseKind kind) { return ResponseCurve({kind, {}, {}}); }
 
 // Magnitudes from low to high, both among them.
 std::vector<double> Magnitudes(double low, double high, int count) {

@@ -97,6 +97,14 @@ std::string OtherValue(const ProblemKey& key) {
 
 const std::vector<ProblemKey>& AllKeys() { return ProblemFileSchema().keys; }
 
+TEST(ProblemSchema, ResponsesAreTheCurvesNamesInTheirOrder) {
+  const ProblemKey& key = ProblemFileSchema().Key("image.response");
+  for (size_t i = 1; i < key.words.size(); ++i) {
+    EXPECT_EQ(NameOf(static_cast<ResponseKind>(i - 1)), key.words[i].word);
+  }
+  EXPECT_EQ(static_cast<size_t>(ResponseKind::kTable) + 1, key.words.size());
+}
+
 TEST(ProblemSchema, DefaultsAreWhatAnEmptyProblemYields) {
   for (const ProblemKey& key : AllKeys()) {
     if (key.default_value.empty()) continue;

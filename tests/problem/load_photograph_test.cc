@@ -87,7 +87,7 @@ TEST_F(LoadPhotographTest, EightBitsThatSayNothingAreSrgbAndItIsSaid) {
 
 TEST_F(LoadPhotographTest, WhatIsSaidGoesBeforeTheFile) {
   ImageSpec spec = Spec("a.png", GreyPng({100, 200, 230}, 8));
-  spec.response = ImageResponse::kPower;
+  spec.response = ResponseKind::kPower;
   spec.response_parameter = 2.0;
   spec.white = 220.0;
   spec.black = 20.0;
@@ -106,7 +106,7 @@ TEST_F(LoadPhotographTest, SixteenBitsMustSayWhatTheyAre) {
   EXPECT_EQ(StatusCode::kInvalidInput, refused.code());
   EXPECT_NE(std::string::npos, refused.message().find("image.response"));
   EXPECT_NE(std::string::npos, refused.message().find("a.png"));
-  spec.response = ImageResponse::kLinear;
+  spec.response = ResponseKind::kLinear;
   const StatusOr<Photograph> found = LoadPhotograph(spec);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_NEAR(1000 / 65535.0, *found->radiance.At(0, 0), 1e-7);
@@ -116,7 +116,7 @@ TEST_F(LoadPhotographTest, FloatsThroughACurve) {
   Image image(2, 1);
   image.rgb.assign(6, 0.5f);
   ImageSpec spec = Spec(image);
-  spec.response = ImageResponse::kSrgb;
+  spec.response = ResponseKind::kSrgb;
   const StatusOr<Photograph> found = LoadPhotograph(spec);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_NEAR(FromSrgb(0.5), *found->radiance.At(0, 0), 1e-6);

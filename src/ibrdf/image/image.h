@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace ibrdf {
@@ -26,6 +27,11 @@ struct Image {
     return rgb.data() + (static_cast<size_t>(y) * width + x) * 3;
   }
 };
+
+// "128x64", for messages.
+inline std::string SizeName(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
 
 // Pixels that belong to the object: nonzero = inside.
 struct Mask {

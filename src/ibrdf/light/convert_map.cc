@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "ibrdf/base/parallel_for.h"
 #include "ibrdf/base/pi.h"
+#include "ibrdf/light/area_average.h"
 #include "ibrdf/light/texel_overlaps.h"
 
 namespace ibrdf {
@@ -84,26 +84,8 @@ std::vector<std::vector<IntervalPart>> ColumnParts(const MapGrid& from,
 
 Image ResampleLatLong(const Image& map, const MapGrid& from, const MapGrid& to,
                       int num_threads) {
-  const std::vector<std::vector<IntervalPart>> rows = RowParts(from, to);
-  const std::vector<std::vector<IntervalPart>> columns = ColumnParts(from, to);
-  Image out(to.size().width, to.size().height);
-  ParallelFor(out.height, num_threads, [&](int64_t r, int) {
-    for (int c = 0; c < out.width; ++c) {
-      double sum[3] = {0.0, 0.0, 0.0}, area = 0.0;
-      for (const IntervalPart& y : rows[r]) {
-        for (const IntervalPart& x : columns[c]) {
-          const double a = y.length * x.length;
-          const float* texel = map.At(x.source, y.source);
-          area += a;
-          for (int k = 0; k < 3; ++k) sum[k] += a * texel[k];
-        }
-      }
-      for (int k = 0; k < 3; ++k) {
-        out.At(c, static_cast<int>(r))[k] = static_cast<float>(sum[k] / area);
-      }
-    }
-  });
-  return out;
+  return AverageByArea(map, RowParts(from, to), ColumnParts(from, to),
+                       num_threads);
 }
 
 Image ResampleSphere(const Image& map, const MapGrid& from, const MapGrid& to,

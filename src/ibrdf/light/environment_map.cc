@@ -8,20 +8,16 @@
 
 #include "ibrdf/base/fast_atan2.h"
 #include "ibrdf/base/pi.h"
+#include "ibrdf/light/area_average.h"
 
 namespace ibrdf {
 namespace {
 
 // Overlap of the intervals [edges_a[i], edges_a[i+1]] with those of b, as
 // (b index, length) lists per interval of a. Both ascending, same ends.
-struct Overlap {
-  int source;
-  double length;
-};
-
-std::vector<std::vector<Overlap>> Overlaps(const std::vector<double>& target,
-                                           const std::vector<double>& source) {
-  std::vector<std::vector<Overlap>> lists(target.size() - 1);
+std::vector<std::vector<IntervalPart>> Overlaps(
+    const std::vector<double>& target, const std::vector<double>& source) {
+  std::vector<std::vector<IntervalPart>> lists(target.size() - 1);
   size_t j = 0;
   for (size_t i = 0; i + 1 < target.size(); ++i) {
     while (j > 0 && source[j] > target[i]) --j;
@@ -127,28 +123,11 @@ Eigen::Array3d LookUpMap(const Image& map, const Eigen::Vector3d& direction) {
 
 Image ResizeMap(const Image& map, int height, int width) {
   CHECK(!map.empty() && height > 0 && width > 0);
-  const std::vector<std::vector<Overlap>> rows =
+  const std::vector<std::vector<IntervalPart>> rows =
       Overlaps(RowEdges(height), RowEdges(map.height));
-  const std::vector<std::vector<Overlap>> columns =
+  const std::vector<std::vector<IntervalPart>> columns =
       Overlaps(ColumnEdges(width), ColumnEdges(map.width));
-  Image out(width, height);
-  for (int r = 0; r < height; ++r) {
-    for (int c = 0; c < width; ++c) {
-      double sum[3] = {0.0, 0.0, 0.0}, area = 0.0;
-      for (const Overlap& y : rows[r]) {
-        for (const Overlap& x : columns[c]) {
-          const double a = y.length * x.length;
-          const float* texel = map.At(x.source, y.source);
-          area += a;
-          for (int k = 0; k < 3; ++k) sum[k] += a * texel[k];
-        }
-      }
-      for (int k = 0; k < 3; ++k) {
-        out.At(c, r)[k] = static_cast<float>(sum[k] / area);
-      }
-    }
-  }
-  return out;
+  return AverageByArea(map, rows, columns, 1);
 }
 
 std::vector<float> ResamplePlanes(const std::vector<float>& planes,

@@ -90,10 +90,6 @@ const char* ShapesOf(MapFrame frame) {
   }
 }
 
-std::string SizeText(MapSize size) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height);
-}
-
 // Texels of a map: their numbers fit an int32 with room for sums.
 constexpr int64_t kMaxTexels = int64_t{1} << 30;
 
@@ -141,9 +137,9 @@ StatusOr<MapFrame> ParseMapFrame(const std::string& where,
 Status CheckMapSize(const std::string& where, MapFrame frame, MapSize size) {
   const int64_t texels = int64_t{size.width} * size.height;
   if (size.width > 0 && size.height > 0 && texels > kMaxTexels) {
-    return InvalidInput(where, "expected at most " +
-                                   std::to_string(kMaxTexels) +
-                                   " texels, found " + SizeText(size));
+    return InvalidInput(
+        where, "expected at most " + std::to_string(kMaxTexels) +
+                   " texels, found " + SizeName(size.width, size.height));
   }
   if (Accepts(frame, size)) return OkStatus();
   std::string fitting;
@@ -153,7 +149,8 @@ Status CheckMapSize(const std::string& where, MapFrame frame, MapSize size) {
   }
   return InvalidInput(
       where, std::string("frame ") + MapFrameName(frame) + " expects " +
-                 ShapesOf(frame) + ", found " + SizeText(size) + " texels, " +
+                 ShapesOf(frame) + ", found " +
+                 SizeName(size.width, size.height) + " texels, " +
                  (fitting.empty() ? std::string("which fits no frame")
                                   : "which fits " + fitting));
 }

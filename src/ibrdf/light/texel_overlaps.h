@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ibrdf/light/area_average.h"
 #include "ibrdf/light/map_frame.h"
 
 namespace ibrdf {
@@ -12,12 +13,6 @@ namespace ibrdf {
 struct TexelOverlap {
   int32_t source, target;
   float solid_angle;
-};
-
-// Pieces of an interval of the circle or of a line among those of another.
-struct IntervalPart {
-  int source;
-  double length;
 };
 
 // For each interval [from[i], to[i]] (from <= to <= from + 1) its parts among

@@ -14,10 +14,6 @@ inline std::string PixelName(const Image& image, size_t pixel) {
          std::to_string(pixel / width) + ")";
 }
 
-inline std::string SizeName(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
-
 inline Status CheckSameSize(const Image& estimate, const Image& reference) {
   if (reference.empty()) return InvalidInput("reference", "expected pixels");
   if (estimate.width != reference.width ||
