@@ -32,6 +32,17 @@ void PrintKeys() {
   throw CLI::Success();  // as --help does: nothing else is asked for
 }
 
+void PrintExample() {
+  std::printf(
+      "Estimates reflectance and light from a photograph of an object of known "
+      "shape.\nSave this as problem.yaml, name your files in it, take out what "
+      "you do not need,\nand run: ibrdf_solve --problem problem.yaml --out "
+      "result\n\n%s\nibrdf_solve --keys explains every key, --help every "
+      "option.\n",
+      ExampleProblem(ProblemFileSchema()).c_str());
+  std::fflush(stdout);
+}
+
 Status Solve(const std::string& file, const std::vector<std::string>& overrides,
              const std::string& folder, bool explain,
              const CommonFlags& flags) {
@@ -120,6 +131,8 @@ int Main(int argc, char** argv) {
   app.add_flag_callback("--keys", PrintKeys,
                         "print every key of a problem file with its default, "
                         "range and meaning, in Markdown; solve nothing");
+  // Somebody who looks what this is; the parser then says what is missing.
+  if (argc == 1) PrintExample();
   return RunProgram(&app, argc, argv, [&] {
     if (verbose) {
       FLAGS_minloglevel = google::GLOG_INFO;

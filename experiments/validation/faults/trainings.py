@@ -89,9 +89,10 @@ class Trainings(Study):
         moments = ", ".join(f"{met[p]} {p}" for p in ("before", "in", "after"))
         self.row("training killed (SIGKILL) or interrupted (SIGINT), by turns", faults,
                  f"{moments} the steps, {resumed} in runs that went on from a checkpoint; {checks.words(ends)} (signal "
-                 f"2: before the tables were read); temporary files left by {left}, 0 by a run that ended; no "
-                 f"checkpoint that the next run refused, no step lost by SIGINT; {models + 1} resumed runs ended, each "
-                 f"with the undisturbed model, bit by bit")
+                 f"2: before the tables were read)")
+        self.row("what those trainings left", "the same",
+                 f"temporary files left by {left}, 0 by a run that ended; no checkpoint that the next run refused, no "
+                 f"step lost by SIGINT; {models + 1} resumed runs ended, each with the undisturbed model, bit by bit")
 
     def training_disk(self):
         checkpoint = 0
