@@ -17,13 +17,35 @@ namespace ibrdf {
 
 enum class ProblemKind { kJoint, kReflectance, kIllumination };
 
+// Which curve made the values of an image of radiance. kAuto: what the file
+// says; sRGB of 8 bits that say nothing. From kLinear on the kinds of
+// response_curve.h, kTable not among them. kUnknown: to be found among several
+// kinds; kUnknownPower, kUnknownAces: that curve, of a parameter to be found.
+enum class ResponseChoice {
+  kAuto,
+  kLinear,
+  kSrgb,
+  kPower,
+  kAces,
+  kReinhard,
+  kLog,
+  kUnknown,
+  kUnknownPower,
+  kUnknownAces,
+};
+// None: kAuto, or unknown.
+inline std::optional<ResponseKind> KnownResponse(ResponseChoice choice) {
+  if (choice == ResponseChoice::kAuto || choice >= ResponseChoice::kUnknown) {
+    return std::nullopt;
+  }
+  return static_cast<ResponseKind>(static_cast<int>(choice) - 1);
+}
+
 struct ImageSpec {
   std::string file;   // any of photo_file.h; empty: to be rendered
   std::string mask;   // .png; empty: none
   std::string layer;  // of OpenEXR; empty: the beauty part
-  // Which curve made the values of radiance, kTable not among them. Unset: what
-  // the file says; sRGB of 8 bits that say nothing.
-  std::optional<ResponseKind> response;
+  ResponseChoice response = ResponseChoice::kAuto;
   std::optional<double> response_parameter;  // unset: the curve's usual one
   // Codes of a file of whole numbers: from `white` on they are clipped, up to
   // `black` they are 0. Unset: the largest code, and 0.

@@ -26,8 +26,7 @@ json ImageJson(const ImageSpec& image) {
   json out = {{"file", image.file}};
   if (!image.mask.empty()) out["mask"] = image.mask;
   if (!image.layer.empty()) out["layer"] = image.layer;
-  out["response"] =
-      image.response.has_value() ? NameOf(*image.response) : "auto";
+  out["response"] = WordOf("image.response", image.response);
   const auto or_auto = [](const std::optional<double>& value) {
     return value.has_value() ? json(*value) : json("auto");
   };

@@ -170,7 +170,12 @@ Keys ImageKeys() {
                     "Narkowicz's fit of the ACES curve, scaled by "
                     "gamma^(-1/5)."},
                    {"reinhard", "Reinhard et al. 2002, Eq. 4, by `white`."},
-                   {"log", "log(1 + mu x) / log(1 + mu)."}})
+                   {"log", "log(1 + mu x) / log(1 + mu)."},
+                   {"unknown",
+                    "Found with the rest: sRGB, `power` or `aces`, by "
+                    "evidence. Files of codes alone."},
+                   {"unknown_power", "`power`, and p is found."},
+                   {"unknown_aces", "`aces`, and gamma is found."}})
           .UsedBy(kUsedBySolve),
       Row("image.response_parameter",
           "p, gamma, white or mu of the response. `auto`: the usual one.")

@@ -72,7 +72,7 @@ class EvidenceStudy {
                                           problem.num_threads)),
         lobes_(factory_(problem.transport.grid)),
         study_(study),
-        radiance_(RadianceOf(problem.image, problem.points)) {
+        observed_(Observe(problem.image, nullptr, problem.points).observed) {
     options_.num_threads = problem.num_threads;
     options_.covariance = study.spread;
     options_.most_directional_lights = study.most_directional_lights;
@@ -93,12 +93,12 @@ class EvidenceStudy {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-        factory_, prior_, problem_.points, radiance_, options_);
+        factory_, prior_, problem_.points, observed_, options_);
     if (!found.ok()) return found.status();
     const double seconds =
         std::chrono::duration<double>(Clock::now() - start).count();
     const MarginalReflectance fine(
-        factory_, problem_.points, radiance_, options_.process, options_.fine,
+        factory_, problem_.points, observed_, options_.process, options_.fine,
         problem_.num_threads, found->directional_lights);
     std::printf("%s: search %.1f s, from %s\n", name_.c_str(), seconds,
                 found->initial_guess.c_str());
@@ -230,7 +230,7 @@ class EvidenceStudy {
   const LobeFactory factory_;
   const std::unique_ptr<const LobeModel> lobes_;
   const StudyOptions study_;
-  const std::vector<double> radiance_;
+  const Observations observed_;
   ReflectanceSearchOptions options_;
 };
 

@@ -160,6 +160,7 @@ StatusOr<RunFiles> PrepareRun(const SolverSweepOptions& options,
   if (error) return InvalidInput(files.estimate.string(), error.message());
   // A result left by a run that was cut off is not this run's.
   fs::remove(files.result, error);
+  if (run.prepare) IBRDF_RETURN_IF_ERROR(run.prepare(files.folder.string()));
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(files.problem, run.problem));
   return files;
 }

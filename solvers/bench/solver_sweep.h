@@ -29,6 +29,9 @@ struct SolverRun {
   std::string problem;       // its text
   std::string estimate;      // folder of the results in the case's folder
   NamedRow row;              // with the cells that name the run
+  // Makes what the problem needs beside the inputs of its case, in the case's
+  // folder. May be empty.
+  std::function<Status(const std::string& folder)> prepare = {};
 };
 
 struct SolverSweep {

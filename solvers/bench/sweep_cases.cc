@@ -82,14 +82,13 @@ Problem RenderProblem(const SweepOptions& options, const SweepCase& c) {
   return problem;
 }
 
-std::string ImageYaml(const SweepOptions& options) {
+std::string ImageYaml(const SweepOptions& options, const std::string& image) {
   const std::string geometry =
       IsMesh(options)
           ? "{mesh: " + Quoted(fs::absolute(options.geometry).string()) +
                 ", fit: unit_sphere}"
           : "{sphere: {}}";
-  return "image: {file: input.exr, mask: mask.png}\ngeometry: " + geometry +
-         "\n";
+  return "image: {" + image + "}\ngeometry: " + geometry + "\n";
 }
 
 StatusOr<std::vector<SweepCase>> ListSweepCases(const SweepOptions& options) {

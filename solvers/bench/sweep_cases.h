@@ -56,8 +56,11 @@ std::string CaseFolder(const SweepOptions& options, const SweepCase& c);
 // The forward problem of a case, at reference quality.
 Problem RenderProblem(const SweepOptions& options, const SweepCase& c);
 
-// "image: ..." and "geometry: ..." of a problem file in the case's folder.
-std::string ImageYaml(const SweepOptions& options);
+// "image: {...}" and "geometry: ..." of a problem file in the case's folder;
+// `image`: what is in the braces.
+std::string ImageYaml(
+    const SweepOptions& options,
+    const std::string& image = "file: input.exr, mask: mask.png");
 
 // A string as JSON and YAML have it.
 std::string Quoted(const std::string& text);

@@ -15,22 +15,6 @@ constexpr double kLeastRadiance = 1e-100;
 
 }  // namespace
 
-Observations MakeObservations(const std::vector<double>& radiance) {
-  Observations o;
-  o.radiance = radiance;
-  o.valid.resize(radiance.size() / 3);
-  for (size_t i = 0; i < o.valid.size(); ++i) {
-    bool valid = true;
-    for (int c = 0; c < 3; ++c) {
-      const double v = radiance[3 * i + c];
-      valid &= std::isfinite(v) && v > 0.0;
-    }
-    o.valid[i] = valid;
-    o.num_valid += valid;
-  }
-  return o;
-}
-
 LikelihoodValue EvaluateLikelihood(const std::vector<double>& L_o,
                                    const Observations& observed,
                                    const RobustLogLikelihood& likelihood,
@@ -43,15 +27,25 @@ LikelihoodValue EvaluateLikelihood(const std::vector<double>& L_o,
     derivatives->weight.assign(L_o.size(), 0.0);
   }
   LikelihoodValue value;
+  double counted = 0.0;  // in the misfit
   for (size_t i = 0; i < L_o.size(); ++i) {
     if (!observed.valid[i / 3]) continue;
     if (!std::isfinite(L_o[i])) {
       value.cost = value.misfit = std::numeric_limits<double>::quiet_NaN();
       return value;
     }
-    const double sum = std::max(L_o[i], 0.0) + l.epsilon;
+    const RadianceInterval interval = observed.Interval(i);
+    const double radiance = std::max(L_o[i], 0.0);
+    const bool holds = !interval.IsExact() && interval.Contains(radiance);
+    if (holds) {
+      counted += interval.IsOneSided() ? 0.0 : 1.0;
+      continue;
+    }
+    counted += 1.0;
+    const double sum = radiance + l.epsilon;
     const double e = std::max(sum, kLeastRadiance);
-    const double d = std::log(e) - std::log(observed.radiance[i] + l.epsilon);
+    const double d =
+        std::log(e) - std::log(interval.Nearest(radiance) + l.epsilon);
     const double t = d / l.scale;
     double dr_dt = 0.0;
     const double r = RobustResidual(t, l.delta, &dr_dt);
@@ -65,7 +59,7 @@ LikelihoodValue EvaluateLikelihood(const std::vector<double>& L_o,
     derivatives->d_residual[i] = dr_dt * dt;
     derivatives->weight[i] = dt * dt / std::hypot(t, l.delta);  // rho'(t) / t
   }
-  value.misfit /= std::max(3.0 * observed.num_valid, 1.0);
+  value.misfit /= std::max(counted, 1.0);
   return value;
 }
 

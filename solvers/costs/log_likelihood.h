@@ -3,21 +3,14 @@
 #pragma once
 #include <vector>
 
+#include "ibrdf/solvers/costs/observations.h"
 #include "ibrdf/solvers/costs/robust_log_residual.h"
 
 namespace ibrdf {
 
-// log radiance of observed points, [points][3] radiance; points whose three
-// values are not all finite and positive take no part.
-struct Observations {
-  std::vector<double> radiance;  // [points * 3]
-  std::vector<char> valid;       // [points]
-  int num_valid = 0;
-};
-Observations MakeObservations(const std::vector<double>& radiance);
-
 // Per value of L_o, 0 where the point takes no part:
 //   residual_i = RobustResidual((log(L_o_i + eps) - log(I_i + eps)) / b),
+// I the observed radiance, of an interval the value in it nearest to L_o,
 // so that sum residual^2 / 2 is the likelihood. Negative L_o counts as 0, and 0
 // without epsilon as 1e-100, both without slope.
 struct LikelihoodDerivatives {
@@ -31,7 +24,9 @@ struct LikelihoodDerivatives {
 
 struct LikelihoodValue {
   double cost = 0.0;    // nats; NaN where L_o is not finite
-  double misfit = 0.0;  // mean |log L_o - log I|; 0 without points
+  // Mean |log L_o - log I|; 0 without points. One end alone that holds says
+  // nothing of how well the image is met, and does not count.
+  double misfit = 0.0;
 };
 
 // L_o [points * 3]; derivatives may be null.

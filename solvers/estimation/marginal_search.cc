@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -21,6 +22,9 @@ namespace {
 // for the hyperparameters of the light under a known one.
 constexpr double kSearchShare = 0.55;
 constexpr double kLightSearchShare = 0.25;
+// Of CoarseEvidence: enough for the best few materials to come near their
+// optima.
+const std::vector<SearchStage> kEvidenceStages = {{4, 2}, {2, 5}};
 // Below this multiple of the median radiance no camera sees, and its logarithm
 // is far from all others.
 constexpr double kDarkest = 1e-8;
@@ -137,22 +141,23 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
   return o;
 }
 
-// The pixels' radiance [points * 3]; 0, which a search leaves out, where it is
-// far below any measurement.
-std::vector<double> SearchRadiance(const SolveSetup& setup) {
-  std::vector<double> radiance = setup.pixels.observed.radiance;
+// The pixels with radiance 0, which a search leaves out, where it is far below
+// any measurement.
+Observations SearchedPixels(const SolveSetup& setup) {
+  const Observations& observed = setup.pixels.observed;
+  std::vector<double> radiance = observed.radiance;
   std::vector<double> lit;
   for (const double e : radiance) {
     if (std::isfinite(e) && e > 0.0) lit.push_back(e);
   }
-  if (lit.empty()) return radiance;
+  if (lit.empty()) return observed;
   const auto middle = lit.begin() + lit.size() / 2;
   std::nth_element(lit.begin(), middle, lit.end());
   const double darkest = kDarkest * *middle;
   for (double& e : radiance) {
     if (e < darkest) e = 0.0;
   }
-  return radiance;
+  return MakeObservations(std::move(radiance), observed.low, observed.high);
 }
 
 // What a search says of the light, whose log radiance is to fall by `level`.
@@ -179,7 +184,7 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
   o.covariance = problem.solver.max_iterations > 0;
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       FlowLobes::Factory(*problem.model, problem.lobes, problem.num_threads),
-      setup.materials, problem.points, SearchRadiance(setup), o);
+      setup.materials, problem.points, SearchedPixels(setup), o);
   if (!found.ok()) return found.status();
   ReflectanceEstimate out;
   out.lobes = found->parameters;
@@ -211,8 +216,29 @@ LightPosterior EstimateLightPosterior(const SolveSetup& setup,
   const StatusOr<ReflectanceSearchResult> found =
       SearchReflectance(TableLobes::Factory(*problem.known_brdf),
                         KnownMaterial(ToEigen(TableLobes::KnownParameters())),
-                        problem.points, SearchRadiance(setup), o);
+                        problem.points, SearchedPixels(setup), o);
   return found.ok() ? LightOf(*found, 0.0) : LightPosterior();
+}
+
+double CoarseEvidence(const SolveSetup& setup, SolveContext* context) {
+  const InverseProblem& problem = *setup.problem;
+  ReflectanceSearchOptions o = SearchOptions(1.0, setup, context);
+  o.coarse_stages = kEvidenceStages;
+  o.fine_iterations = 0;
+  o.covariance = false;
+  o.bounce_gain = {};
+  o.report = {};
+  const StatusOr<ReflectanceSearchResult> found =
+      setup.lobes_unknown()
+          ? SearchReflectance(FlowLobes::Factory(*problem.model, problem.lobes,
+                                                 problem.num_threads),
+                              setup.materials, problem.points,
+                              SearchedPixels(setup), o)
+          : SearchReflectance(
+                TableLobes::Factory(*problem.known_brdf),
+                KnownMaterial(ToEigen(TableLobes::KnownParameters())),
+                problem.points, SearchedPixels(setup), o);
+  return found.ok() ? found->cost : std::numeric_limits<double>::infinity();
 }
 
 ReflectanceEstimate MeanMaterial(const SolveSetup& setup) {

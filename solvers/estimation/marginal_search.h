@@ -20,6 +20,11 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
 LightPosterior EstimateLightPosterior(const SolveSetup& setup,
                                       SolveContext* context);
 
+// -log posterior of the best reflectance at the search's coarse resolution, the
+// light integrated out, nats; infinite where there is none. It compares images
+// of the same pixels.
+double CoarseEvidence(const SolveSetup& setup, SolveContext* context);
+
 // The most central of the model's materials.
 ReflectanceEstimate MeanMaterial(const SolveSetup& setup);
 

@@ -90,8 +90,8 @@ Status RunOuterIterations(const OuterIterationOptions& options,
     MinimiseJoint(options.method, on.objective.get(), &iterate->state, inner);
     if (options.blocks == JointBlocks::kBoth) SettleScale(setup, iterate);
     const TraceEntry after =
-        Evaluate(options.stage + " iteration " + std::to_string(k), setup, *context,
-                 *iterate, pixels);
+        Evaluate(options.stage + " iteration " + std::to_string(k), setup,
+                 *context, *iterate, pixels);
     context->CountIteration();
     if (!(after.cost < before.cost)) {
       iterate->state = last_state;

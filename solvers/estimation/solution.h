@@ -8,6 +8,7 @@
 #include "ibrdf/base/status.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
+#include "ibrdf/image/response_curve.h"
 
 namespace ibrdf {
 
@@ -33,7 +34,18 @@ struct Alternative {
   double brdf_log_difference = 0.0;  // as ibrdf_eval's aligned log-RMSE
 };
 
+// A response curve that explains the image's codes.
+struct CurveEstimate {
+  ResponseDefinition curve;
+  // Posterior deviation of the parameter's log; NaN where it has none or it was
+  // not found.
+  double log_parameter_std = std::numeric_limits<double>::quiet_NaN();
+  double cost = 0.0;  // -log evidence, nats, above the best one's
+};
+
 struct Solution {
+  // Where the curve was unknown: the best of each family, the best first.
+  std::vector<CurveEstimate> curves;
   std::vector<double> lobe_parameters;  // as LobeModel; empty if known
   // Posterior covariance of those (Laplace, light integrated out), row-major;
   // empty where it was not found.

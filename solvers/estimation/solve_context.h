@@ -28,6 +28,7 @@ class SolveContext {
   // Seconds, with those spent before the call.
   double Elapsed() const { return seconds_spent_ + clock_.Seconds(); }
   double budget() const { return budget_; }
+  const std::atomic<bool>* stop() const { return stop_; }
   bool Interrupted() const { return stop_ != nullptr && stop_->load(); }
 
   // Keeps seconds for what follows the estimate (Summarise and the writing of

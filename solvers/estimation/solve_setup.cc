@@ -29,6 +29,15 @@ double MeanRadiance(const Observations& observed) {
   return sum / (3.0 * observed.num_valid);
 }
 
+bool AnyHasTwoEnds(const Observations& observed) {
+  for (size_t i = 0; i < observed.radiance.size(); ++i) {
+    if (observed.valid[i / 3] && !observed.Interval(i).IsOneSided()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void SetKnownLight(const Image& map, SolveSetup* setup) {
   BrightTexels split = SplitBrightTexels(map);
   setup->known_map = std::move(split.rest.rgb);
@@ -55,11 +64,18 @@ bool SolveSetup::joint_maximum() const {
 StatusOr<SolveSetup> SetUp(const InverseProblem& problem) {
   SolveSetup setup;
   setup.problem = &problem;
-  setup.pixels = Observe(problem.image, problem.points);
+  setup.pixels =
+      Observe(problem.image, problem.bounds ? &*problem.bounds : nullptr,
+              problem.points);
   if (setup.pixels.observed.num_valid == 0) {
     return InvalidInput("image",
                         "no pixel of the object is finite and positive in "
                         "all three channels");
+  }
+  if (!AnyHasTwoEnds(setup.pixels.observed)) {
+    return InvalidInput("image",
+                        "every value of the object is clipped or black: the "
+                        "radiance of none is known from both sides");
   }
   setup.epsilon = problem.epsilon.value_or(kEpsilonShare *
                                            MeanRadiance(setup.pixels.observed));

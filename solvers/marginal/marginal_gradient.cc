@@ -21,12 +21,22 @@ constexpr double kMotionTolerance = 1e-10;
 // meets differences of a Jacobian's rows. Then centred: G - sum_t G J.
 MarginalLikelihood::DeterminantGradient
 MarginalLikelihood::GradientOfDeterminant(const Given& given,
+                                          const DataTerm& data,
                                           const Linearisation& linear) const {
   const Light& light = given.light;
   const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
   DeterminantGradient out;
   out.inverse = linear.factor;
   InvertFactored(&out.inverse);
+  out.noise_share = NoiseShare(given, out.inverse);
+  out.by_log_radiance = GradientThroughCurvature(data, out.inverse);
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d < 3; ++d) {
+      RowMatrix block = out.inverse.block(c * P, d * P, P, P);
+      ScaleBlock(linear, c, d, &block);
+      out.inverse.block(c * P, d * P, P, P) = block;
+    }
+  }
   out.by_l.resize(3 * n);
   out.rough_share = Eigen::VectorXd::Zero(t);
   for (int c = 0; c < 3; ++c) {
@@ -55,42 +65,66 @@ MarginalLikelihood::GradientOfDeterminant(const Given& given,
     out.by_l.segment(c * n, n) =
         G.cwiseProduct(linear.jacobian[c]).colwise().sum().transpose();
   }
+  if (out.by_log_radiance.size() > 0) {
+    out.by_l += ApplyJacobianTransposed(linear, out.by_log_radiance);
+  }
   return out;
 }
 
+// With B = W^1/2 J K J^T W^1/2 and A = 1 + B the determinant by W_p is
+// (B A^-1)_pp / (2 W_p) = (1 - (A^-1)_pp) / (2 W_p).
+Eigen::VectorXd MarginalLikelihood::GradientThroughCurvature(
+    const DataTerm& data, const RowMatrix& inverse) const {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(low_.size());
+  for (Eigen::Index p = 0; p < low_.size(); ++p) {
+    if (low_[p] == high_[p] || data.curvature[p] == 0.0) continue;
+    gradient[p] = 0.5 * data.curvature_slope[p] / data.curvature[p] *
+                  (1.0 - inverse(p, p));
+  }
+  return gradient;
+}
+
+double MarginalLikelihood::NoiseShare(const Given& given,
+                                      const RowMatrix& inverse) const {
+  Eigen::VectorXd diagonal = given.weight.cwiseInverse();
+  for (Eigen::Index p = 0; p < low_.size(); ++p) {
+    if (low_[p] != high_[p]) diagonal[p] = 1.0;
+  }
+  return inverse.diagonal().dot(diagonal);
+}
+
 void MarginalLikelihood::GradientByMatrices(
-    const Given& given, const Point& point, const Eigen::VectorXd& v,
+    const Point& point, const DataTerm& data, const Eigen::VectorXd& v,
     const Eigen::VectorXd& Jv, DeterminantGradient* determinant,
     std::array<RowMatrix, 3>* gradient) const {
   const Eigen::Index n = num_sources(), P = num_points_;
-  const Eigen::VectorXd weighted = given.weight.cwiseProduct(point.residual);
   for (int c = 0; c < 3; ++c) {
     const auto L = point.L.segment(c * n, n);
-    const Eigen::ArrayXd weighted_c = weighted.segment(c * P, P).array();
-    const Eigen::ArrayXd weight_c = given.weight.segment(c * P, P).array();
+    const Eigen::ArrayXd slope = data.slope.segment(c * P, P).array();
+    const Eigen::ArrayXd curvature = data.curvature.segment(c * P, P).array();
     const Eigen::ArrayXd Jv_c = Jv.segment(c * P, P).array();
     const Eigen::ArrayXd inverse_L_o =
         point.L_o.segment(c * P, P).array().inverse();
     RowMatrix& out = (*gradient)[c];
     out = std::move(determinant->G[c]);
-    // d(grad_l Phi) . v in T is that of -(J v) . r / D.
-    out.colwise() -=
-        (weighted_c + Jv_c * weighted_c + Jv_c * weight_c).matrix();
-    out.noalias() += weighted_c.matrix() * v.segment(c * n, n).transpose();
+    // d(grad_l Phi) . v in T is that of -(J v) . slope.
+    out.colwise() -= (slope + Jv_c * slope + Jv_c * curvature).matrix();
+    if (determinant->by_log_radiance.size() > 0) {
+      out.colwise() += determinant->by_log_radiance.segment(c * P, P);
+    }
+    out.noalias() += slope.matrix() * v.segment(c * n, n).transpose();
     out = inverse_L_o.matrix().asDiagonal() * out * L.asDiagonal();
   }
 }
 
-double MarginalLikelihood::TraceByAmplitude(const Given& given,
-                                            const Linearisation& linear,
-                                            const RowMatrix& inverse) const {
+double MarginalLikelihood::TraceByAmplitude(
+    const Linearisation& linear, const DeterminantGradient& determinant) const {
   const Eigen::Index P = num_points_;
-  double trace = 3.0 * static_cast<double>(P) -
-                 inverse.diagonal().dot(given.weight.cwiseInverse());
+  double trace = 3.0 * static_cast<double>(P) - determinant.noise_share;
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
       trace -= UnscaledBlock(linear, c, d)
-                   .cwiseProduct(inverse.block(c * P, d * P, P, P))
+                   .cwiseProduct(determinant.inverse.block(c * P, d * P, P, P))
                    .sum();
     }
   }
@@ -111,14 +145,14 @@ Eigen::VectorXd MarginalLikelihood::ApplyBandDerivative(
 }
 
 void MarginalLikelihood::AddGradient(const Given& given, const LightMode& mode,
-                                     const Point& point,
+                                     const Point& point, const DataTerm& data,
                                      const Linearisation& linear,
                                      MarginalGradient* gradient) const {
-  DeterminantGradient determinant = GradientOfDeterminant(given, linear);
-  const Eigen::VectorXd w =
-      SolveHessian(given, point, linear, kMotionTolerance, determinant.by_l);
+  DeterminantGradient determinant = GradientOfDeterminant(given, data, linear);
+  const Eigen::VectorXd w = SolveHessian(given, point, data, linear,
+                                         kMotionTolerance, determinant.by_l);
   const Eigen::VectorXd v = ApplyCovariance(given.light, w);
-  GradientByMatrices(given, point, v, ApplyJacobian(linear, v), &determinant,
+  GradientByMatrices(point, data, v, ApplyJacobian(linear, v), &determinant,
                      &gradient->matrices);
 
   // K_a is what the covariance's derivative by a hyperparameter makes of the
@@ -129,7 +163,7 @@ void MarginalLikelihood::AddGradient(const Given& given, const LightMode& mode,
   gradient->hyperparameters[0] =
       by_hyperparameter(ApplyLocal(given.light, mode.representers) -
                             ApplyHorizon(mode.representers),
-                        TraceByAmplitude(given, linear, determinant.inverse));
+                        TraceByAmplitude(linear, determinant));
   RowMatrix rough;
   given.light.rough.Multiply(
       Eigen::Map<const RowMatrix>(mode.representers.data(), 3, num_sources())

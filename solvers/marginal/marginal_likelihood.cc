@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/light/log_map.h"
+#include "ibrdf/solvers/costs/interval_likelihood.h"
 #include "ibrdf/solvers/optim/line_search.h"
 
 namespace ibrdf {
@@ -29,14 +31,15 @@ constexpr double kFirstSigma = 0.15;
 
 }  // namespace
 
-MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
+MarginalLikelihood::MarginalLikelihood(LogRadianceData data,
                                        const LightProcess& process,
                                        int map_height, int map_width,
                                        int num_directional_lights,
                                        int num_threads)
-    : num_points_(static_cast<int>(log_radiance.size() / 3)),
-      y_(Eigen::Map<const Eigen::VectorXd>(
-          log_radiance.data(), static_cast<Eigen::Index>(log_radiance.size()))),
+    : num_points_(static_cast<int>(data.value.size() / 3)),
+      y_(ToEigen(data.value)),
+      low_(ToEigen(data.low)),
+      high_(ToEigen(data.high)),
       local_(process.Local()),
       level_(process.Level()),
       directional_light_(process.DirectionalLight()),
@@ -53,7 +56,9 @@ MarginalLikelihood::MarginalLikelihood(std::vector<double> log_radiance,
       texel_variance_(process.VarianceWithin(180.0 / map_height)),
       num_threads_(num_threads) {
   CHECK_GT(num_points_, 0);
-  CHECK_EQ(log_radiance.size() % 3, 0u);
+  CHECK_EQ(y_.size() % 3, 0);
+  CHECK(low_.size() == high_.size());
+  CHECK(low_.size() == 0 || low_.size() == y_.size());
 }
 
 MarginalLikelihood::Light MarginalLikelihood::LightAt(
@@ -167,11 +172,42 @@ MarginalLikelihood::Point MarginalLikelihood::At(
   }
   point.L_o = point.L_o.cwiseMax(kSmallestRadiance);
   point.residual = y_ - point.L_o.array().log().matrix();
+  for (Eigen::Index p = 0; p < low_.size(); ++p) {
+    if (low_[p] == high_[p]) continue;
+    const double log_L_o = std::log(point.L_o[p]);
+    point.residual[p] = std::clamp(log_L_o, low_[p], high_[p]) - log_L_o;
+  }
   return point;
 }
 
+MarginalLikelihood::DataTerm MarginalLikelihood::DataAt(
+    const Given& given, const Point& point) const {
+  DataTerm data;
+  data.slope = given.weight.cwiseProduct(point.residual);
+  data.curvature = given.weight;
+  if (low_.size() == 0) {
+    data.cost = 0.5 * point.residual.cwiseAbs2().dot(given.weight);
+    return data;
+  }
+  data.curvature_slope = Eigen::VectorXd::Zero(low_.size());
+  for (Eigen::Index p = 0; p < low_.size(); ++p) {
+    if (low_[p] == high_[p]) {
+      data.cost += 0.5 * point.residual[p] * data.slope[p];
+      continue;
+    }
+    const IntervalLikelihood of = EvaluateInterval(
+        low_[p], high_[p], std::log(point.L_o[p]), std::sqrt(given.noise[p]));
+    data.cost += of.cost;
+    data.slope[p] = of.slope;
+    data.curvature[p] = of.curvature;
+    data.curvature_slope[p] = of.third;
+  }
+  return data;
+}
+
 std::unique_ptr<const MarginalLikelihood::Linearisation>
-MarginalLikelihood::Linearise(const Given& given, const Point& point) const {
+MarginalLikelihood::Linearise(const Given& given, const Point& point,
+                              const DataTerm& data) const {
   const Light& light = given.light;
   const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
   auto linear = std::make_unique<Linearisation>();
@@ -181,6 +217,13 @@ MarginalLikelihood::Linearise(const Given& given, const Point& point) const {
         given.matrices[c] * point.L.segment(c * n, n).asDiagonal();
     light.correlation.Multiply(linear->jacobian[c].leftCols(t), &linear->JC[c]);
   });
+  linear->row_scale = Eigen::VectorXd::Ones(3 * P);
+  linear->diagonal = given.noise;
+  for (Eigen::Index p = 0; p < low_.size(); ++p) {
+    if (low_[p] == high_[p]) continue;
+    linear->row_scale[p] = std::sqrt(data.curvature[p]);
+    linear->diagonal[p] = 1.0;
+  }
   RowMatrix& A = linear->factor;
   A.setZero(3 * P, 3 * P);
   constexpr int kPairs[6][2] = {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}};
@@ -189,14 +232,26 @@ MarginalLikelihood::Linearise(const Given& given, const Point& point) const {
     RowMatrix block;
     MultiplyTransposed(linear->JC[c], linear->jacobian[d].leftCols(t), &block);
     // The rows of a Jacobian sum to 1: a level moves log radiance as it is.
-    A.block(c * P, d * P, P, P) = (light.amplitude * local_(c, d) * block +
-                                   DirectionalLightBlock(*linear, c, d))
-                                      .array() +
-                                  level_(c, d);
+    block = (light.amplitude * local_(c, d) * block +
+             DirectionalLightBlock(*linear, c, d))
+                .array() +
+            level_(c, d);
+    ScaleBlock(*linear, c, d, &block);
+    A.block(c * P, d * P, P, P) = block;
   });
-  A.diagonal() += given.noise;
+  A.diagonal() += linear->diagonal;
   if (!A.allFinite() || !Factorise(&A)) return nullptr;
   return linear;
+}
+
+void MarginalLikelihood::ScaleBlock(const Linearisation& linear, int c, int d,
+                                    RowMatrix* block) {
+  const Eigen::Index P = block->rows();
+  const auto rows = linear.row_scale.segment(c * P, P);
+  const auto columns = linear.row_scale.segment(d * P, P);
+  for (Eigen::Index p = 0; p < P; ++p) {
+    block->row(p).array() *= rows[p] * columns.transpose().array();
+  }
 }
 
 RowMatrix MarginalLikelihood::DirectionalLightBlock(const Linearisation& linear,
@@ -242,9 +297,10 @@ Eigen::VectorXd MarginalLikelihood::ApplyJacobianTransposed(
 Eigen::VectorXd MarginalLikelihood::SolveRepresenters(
     const Linearisation& linear, const Light& light,
     const Eigen::VectorXd& x) const {
-  Eigen::VectorXd a = ApplyJacobian(linear, ApplyCovariance(light, x));
+  Eigen::VectorXd a = linear.row_scale.cwiseProduct(
+      ApplyJacobian(linear, ApplyCovariance(light, x)));
   SolveFactored(linear.factor, a.data());
-  return x - ApplyJacobianTransposed(linear, a);
+  return x - ApplyJacobianTransposed(linear, linear.row_scale.cwiseProduct(a));
 }
 
 Eigen::VectorXd MarginalLikelihood::JacobianTimes(
@@ -271,15 +327,14 @@ Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
   return out.cwiseProduct(point.L);
 }
 
-// H = K^-1 + J^T D^-1 J + C, C = -sum_p r_p / D_p (diag(J_p) - J_p J_p^T).
+// H = K^-1 + J^T W J + C, C = -sum_p slope_p (diag(J_p) - J_p J_p^T).
 // Vectors come in pairs: x and, where x = K x', its representers x'.
 Eigen::VectorXd MarginalLikelihood::SolveHessian(
-    const Given& given, const Point& point, const Linearisation& linear,
-    double tolerance, const Eigen::VectorXd& x) const {
-  const Eigen::VectorXd& weight = given.weight;
-  const Eigen::VectorXd weighted = weight.cwiseProduct(point.residual);
+    const Given& given, const Point& point, const DataTerm& data,
+    const Linearisation& linear, double tolerance,
+    const Eigen::VectorXd& x) const {
   const Eigen::VectorXd curvature =
-      JacobianTransposedTimes(given, point, weighted);
+      JacobianTransposedTimes(given, point, data.slope);
   Eigen::VectorXd w = Eigen::VectorXd::Zero(x.size()), rest = x, p_representers,
                   p;
   double rho = 0.0, first_rho = 0.0;
@@ -300,7 +355,7 @@ Eigen::VectorXd MarginalLikelihood::SolveHessian(
     const Eigen::VectorXd Hp =
         p_representers - curvature.cwiseProduct(p) +
         JacobianTransposedTimes(given, point,
-                                (weight + weighted).cwiseProduct(Jp));
+                                (data.curvature + data.slope).cwiseProduct(Jp));
     const double square = p.dot(Hp);
     if (!(square > 0.0)) {
       // Not convex here: the preconditioner's direction descends all the same.
@@ -311,11 +366,6 @@ Eigen::VectorXd MarginalLikelihood::SolveHessian(
     rest -= rho / square * Hp;
   }
   return w;
-}
-
-double MarginalLikelihood::NegativeLogLikelihood(const Given& given,
-                                                 const Point& at) {
-  return 0.5 * at.residual.cwiseAbs2().dot(given.weight);
 }
 
 MarginalLikelihood::Point MarginalLikelihood::FirstPoint(
@@ -332,30 +382,29 @@ MarginalLikelihood::Point MarginalLikelihood::FirstPoint(
 // The step's quadratic model of the cost promises `promise` / 2.
 MarginalLikelihood::NewtonStep MarginalLikelihood::FindNewtonStep(
     const Given& given, const Linearisation& linear, const Point& point,
-    const LightMode& mode) const {
+    const DataTerm& data, const LightMode& mode) const {
   const Eigen::VectorXd slope =
-      mode.representers -
-      JacobianTransposedTimes(given, point,
-                              given.weight.cwiseProduct(point.residual));
+      mode.representers - JacobianTransposedTimes(given, point, data.slope);
   NewtonStep step;
   step.representers =
-      -SolveHessian(given, point, linear, kNewtonTolerance, slope);
+      -SolveHessian(given, point, data, linear, kNewtonTolerance, slope);
   step.l = ApplyCovariance(given.light, step.representers);
   step.promise = -slope.dot(step.l);
   return step;
 }
 
 double MarginalLikelihood::TakeStep(const Given& given, const NewtonStep& step,
-                                    Point* point, LightMode* mode) const {
+                                    Point* point, DataTerm* data,
+                                    LightMode* mode) const {
   if (!(step.promise > 0.0)) return 0.0;
-  const double likelihood = NegativeLogLikelihood(given, *point);
   const double cross = mode->representers.dot(step.l),
                square = step.representers.dot(step.l);
   const auto try_step = [&](double s) {
     const Eigen::VectorXd l = mode->l + s * step.l;
     Point trial = At(given.matrices, mode->level, l);
-    const double gain = likelihood - NegativeLogLikelihood(given, trial) -
-                        s * cross - 0.5 * s * s * square;
+    DataTerm trial_data = DataAt(given, trial);
+    const double gain =
+        data->cost - trial_data.cost - s * cross - 0.5 * s * s * square;
     const bool accepted =
         trial.L_o.minCoeff() > kSmallestRadiance &&
         gain >= kPromisedShare * s * (1.0 - 0.5 * s) * step.promise;
@@ -363,6 +412,7 @@ double MarginalLikelihood::TakeStep(const Given& given, const NewtonStep& step,
       mode->representers += s * step.representers;
       mode->l = l;
       *point = std::move(trial);
+      *data = std::move(trial_data);
     }
     return LineSearchTrial{gain, accepted};
   };
@@ -373,16 +423,18 @@ double MarginalLikelihood::TakeStep(const Given& given, const NewtonStep& step,
 }
 
 bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
-                                  Point* point, LightMode* mode) const {
+                                  Point* point, DataTerm* data,
+                                  LightMode* mode) const {
   std::unique_ptr<const Linearisation> linear;
   for (int k = 0; k < kMaxIterations; ++k) {
     if (linear == nullptr) {
-      linear = Linearise(given, *point);
+      linear = Linearise(given, *point, *data);
       if (linear == nullptr) return false;
     }
-    const NewtonStep step = FindNewtonStep(given, *linear, *point, *mode);
+    const NewtonStep step =
+        FindNewtonStep(given, *linear, *point, *data, *mode);
     if (!step.l.allFinite()) return false;
-    const double taken = TakeStep(given, step, point, mode);
+    const double taken = TakeStep(given, step, point, data, mode);
     if (0.5 * step.promise < tolerance || taken == 0.0) break;
     // Far from where it was made a linearisation is a poor preconditioner.
     if (taken * step.l.lpNorm<Eigen::Infinity>() > 1.0) linear = nullptr;
@@ -406,19 +458,32 @@ MarginalValue MarginalLikelihood::Evaluate(
       !(point.L_o.minCoeff() > kSmallestRadiance)) {
     return value;
   }
-  if (!FindMode(given, tolerance, &point, mode)) return value;
-  const auto linear = Linearise(given, point);
+  DataTerm data = DataAt(given, point);
+  if (!FindMode(given, tolerance, &point, &data, mode)) return value;
+  const auto linear = Linearise(given, point, data);
   if (linear == nullptr) return value;
   const double log_determinant =
       2.0 * linear->factor.diagonal().array().log().sum();
-  value.cost = NegativeLogLikelihood(given, point) +
-               0.5 * mode->representers.dot(mode->l) + 0.5 * log_determinant;
-  value.misfit = point.residual.cwiseAbs().mean();
+  value.cost =
+      data.cost + 0.5 * mode->representers.dot(mode->l) + 0.5 * log_determinant;
+  value.misfit = Misfit(point);
   value.ok = std::isfinite(value.cost);
   if (gradient != nullptr && value.ok) {
-    AddGradient(given, *mode, point, *linear, gradient);
+    AddGradient(given, *mode, point, data, *linear, gradient);
   }
   return value;
+}
+
+double MarginalLikelihood::Misfit(const Point& point) const {
+  if (low_.size() == 0) return point.residual.cwiseAbs().mean();
+  double sum = 0.0, count = 0.0;
+  for (Eigen::Index p = 0; p < low_.size(); ++p) {
+    const bool one_sided = std::isinf(low_[p]) || std::isinf(high_[p]);
+    if (one_sided && point.residual[p] == 0.0) continue;
+    sum += std::abs(point.residual[p]);
+    count += 1.0;
+  }
+  return sum / std::max(count, 1.0);
 }
 
 Eigen::VectorXd MarginalLikelihood::BandWeights(int band) const {

@@ -27,6 +27,14 @@ struct LightMode {
   Eigen::VectorXd representers;  // [3 * sources]
 };
 
+// What an image says of log radiance [3 * points], channel by channel.
+struct LogRadianceData {
+  std::vector<double> value;
+  // Ends of intervals, -infinity and infinity where there is none; both empty:
+  // the value is known.
+  std::vector<double> low, high;
+};
+
 struct MarginalGradient {
   std::array<RowMatrix, 3> matrices;  // [points][sources] each
   // By log amplitude and log roughness.
@@ -34,9 +42,11 @@ struct MarginalGradient {
 };
 
 struct MarginalValue {
-  bool ok = false;      // false: not finite, or no mode was found
-  double cost = 0.0;    // -log p(image | reflectance), nats, up to a constant
-  double misfit = 0.0;  // mean |log L_o - log I| at the mode
+  bool ok = false;    // false: not finite, or no mode was found
+  double cost = 0.0;  // -log p(image | reflectance), nats, up to a constant
+  // Mean |log L_o - log I| at the mode, I the nearest value of an interval. One
+  // end alone that holds does not count.
+  double misfit = 0.0;
 };
 
 // Laplace's approximation of -log of
@@ -46,13 +56,19 @@ struct MarginalValue {
 // J = d log L_o / d l, in the space of the data, so that K needs no inverse.
 //
 // D is diagonal and the caller's, see NoiseVariance.
+//
+// A datum of which an interval is known has -log of the probability that N(log
+// L_o, D) lies in it in place of (y - log L_o)^2 / (2 D): IntervalLikelihood,
+// whose slope takes the place of (y - log L_o) / D and whose curvature W that
+// of 1 / D. Where it holds amply W is 0, so its rows enter scaled, W^1/2 J with
+// 1 on the diagonal; the determinant of A = D + J K J^T is then that of such
+// rows, and W moves with the light.
 // Immutable; may be used from several threads.
 class MarginalLikelihood {
  public:
-  // log_radiance [3 * points], channel by channel.
-  MarginalLikelihood(std::vector<double> log_radiance,
-                     const LightProcess& process, int map_height, int map_width,
-                     int num_directional_lights, int num_threads);
+  MarginalLikelihood(LogRadianceData data, const LightProcess& process,
+                     int map_height, int map_width, int num_directional_lights,
+                     int num_threads);
 
   int num_points() const { return num_points_; }
   int num_texels() const { return map_height_ * map_width_; }
@@ -116,7 +132,15 @@ class MarginalLikelihood {
   struct Point {
     Eigen::VectorXd L;         // radiance [3 * sources]
     Eigen::VectorXd L_o;       // [3 * points]
-    Eigen::VectorXd residual;  // y - log L_o
+    Eigen::VectorXd residual;  // y - log L_o, y the nearest of an interval
+  };
+  // What the data say at a point [3 * points].
+  struct DataTerm {
+    double cost = 0.0;
+    Eigen::VectorXd slope;      // -d cost / d log L_o: residual / D
+    Eigen::VectorXd curvature;  // W: 1 / D
+    // d W / d log L_o of intervals; empty: of no datum.
+    Eigen::VectorXd curvature_slope;
   };
   // The process at some hyperparameters.
   struct Light {
@@ -132,6 +156,8 @@ class MarginalLikelihood {
     Eigen::VectorXd weight;                    // D^-1
     Light light;
   };
+  DataTerm DataAt(const Given& given, const Point& point) const;
+  double Misfit(const Point& point) const;  // as MarginalValue's
   // Refers to its arguments.
   Given GivenBy(const std::array<RowMatrix, 3>& matrices,
                 const Eigen::VectorXd& noise,
@@ -145,9 +171,12 @@ class MarginalLikelihood {
   };
   // The log determinant's part of the gradient.
   struct DeterminantGradient {
-    RowMatrix inverse;           // A^-1
+    RowMatrix inverse;           // A^-1, rows and columns scaled as J
+    double noise_share = 0.0;    // tr(A^-1 D)
     std::array<RowMatrix, 3> G;  // A^-1 J K, centred [points][sources]
     Eigen::VectorXd by_l;        // [3 * sources]
+    // By log L_o, through W [3 * points]; empty: no interval.
+    Eigen::VectorXd by_log_radiance;
     // diag(J^T A^-1 J K_rough) / 2 [texels].
     Eigen::VectorXd rough_share;
   };
@@ -156,14 +185,17 @@ class MarginalLikelihood {
   struct Linearisation {
     std::array<RowMatrix, 3> jacobian;  // [points][sources] of a channel
     std::array<RowMatrix, 3> JC;        // that of texels * correlation
-    RowMatrix factor;                   // of D + J K J^T
+    // Of rows [3 * points]: 1 and D; of an interval's, W^1/2 and 1.
+    Eigen::VectorXd row_scale, diagonal;
+    RowMatrix factor;  // of diagonal + row_scale J K J^T row_scale
   };
   // Radiance and residuals at l.
   Point At(const std::array<RowMatrix, 3>& matrices, double level,
            const Eigen::VectorXd& l) const;
   // Null where the normal equations are not positive definite.
   std::unique_ptr<const Linearisation> Linearise(const Given& given,
-                                                 const Point& point) const;
+                                                 const Point& point,
+                                                 const DataTerm& data) const;
   // K g.
   Eigen::VectorXd ApplyCovariance(const Light& light,
                                   const Eigen::VectorXd& g) const;
@@ -182,6 +214,9 @@ class MarginalLikelihood {
                                 const Eigen::VectorXd& l) const;
   Eigen::VectorXd ApplyJacobianTransposed(const Linearisation& linear,
                                           const Eigen::VectorXd& a) const;
+  // The block of rows of channel c and columns of channel d, scaled as rows.
+  static void ScaleBlock(const Linearisation& linear, int c, int d,
+                         RowMatrix* block);
   // J v and J^T a at a point, without its linearisation.
   Eigen::VectorXd JacobianTimes(const Given& given, const Point& point,
                                 const Eigen::VectorXd& v) const;
@@ -191,38 +226,44 @@ class MarginalLikelihood {
   // w with K w = H^-1 x, H the Hessian of the first two terms at the point, by
   // conjugate gradients preconditioned with a linearisation near it.
   Eigen::VectorXd SolveHessian(const Given& given, const Point& point,
+                               const DataTerm& data,
                                const Linearisation& linear, double tolerance,
                                const Eigen::VectorXd& x) const;
   // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T D^-1 J)^-1 x.
   Eigen::VectorXd SolveRepresenters(const Linearisation& linear,
                                     const Light& light,
                                     const Eigen::VectorXd& x) const;
-  // (y - log L_o)^T D^-1 (y - log L_o) / 2.
-  static double NegativeLogLikelihood(const Given& given, const Point& at);
   // Where the search for the mode starts; completes `mode`.
   Point FirstPoint(const Given& given, LightMode* mode) const;
   NewtonStep FindNewtonStep(const Given& given, const Linearisation& linear,
-                            const Point& point, const LightMode& mode) const;
-  // Moves point and mode along the step; the share of it that was taken, 0
-  // where none gains.
+                            const Point& point, const DataTerm& data,
+                            const LightMode& mode) const;
+  // Moves point, data and mode along the step; the share of it that was taken,
+  // 0 where none gains.
   double TakeStep(const Given& given, const NewtonStep& step, Point* point,
-                  LightMode* mode) const;
+                  DataTerm* data, LightMode* mode) const;
   // Newton's method from `point`. False: the equations are not positive
   // definite, or not finite.
   bool FindMode(const Given& given, double tolerance, Point* point,
-                LightMode* mode) const;
+                DataTerm* data, LightMode* mode) const;
 
   // The gradient's parts: marginal_gradient.cc.
   DeterminantGradient GradientOfDeterminant(const Given& given,
+                                            const DataTerm& data,
                                             const Linearisation& linear) const;
+  // The determinant by log L_o through W [3 * points]; empty: no interval.
+  // inverse: A^-1.
+  Eigen::VectorXd GradientThroughCurvature(const DataTerm& data,
+                                           const RowMatrix& inverse) const;
+  double NoiseShare(const Given& given, const RowMatrix& inverse) const;
   // v: H^-1 by_l; Jv: J v. Takes G.
-  void GradientByMatrices(const Given& given, const Point& point,
+  void GradientByMatrices(const Point& point, const DataTerm& data,
                           const Eigen::VectorXd& v, const Eigen::VectorXd& Jv,
                           DeterminantGradient* determinant,
                           std::array<RowMatrix, 3>* gradient) const;
   // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the rest.
-  double TraceByAmplitude(const Given& given, const Linearisation& linear,
-                          const RowMatrix& inverse) const;
+  double TraceByAmplitude(const Linearisation& linear,
+                          const DeterminantGradient& determinant) const;
   // The derivative of K by the log roughness of a band of weights h [texels],
   // applied: that of C is diag(h) R + R diag(h), R the rough part; rough: g R
   // [3][texels].
@@ -231,11 +272,13 @@ class MarginalLikelihood {
                                       const Eigen::VectorXd& g,
                                       const RowMatrix& rough) const;
   void AddGradient(const Given& given, const LightMode& mode,
-                   const Point& point, const Linearisation& linear,
+                   const Point& point, const DataTerm& data,
+                   const Linearisation& linear,
                    MarginalGradient* gradient) const;
 
   int num_points_;
-  Eigen::VectorXd y_;  // [3 * points]
+  Eigen::VectorXd y_;           // [3 * points]
+  Eigen::VectorXd low_, high_;  // likewise; empty: y_ is known
   Eigen::Matrix3d local_, level_, directional_light_;
   ProcessSpectrum spectrum_;
   RowMatrix roughness_weights_;  // [bands][rows]

@@ -16,10 +16,12 @@ Eigen::MatrixXd MarginalLikelihood::Information(
   CHECK_EQ(G.rows(), 3 * P);
   const Given given = GivenBy(matrices, noise, hyperparameters);
   const Light& light = given.light;
-  const auto linear = Linearise(given, At(matrices, mode.level, mode.l));
+  const Point point = At(matrices, mode.level, mode.l);
+  const auto linear = Linearise(given, point, DataAt(given, point));
   if (linear == nullptr) return {};
   const RowMatrix whitened =
-      linear->factor.triangularView<Eigen::Lower>().solve(G);
+      linear->factor.triangularView<Eigen::Lower>().solve(
+          RowMatrix(linear->row_scale.asDiagonal() * G));
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n + kCount, n + kCount);
   information.topLeftCorner(n, n).noalias() = whitened.transpose() * whitened;
   RowMatrix inverse = linear->factor;
@@ -30,10 +32,12 @@ Eigen::MatrixXd MarginalLikelihood::Information(
   RowMatrix unscaled(3 * P, 3 * P);
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
-      unscaled.block(c * P, d * P, P, P) = UnscaledBlock(*linear, c, d);
+      RowMatrix block = UnscaledBlock(*linear, c, d);
+      ScaleBlock(*linear, c, d, &block);
+      unscaled.block(c * P, d * P, P, P) = block;
     }
   }
-  unscaled.diagonal() += noise;
+  unscaled.diagonal() += linear->diagonal;
   MultiplyInTiles(inverse, -unscaled, num_threads_, &by[0]);
   by[0].diagonal().array() += 1.0;
   std::array<RowMatrix, 3> rough;
@@ -58,8 +62,9 @@ Eigen::MatrixXd MarginalLikelihood::Information(
           MultiplyTransposed(
               weighted, RowMatrix(linear->jacobian[d].middleCols(from, size)),
               &product);
-          half.block(c * P, d * P, P, P) =
-              light.amplitude * local_(c, d) * product;
+          product *= light.amplitude * local_(c, d);
+          ScaleBlock(*linear, c, d, &product);
+          half.block(c * P, d * P, P, P) = product;
         }
       }
     }
@@ -80,7 +85,8 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
   const Eigen::Index t = num_texels(), P = num_points_;
   const Given given = GivenBy(matrices, noise, hyperparameters);
   const Light& light = given.light;
-  const auto linear = Linearise(given, At(matrices, mode.level, mode.l));
+  const Point point = At(matrices, mode.level, mode.l);
+  const auto linear = Linearise(given, point, DataAt(given, point));
   CHECK(linear != nullptr);
   RowMatrix inverse = linear->factor;
   InvertFactored(&inverse);
@@ -99,6 +105,7 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
           (light.amplitude * local_(d, c) * linear->JC[d]).array() +
           level_(d, c);
     }
+    JK.array().colwise() *= linear->row_scale.array();
     RowMatrix product;
     MultiplyInTiles(inverse, JK, num_threads_, &product);
     variance.segment(c * t, t) =

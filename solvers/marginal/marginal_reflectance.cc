@@ -43,11 +43,11 @@ std::vector<bool> LitCells(const NormalBins& bins, const Transport& transport) {
 
 MarginalReflectance::MarginalReflectance(
     const LobeFactory& lobes, const std::vector<ShadingPoint>& points,
-    const std::vector<double>& radiance, const LightProcess& process,
+    const Observations& observed, const LightProcess& process,
     const MarginalResolution& resolution, int num_threads,
     std::vector<Eigen::Vector3d> directional_lights)
     : resolution_(resolution),
-      binned_(BinByNormal(points, radiance, resolution.bins)),
+      binned_(BinByNormal(points, observed, resolution.bins)),
       directional_lights_(std::move(directional_lights)) {
   CHECK_GT(binned_.num_bins(), 0);
   TransportOptions options;
@@ -71,9 +71,9 @@ MarginalReflectance::MarginalReflectance(
   }
   lobes_ = lobes(resolution.grid);
   likelihood_ = std::make_unique<MarginalLikelihood>(
-      binned_.log_radiance, process, resolution.map_height,
-      resolution.map_width, static_cast<int>(directional_lights_.size()),
-      num_threads);
+      LogRadianceData{binned_.log_radiance, binned_.log_low, binned_.log_high},
+      process, resolution.map_height, resolution.map_width,
+      static_cast<int>(directional_lights_.size()), num_threads);
 }
 
 Eigen::VectorXd MarginalReflectance::WithDirectionalLights(

@@ -27,11 +27,10 @@ struct MarginalResolution {
 // keep; may be used from several threads.
 class MarginalReflectance {
  public:
-  // radiance [points][3]. CHECKs that at least one point can be used.
+  // CHECKs that at least one point can be used.
   MarginalReflectance(const LobeFactory& lobes,
                       const std::vector<ShadingPoint>& points,
-                      const std::vector<double>& radiance,
-                      const LightProcess& process,
+                      const Observations& observed, const LightProcess& process,
                       const MarginalResolution& resolution, int num_threads,
                       std::vector<Eigen::Vector3d> directional_lights = {});
 

@@ -24,6 +24,28 @@ constexpr double kRankingTolerance = 0.5;
 // Every candidate takes so many steps at the fine resolution.
 constexpr int kTrialIterations = 3;
 
+// Radiance divided by factors > 0 [points * 3].
+Observations Quotient(const Observations& observed,
+                      const std::vector<double>& factors) {
+  const auto divide = [&](std::vector<double> values) {
+    for (size_t i = 0; i < values.size(); ++i) values[i] /= factors[i];
+    return values;
+  };
+  return MakeObservations(divide(observed.radiance), divide(observed.low),
+                          divide(observed.high));
+}
+
+// [points]; empty: none.
+std::vector<char> ClippedPoints(const Observations& observed) {
+  std::vector<char> clipped;
+  for (size_t k = 0; !observed.exact() && k < observed.high.size(); k += 3) {
+    clipped.push_back(
+        std::any_of(observed.high.begin() + k, observed.high.begin() + k + 3,
+                    [](double high) { return std::isinf(high); }));
+  }
+  return clipped;
+}
+
 // Where a refinement at one resolution ended.
 struct LocalOptimum {
   bool ok = false;
@@ -39,13 +61,13 @@ class SearchLevel {
  public:
   SearchLevel(const LobeFactory& lobes, const MaterialPrior& prior,
               const std::vector<ShadingPoint>& points,
-              const std::vector<double>& radiance,
+              const Observations& observed,
               const MarginalResolution& resolution,
               const std::vector<Eigen::Vector3d>& directional_lights,
               const ReflectanceSearchOptions& options)
       : prior_(prior),
         options_(options),
-        reflectance_(lobes, points, radiance, options.process, resolution,
+        reflectance_(lobes, points, observed, options.process, resolution,
                      options.num_threads, directional_lights) {}
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
@@ -123,16 +145,16 @@ class SearchLevel {
 class Search {
  public:
   Search(const LobeFactory& lobes, const MaterialPrior& prior,
-         const std::vector<ShadingPoint>& points,
-         const std::vector<double>& radiance,
+         const std::vector<ShadingPoint>& points, const Observations& observed,
          const ReflectanceSearchOptions& options)
       : options_(options),
-        image_(radiance),
-        radiance_(radiance),
+        image_(observed),
+        unbounced_(observed),
         directional_lights_(FindDirectionalLights(
-            points, radiance, options.most_directional_lights)),
+            points, observed.radiance, options.most_directional_lights,
+            ClippedPoints(observed))),
         level_at_([&](const MarginalResolution& resolution) {
-          return std::make_unique<SearchLevel>(lobes, prior, points, radiance_,
+          return std::make_unique<SearchLevel>(lobes, prior, points, unbounced_,
                                                resolution, directional_lights_,
                                                options);
         }) {
@@ -210,9 +232,7 @@ class Search {
       const std::vector<double> gain =
           options_.bounce_gain(Lobes(best_candidate_), LogRadiance());
       if (gain.empty()) return;
-      for (size_t i = 0; i < gain.size(); ++i) {
-        radiance_[i] = image_[i] / gain[i];
-      }
+      unbounced_ = Quotient(image_, gain);
       // The last level stays until the next has an optimum: the best is of it.
       std::unique_ptr<SearchLevel> next =
           level_at_(best_level_->reflectance().resolution());
@@ -376,8 +396,8 @@ class Search {
   }
 
   const ReflectanceSearchOptions& options_;
-  const std::vector<double>& image_;
-  std::vector<double> radiance_;  // the image without bounces
+  const Observations& image_;
+  Observations unbounced_;  // the image without bounces
   const std::vector<Eigen::Vector3d> directional_lights_;
   const std::function<std::unique_ptr<SearchLevel>(const MarginalResolution&)>
       level_at_;
@@ -393,19 +413,18 @@ class Search {
 
 StatusOr<ReflectanceSearchResult> SearchReflectance(
     const LobeFactory& lobes, const MaterialPrior& prior,
-    const std::vector<ShadingPoint>& points,
-    const std::vector<double>& radiance,
+    const std::vector<ShadingPoint>& points, const Observations& observed,
     const ReflectanceSearchOptions& options) {
   CHECK(!prior.materials.empty());
   CHECK(options.kept > 0 && options.sigma > 0.0);
   CHECK(options.coarse_margin >= 0.0 && options.margin >= 0.0);
   CHECK(options.fine_iterations >= 0 && options.most_directional_lights >= 0);
-  if (BinByNormal(points, radiance, options.coarse.bins).num_bins() == 0) {
+  if (BinByNormal(points, observed, options.coarse.bins).num_bins() == 0) {
     return InvalidInput("image",
                         "no pixel of the object, limb aside, is finite and "
                         "positive in all three channels");
   }
-  Search search(lobes, prior, points, radiance, options);
+  Search search(lobes, prior, points, observed, options);
   if (!search.RankAndRefine()) {
     return Status(StatusCode::kNoImprovement,
                   "no training material explains the image at all");

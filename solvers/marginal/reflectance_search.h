@@ -94,12 +94,10 @@ struct ReflectanceSearchResult {
   std::vector<double> log_radiance, log_radiance_std;
 };
 
-// kInvalidInput where no point can be used. prior: of these lobes. radiance
-// [points][3].
+// kInvalidInput where no point can be used. prior: of these lobes.
 StatusOr<ReflectanceSearchResult> SearchReflectance(
     const LobeFactory& lobes, const MaterialPrior& prior,
-    const std::vector<ShadingPoint>& points,
-    const std::vector<double>& radiance,
+    const std::vector<ShadingPoint>& points, const Observations& observed,
     const ReflectanceSearchOptions& options);
 
 }  // namespace ibrdf

@@ -4,12 +4,15 @@
 #include <vector>
 
 #include "ibrdf/scene/scene.h"
+#include "ibrdf/solvers/costs/observations.h"
 
 namespace ibrdf {
 
 struct BinMeans {
   std::vector<ShadingPoint> points;  // mean normal and view; pixel of a member
-  std::vector<double> radiance;      // [points * 3], geometric mean
+  // Geometric means of radiance and of interval ends. An end is open where a
+  // member's is.
+  Observations observed;
 };
 
 // Joins points of like normals, seen along like directions: a point of distant
@@ -18,10 +21,9 @@ struct BinMeans {
 // size, and the noise of its pixels averages out. bins_across > 0: of the
 // diameter of the disc of normals seen along an orthographic view. Points at a
 // cosine below min_cosine are left out (at the limb a pixel's centre stands
-// badly for its area), as are those that are not finite and positive in all
-// channels of radiance [points * 3].
+// badly for its area), as are those that are not valid.
 BinMeans MeanByNormal(const std::vector<ShadingPoint>& points,
-                      const std::vector<double>& radiance, int bins_across,
+                      const Observations& observed, int bins_across,
                       double min_cosine);
 
 }  // namespace ibrdf

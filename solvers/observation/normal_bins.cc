@@ -10,13 +10,32 @@
 
 namespace ibrdf {
 
-std::optional<Eigen::Vector2d> NormalInView(const ShadingPoint& point,
-                                            const double* radiance,
-                                            double min_cosine) {
-  if (!std::all_of(radiance, radiance + 3,
-                   [](double v) { return std::isfinite(v) && v > 0.0; })) {
-    return std::nullopt;
+namespace {
+
+// Log of the mean of `values` [points * 3] over some points, by channel.
+Eigen::Array3d LogMean(const std::vector<double>& values,
+                       const std::vector<size_t>& points) {
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  for (const size_t i : points) {
+    sum += Eigen::Map<const Eigen::Array3d>(&values[3 * i]);
   }
+  const Eigen::Array3d mean = sum / static_cast<double>(points.size());
+  return {std::log(mean[0]), std::log(mean[1]), std::log(mean[2])};
+}
+
+// [bins] to [3 * bins], by channel.
+std::vector<double> ByChannel(const std::vector<Eigen::Array3d>& bins) {
+  std::vector<double> values;
+  for (int c = 0; c < 3; ++c) {
+    for (const Eigen::Array3d& bin : bins) values.push_back(bin[c]);
+  }
+  return values;
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector2d> NormalInView(const ShadingPoint& point,
+                                            double min_cosine) {
   const Eigen::Vector3d n = point.normal.cast<double>().normalized();
   const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
   if (n.dot(wo) < min_cosine) return std::nullopt;
@@ -26,46 +45,43 @@ std::optional<Eigen::Vector2d> NormalInView(const ShadingPoint& point,
 }
 
 NormalBins BinByNormal(const std::vector<ShadingPoint>& points,
-                       const std::vector<double>& radiance,
+                       const Observations& observed,
                        const NormalBinOptions& options) {
-  CHECK_EQ(radiance.size(), 3 * points.size());
+  CHECK_EQ(observed.radiance.size(), 3 * points.size());
   CHECK(options.bins_across > 0 && options.points_per_bin > 0);
   const auto bin_of = [&](double x) {
     return std::clamp(static_cast<int>((0.5 * x + 0.5) * options.bins_across),
                       0, options.bins_across - 1);
   };
-  std::map<int, std::vector<int>> members;
+  std::map<int, std::vector<size_t>> members;
   for (size_t i = 0; i < points.size(); ++i) {
     const std::optional<Eigen::Vector2d> normal =
-        NormalInView(points[i], &radiance[3 * i], options.min_cosine);
-    if (!normal.has_value()) continue;
+        NormalInView(points[i], options.min_cosine);
+    if (!observed.valid[i] || !normal.has_value()) continue;
     members[bin_of(normal->y()) * options.bins_across + bin_of(normal->x())]
-        .push_back(static_cast<int>(i));
+        .push_back(i);
   }
   NormalBins bins;
   bins.first.push_back(0);
-  std::vector<Eigen::Array3d> means;
+  std::vector<Eigen::Array3d> means, lows, highs;
   for (const auto& [bin, all] : members) {
-    const int count =
-        std::min(options.points_per_bin, static_cast<int>(all.size()));
-    Eigen::Array3d sum = Eigen::Array3d::Zero();
-    for (int k = 0; k < count; ++k) {
+    const size_t count =
+        std::min(static_cast<size_t>(options.points_per_bin), all.size());
+    std::vector<size_t> kept;
+    for (size_t k = 0; k < count; ++k) {
       // Evenly spread over the list, which runs in image order.
-      const int i = all[(2 * static_cast<size_t>(k) + 1) * all.size() /
-                        (2 * static_cast<size_t>(count))];
-      bins.points.push_back(points[i]);
-      sum += Eigen::Array3d(radiance[3 * static_cast<size_t>(i)],
-                            radiance[3 * static_cast<size_t>(i) + 1],
-                            radiance[3 * static_cast<size_t>(i) + 2]);
+      kept.push_back(all[(2 * k + 1) * all.size() / (2 * count)]);
+      bins.points.push_back(points[kept.back()]);
     }
     bins.first.push_back(static_cast<int>(bins.points.size()));
-    means.push_back(sum / count);
+    means.push_back(LogMean(observed.radiance, kept));
+    if (observed.exact()) continue;
+    lows.push_back(LogMean(observed.low, kept));
+    highs.push_back(LogMean(observed.high, kept));
   }
-  for (int c = 0; c < 3; ++c) {
-    for (const Eigen::Array3d& mean : means) {
-      bins.log_radiance.push_back(std::log(mean[c]));
-    }
-  }
+  bins.log_radiance = ByChannel(means);
+  bins.log_low = ByChannel(lows);
+  bins.log_high = ByChannel(highs);
   return bins;
 }
 
@@ -80,12 +96,16 @@ NormalBins KeepBins(const NormalBins& bins, const std::vector<bool>& keep) {
                        bins.points.begin() + bins.first[i + 1]);
     kept.first.push_back(static_cast<int>(kept.points.size()));
   }
-  for (int c = 0; c < 3; ++c) {
-    for (int i = 0; i < count; ++i) {
-      if (keep[i])
-        kept.log_radiance.push_back(bins.log_radiance[c * count + i]);
+  const auto select = [&](const std::vector<double>& values) {
+    std::vector<double> selected;
+    for (size_t k = 0; k < values.size(); ++k) {
+      if (keep[k % count]) selected.push_back(values[k]);
     }
-  }
+    return selected;
+  };
+  kept.log_radiance = select(bins.log_radiance);
+  kept.log_low = select(bins.log_low);
+  kept.log_high = select(bins.log_high);
   return kept;
 }
 

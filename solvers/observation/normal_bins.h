@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ibrdf/scene/scene.h"
+#include "ibrdf/solvers/costs/observations.h"
 
 namespace ibrdf {
 
@@ -15,6 +16,9 @@ struct NormalBins {
   std::vector<int> first;
   // Log of the mean radiance of a bin's points [3 * bins], by channel.
   std::vector<double> log_radiance;
+  // Logs of the mean ends of intervals [3 * bins], by channel; -infinity and
+  // infinity where there is none. Both empty: the radiance is known.
+  std::vector<double> log_low, log_high;
 
   int num_bins() const { return static_cast<int>(first.size()) - 1; }
 };
@@ -29,17 +33,16 @@ struct NormalBinOptions {
 
 // The components, right and up, of a point's normal in its own view, up kept
 // upright: for an orthographic view of a sphere, its image; in [-1, 1]. Empty
-// where the point says nothing: radiance [3] not finite and positive in all
-// channels, or seen at a cosine below min_cosine.
+// where the point is seen at a cosine below min_cosine.
 std::optional<Eigen::Vector2d> NormalInView(const ShadingPoint& point,
-                                            const double* radiance,
                                             double min_cosine);
 
-// radiance [points][3]; points that are not finite and positive in all channels
-// take no part. A bin's radiance is the mean over exactly the points kept, so
-// that a model's mean over them has no error of resolution.
+// Points that are not valid take no part. A bin's radiance is the mean over
+// exactly the points kept, so that a model's mean over them has no error of
+// resolution. The mean of the upper ends has none where a point has none; that
+// of the lower ends takes 0 for it, which holds too.
 NormalBins BinByNormal(const std::vector<ShadingPoint>& points,
-                       const std::vector<double>& radiance,
+                       const Observations& observed,
                        const NormalBinOptions& options);
 
 // Those with keep [bins] set.

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include "ibrdf/solvers/observation/mean_by_normal.h"
@@ -20,29 +19,37 @@ constexpr int kOfBlocks = 3;
 // A pair has at most about so many pixels, which are transported at once.
 constexpr size_t kMostPairPoints = 8192;
 
-Observation WithRadiance(std::vector<ShadingPoint> points,
-                         const std::vector<double>& radiance) {
+// The points of `pixels`, by index.
+Observation Select(const Observation& pixels,
+                   const std::vector<size_t>& points) {
   Observation out;
-  out.observed = MakeObservations(radiance);
-  out.points = std::move(points);
+  for (const size_t i : points) out.points.push_back(pixels.points[i]);
+  out.observed = SelectObservations(pixels.observed, points);
   return out;
+}
+
+// Radiance of the points' pixels, [points * 3].
+std::vector<double> ValuesOf(const Image& image,
+                             const std::vector<ShadingPoint>& points) {
+  std::vector<double> values;
+  for (const ShadingPoint& p : points) {
+    const float* rgb = image.rgb.data() + size_t{3} * p.pixel;
+    values.insert(values.end(), rgb, rgb + 3);
+  }
+  return values;
 }
 
 // Those points of `pixels` that `keep`, a function of a pixel's column and row,
 // returns true for.
 template <typename Keep>
-Observation Select(const Observation& pixels, int image_width,
-                   const Keep& keep) {
-  std::vector<ShadingPoint> points;
-  std::vector<double> radiance;
+Observation SelectPixels(const Observation& pixels, int image_width,
+                         const Keep& keep) {
+  std::vector<size_t> kept;
   for (size_t i = 0; i < pixels.points.size(); ++i) {
-    const ShadingPoint& p = pixels.points[i];
-    if (!keep(p.pixel % image_width, p.pixel / image_width)) continue;
-    points.push_back(p);
-    const double* const rgb = &pixels.observed.radiance[3 * i];
-    radiance.insert(radiance.end(), rgb, rgb + 3);
+    const int pixel = pixels.points[i].pixel;
+    if (keep(pixel % image_width, pixel / image_width)) kept.push_back(i);
   }
-  return WithRadiance(std::move(points), radiance);
+  return Select(pixels, kept);
 }
 
 // The least step at which every step-th row and column of `points` pixels
@@ -55,53 +62,43 @@ size_t StepFor(size_t points, size_t most) {
 
 }  // namespace
 
-std::vector<double> RadianceOf(const Image& image,
-                               const std::vector<ShadingPoint>& points) {
-  std::vector<double> radiance;
-  for (const ShadingPoint& p : points) {
-    const float* rgb = image.rgb.data() + size_t{3} * p.pixel;
-    radiance.insert(radiance.end(), rgb, rgb + 3);
-  }
-  return radiance;
-}
-
-Observation Observe(const Image& image,
+Observation Observe(const Image& image, const RadianceBounds* bounds,
                     const std::vector<ShadingPoint>& points) {
-  return WithRadiance(points, RadianceOf(image, points));
+  std::vector<double> low, high;
+  if (bounds != nullptr) {
+    low = ValuesOf(bounds->low, points);
+    high = ValuesOf(bounds->high, points);
+  }
+  return {points, MakeObservations(ValuesOf(image, points), std::move(low),
+                                   std::move(high))};
 }
 
 Observation MeansByNormal(const Observation& pixels, int bins_across) {
-  BinMeans bins = MeanByNormal(pixels.points, pixels.observed.radiance,
-                               bins_across, kMinCosine);
+  BinMeans bins =
+      MeanByNormal(pixels.points, pixels.observed, bins_across, kMinCosine);
   if (bins.points.empty()) return pixels;
-  return WithRadiance(std::move(bins.points), bins.radiance);
+  return {std::move(bins.points), std::move(bins.observed)};
 }
 
 Observation Thin(const Observation& pixels, int image_width) {
   const int step = static_cast<int>(StepFor(pixels.points.size(), kThinPoints));
-  Observation thin = Select(pixels, image_width, [step](int x, int y) {
+  Observation thin = SelectPixels(pixels, image_width, [step](int x, int y) {
     return x % step == 0 && y % step == 0;
   });
   return thin.observed.num_valid > 0 ? thin : pixels;
 }
 
 Observation OnePixelPerBin(const Observation& pixels, int bins_across) {
-  const NormalBins bins = BinByNormal(pixels.points, pixels.observed.radiance,
-                                      {bins_across, 1, kMinCosine});
+  const NormalBins bins =
+      BinByNormal(pixels.points, pixels.observed, {bins_across, 1, kMinCosine});
   if (bins.points.empty()) return pixels;
-  std::unordered_set<int> chosen;
-  for (const ShadingPoint& p : bins.points) chosen.insert(p.pixel);
-  std::unordered_map<int, size_t> where;  // of chosen pixels in `pixels`
+  std::unordered_map<int, size_t> where;  // of pixels in `pixels`
   for (size_t i = 0; i < pixels.points.size(); ++i) {
-    const int pixel = pixels.points[i].pixel;
-    if (chosen.count(pixel) != 0) where.emplace(pixel, i);
+    where.emplace(pixels.points[i].pixel, i);
   }
-  std::vector<double> radiance;
-  for (const ShadingPoint& p : bins.points) {
-    const double* const rgb = &pixels.observed.radiance[3 * where.at(p.pixel)];
-    radiance.insert(radiance.end(), rgb, rgb + 3);
-  }
-  return WithRadiance(bins.points, radiance);
+  std::vector<size_t> chosen;
+  for (const ShadingPoint& p : bins.points) chosen.push_back(where.at(p.pixel));
+  return Select(pixels, chosen);
 }
 
 ObservationPair MakePair(const Observation& pixels, int image_width,
@@ -110,14 +107,13 @@ ObservationPair MakePair(const Observation& pixels, int image_width,
   const size_t step =
       StepFor(pixels.points.size(), kMostPairPoints * kOfBlocks * kOfBlocks);
   ObservationPair pair;
-  pair.pixels = Select(pixels, image_width, [step](int x, int y) {
+  pair.pixels = SelectPixels(pixels, image_width, [step](int x, int y) {
     return x / kBlock % kOfBlocks == 0 && y / kBlock % kOfBlocks == 0 &&
            x % step == 0 && y % step == 0;
   });
-  BinMeans bins =
-      MeanByNormal(pair.pixels.points, pair.pixels.observed.radiance,
-                   bins_across, kMinCosine);
-  pair.bins = WithRadiance(std::move(bins.points), bins.radiance);
+  BinMeans bins = MeanByNormal(pair.pixels.points, pair.pixels.observed,
+                               bins_across, kMinCosine);
+  pair.bins = {std::move(bins.points), std::move(bins.observed)};
   return pair;
 }
 
@@ -130,7 +126,9 @@ double BinningError(const Observation& pixels,
     if (!pixels.observed.valid[i / 3]) radiance[i] = 0.0;
   }
   const std::vector<double> binned =
-      MeanByNormal(pixels.points, radiance, bins_across, kMinCosine).radiance;
+      MeanByNormal(pixels.points, MakeObservations(std::move(radiance)),
+                   bins_across, kMinCosine)
+          .observed.radiance;
   if (binned.empty() || binned.size() != of_bins.size()) return 0.0;
   double sum = 0.0;
   for (size_t i = 0; i < binned.size(); ++i) {

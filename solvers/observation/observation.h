@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "ibrdf/image/image.h"
+#include "ibrdf/image/radiance_bounds.h"
 #include "ibrdf/scene/scene.h"
-#include "ibrdf/solvers/costs/log_likelihood.h"
+#include "ibrdf/solvers/costs/observations.h"
 
 namespace ibrdf {
 
@@ -14,12 +15,9 @@ struct Observation {
   Observations observed;  // radiance of the points, and which can be used
 };
 
-// Radiance of the points' pixels, [points * 3].
-std::vector<double> RadianceOf(const Image& image,
-                               const std::vector<ShadingPoint>& points);
-
-// The points with the radiance of their pixels.
-Observation Observe(const Image& image,
+// The points with what the image says of the radiance of their pixels. bounds:
+// the ends of its intervals; null: the image is radiance.
+Observation Observe(const Image& image, const RadianceBounds* bounds,
                     const std::vector<ShadingPoint>& points);
 
 // One synthetic point for each bin of like normals (MeanByNormal); bins_across

@@ -26,13 +26,48 @@ constexpr int kBinRows = 36;
 constexpr double kSpread = 4.0;
 constexpr double kLeastWeight = 0.05;
 
+// The middle of a clipped plateau: the clipped directions of a bin and of all
+// bins that hang together with it, every bin by its solid angle, as an image
+// holds more of some directions than of others. `bin`: of each direction.
+Eigen::Vector3d MiddleOfClipped(const std::vector<Eigen::Vector3d>& directions,
+                                const std::vector<char>& clipped,
+                                const std::vector<int>& bin, int first) {
+  constexpr int kColumns = 2 * kBinRows;
+  std::vector<Eigen::Vector3d> sums(kBinRows * kColumns,
+                                    Eigen::Vector3d::Zero());
+  for (size_t j = 0; j < directions.size(); ++j) {
+    if (clipped[j] != 0) sums[bin[j]] += directions[j];
+  }
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  std::vector<char> seen(sums.size(), 0);
+  std::vector<int> open = {first};
+  seen[first] = 1;
+  while (!open.empty()) {
+    const int row = open.back() / kColumns, column = open.back() % kColumns;
+    open.pop_back();
+    middle += TexelSolidAngle(row, kBinRows, kColumns) *
+              sums[row * kColumns + column].normalized();
+    for (int k = 0; k < 9; ++k) {
+      const int r = std::clamp(row + k / 3 - 1, 0, kBinRows - 1);
+      const int next =
+          r * kColumns + (column + k % 3 - 1 + kColumns) % kColumns;
+      if (seen[next] != 0 || sums[next].isZero()) continue;
+      seen[next] = 1;
+      open.push_back(next);
+    }
+  }
+  return middle.normalized();
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3d> FindDirectionalLights(
     const std::vector<ShadingPoint>& points,
-    const std::vector<double>& radiance, int most) {
+    const std::vector<double>& radiance, int most,
+    const std::vector<char>& clipped) {
   std::vector<Eigen::Vector3d> mirrored;
   std::vector<double> luminance;
+  std::vector<char> cut;
   // Only the brightest of a bin can be the brightest within reach, which spares
   // most pixels the look at all others.
   std::vector<int> bin;
@@ -45,6 +80,7 @@ std::vector<Eigen::Vector3d> FindDirectionalLights(
     if (n.dot(wo) < kMinCosine || !std::isfinite(sum) || !(sum > 0.0)) continue;
     mirrored.push_back((2.0 * n.dot(wo) * n - wo).normalized());
     luminance.push_back(sum * n.dot(wo));
+    cut.push_back(clipped.empty() ? 0 : clipped[i]);
     double row = 0.0, column = 0.0;
     MapPosition(mirrored.back(), kBinRows, 2 * kBinRows, &row, &column);
     bin.push_back(std::min(static_cast<int>(row), kBinRows - 1) * 2 * kBinRows +
@@ -89,7 +125,9 @@ std::vector<Eigen::Vector3d> FindDirectionalLights(
       if (mirrored[j].dot(mirrored[i]) < rim) continue;
       centre += std::max(luminance[j] - half, 0.0) * mirrored[j];
     }
-    directional_lights.push_back(centre.normalized());
+    directional_lights.push_back(
+        cut[i] != 0 ? MiddleOfClipped(mirrored, cut, bin, bin[i])
+                    : Eigen::Vector3d(centre.normalized()));
   }
   return directional_lights;
 }

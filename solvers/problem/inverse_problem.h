@@ -9,16 +9,24 @@
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/flow/neural_brdf_model.h"
 #include "ibrdf/image/image.h"
+#include "ibrdf/image/radiance_bounds.h"
 #include "ibrdf/io/problem.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/effects/effects_plan.h"
+#include "ibrdf/solvers/problem/unknown_curve.h"
 #include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 
 struct InverseProblem {
   ProblemKind kind = ProblemKind::kJoint;
-  Image image;                       // observed radiance
+  Image image;  // observed radiance
+  // Where the file bounds radiance alone, as whole numbers do: the ends. An
+  // image's value is then in its interval, or its one end.
+  std::optional<RadianceBounds> bounds;
+  // Codes of a curve that is to be found; image and bounds are then of a first
+  // guess.
+  std::optional<UnknownCurve> unknown_curve;
   std::vector<ShadingPoint> points;  // of the object's pixels, at most one each
   // What makes the inputs doubtful or was taken for granted: sentences that
   // name the file.

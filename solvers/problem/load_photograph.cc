@@ -64,7 +64,15 @@ StatusOr<ResponseDefinition> StatedCurve(const std::string& path,
 
 StatusOr<ResponseCurve> CurveOf(const ImageSpec& spec, const Photo& photo,
                                 std::vector<std::string>* warnings) {
-  if (!spec.response.has_value()) {
+  const std::vector<CurveFamily> families = FamiliesOf(spec.response);
+  const std::optional<ResponseKind> kind =
+      families.empty() ? KnownResponse(spec.response) : families.front().kind;
+  if (!families.empty() && photo.bits == 0) {
+    return InvalidInput(spec.file + ": image.response",
+                        "unknown is for files of whole numbers, and this one "
+                        "holds floats");
+  }
+  if (!kind.has_value()) {
     if (photo.bits == 0) return ResponseCurve();
     const StatusOr<ResponseDefinition> stated =
         StatedCurve(spec.file, photo, warnings);
@@ -72,7 +80,7 @@ StatusOr<ResponseCurve> CurveOf(const ImageSpec& spec, const Photo& photo,
     return ResponseCurve(*stated);
   }
   ResponseDefinition curve;
-  curve.kind = *spec.response;
+  curve.kind = *kind;
   curve.parameter = spec.response_parameter;
   IBRDF_RETURN_IF_ERROR(curve.Check(spec.file + ": image.response_parameter"));
   return ResponseCurve(curve);
@@ -90,30 +98,19 @@ StatusOr<CodeLevels> LevelsOf(const ImageSpec& spec, const Photo& photo) {
   return levels;
 }
 
-// Radiance of each code: that of its middle. NaN: clipped, bounded from below
-// alone.
-std::vector<float> RadianceOfCodes(const ResponseCurve& curve,
-                                   const CodeLevels& levels) {
-  const CodeIntervals intervals(curve, levels);
-  std::vector<float> radiance(size_t{1} << levels.bits);
-  for (size_t code = 0; code < radiance.size(); ++code) {
-    const double y = (static_cast<double>(code) - levels.black) /
-                     (levels.white - levels.black);
-    const bool clipped = !intervals.Interval(static_cast<int>(code)).HasHigh();
-    radiance[code] =
-        clipped ? std::numeric_limits<float>::quiet_NaN()
-                : static_cast<float>(curve.Decode(y) / levels.exposure);
-  }
-  return radiance;
-}
-
 Status Linearise(const ImageSpec& spec, const ResponseCurve& curve,
-                 const Photo& photo, Image* image) {
+                 const Photo& photo, Photograph* photograph) {
   if (photo.bits > 0) {
     const StatusOr<CodeLevels> levels = LevelsOf(spec, photo);
     if (!levels.ok()) return levels.status();
-    const std::vector<float> radiance = RadianceOfCodes(curve, *levels);
-    for (float& v : image->rgb) v = radiance[static_cast<size_t>(v)];
+    DecodedCodes decoded = DecodeCodes(curve, *levels, photograph->radiance);
+    const std::vector<CurveFamily> families = FamiliesOf(spec.response);
+    if (!families.empty()) {
+      photograph->unknown_curve =
+          UnknownCurve{std::move(photograph->radiance), *levels, families};
+    }
+    photograph->radiance = std::move(decoded.radiance);
+    photograph->bounds = std::move(decoded.bounds);
     return OkStatus();
   }
   if (spec.white.has_value() || spec.black.has_value()) {
@@ -124,8 +121,10 @@ Status Linearise(const ImageSpec& spec, const ResponseCurve& curve,
   if (curve.kind() == ResponseKind::kLinear && spec.exposure == 1.0) {
     return OkStatus();
   }
-  for (float& v : image->rgb) {
-    v = static_cast<float>(curve.Decode(v) / spec.exposure);
+  for (float& v : photograph->radiance.rgb) {
+    const RadianceInterval interval = FloatInterval(curve, spec.exposure, v);
+    v = interval.IsMissing() ? std::numeric_limits<float>::quiet_NaN()
+                             : static_cast<float>(interval.low);
   }
   return OkStatus();
 }
@@ -158,17 +157,18 @@ bool IsInside(const Mask& mask, size_t pixel) {
 void WarnOfClipped(const std::string& path, const Photograph& photograph,
                    std::vector<std::string>* warnings) {
   size_t clipped = 0, values = 0;
-  for (size_t k = 0; k < photograph.radiance.rgb.size(); ++k) {
+  const std::vector<float>& high = photograph.bounds->high.rgb;
+  for (size_t k = 0; k < high.size(); ++k) {
     if (!IsInside(photograph.mask, k / 3)) continue;
     ++values;
-    clipped += std::isnan(photograph.radiance.rgb[k]);
+    clipped += std::isinf(high[k]);
   }
   if (clipped == 0) return;
   warnings->push_back(
       path + ": " +
       Percent(static_cast<double>(clipped) / static_cast<double>(values)) +
-      " of the object's values are clipped (image.white); their pixels take no "
-      "part");
+      " of the object's values are clipped (image.white): of their radiance "
+      "the least is known");
 }
 
 }  // namespace
@@ -231,7 +231,7 @@ StatusOr<Photograph> LoadPhotograph(const ImageSpec& spec) {
       CurveOf(spec, *photo, &photograph.warnings);
   if (!curve.ok()) return curve.status();
   photograph.radiance = std::move(photo->image);
-  IBRDF_RETURN_IF_ERROR(Linearise(spec, *curve, *photo, &photograph.radiance));
+  IBRDF_RETURN_IF_ERROR(Linearise(spec, *curve, *photo, &photograph));
   if (!spec.mask.empty()) {
     StatusOr<Mask> mask = LoadMask(spec.mask, photograph.radiance);
     if (!mask.ok()) return mask.status();

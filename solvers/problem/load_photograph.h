@@ -1,19 +1,28 @@
 // The observed image: a file's values as radiance.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
+#include "ibrdf/image/radiance_bounds.h"
 #include "ibrdf/io/photo.h"
 #include "ibrdf/io/problem.h"
+#include "ibrdf/solvers/problem/unknown_curve.h"
 
 namespace ibrdf {
 
 struct Photograph {
-  // Linear radiance. NaN where the file bounds a channel from one side alone:
-  // clipped codes. 0 at codes of black.
+  // Linear radiance; of codes, that of a code's middle, or the one end that it
+  // has: codes of white are clipped, and black has no lower end. NaN where
+  // nothing is known.
   Image radiance;
+  // Of files of codes: the interval of each value (code_interval.h).
+  std::optional<RadianceBounds> bounds;
+  // Where the curve is to be found; `radiance` and `bounds` are then of the
+  // first family's curve at its mean.
+  std::optional<UnknownCurve> unknown_curve;
   Mask mask;  // of the object; empty: all pixels
   // What was taken for granted or left out: sentences for the user.
   std::vector<std::string> warnings;

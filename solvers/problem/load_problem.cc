@@ -240,6 +240,8 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
       FindObjectPoints(problem, *observed, num_threads, &inverse.warnings);
   if (!object.ok()) return object.status();
   inverse.image = std::move(observed->radiance);
+  inverse.bounds = std::move(observed->bounds);
+  inverse.unknown_curve = std::move(observed->unknown_curve);
   inverse.points = std::move(object->points);
   IBRDF_RETURN_IF_ERROR(LoadReflectance(problem.reflectance, &inverse));
   IBRDF_RETURN_IF_ERROR(LoadIllumination(problem, &inverse));

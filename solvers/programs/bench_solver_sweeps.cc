@@ -9,6 +9,7 @@
 #include "ibrdf/solvers/bench/known_brdf_sweep.h"
 #include "ibrdf/solvers/bench/known_light_sweep.h"
 #include "ibrdf/solvers/bench/pareto_sweep.h"
+#include "ibrdf/solvers/bench/photograph_sweep.h"
 #include "ibrdf/solvers/programs/bench_sweep_flags.h"
 
 namespace ibrdf {
@@ -81,6 +82,16 @@ void AddSolverExperiments(CLI::App* app, BenchSession* session) {
       "without (Chen et al. 2020, Fig. 4).",
       KnownBrdfSweep, &experiment);
   AddPriorsFlag(experiment, &known_brdf->priors);
+  PhotographSweepOptions* photographs = AddSolverExperiment(
+      app, session, "photographs",
+      "Joint estimates from files as cameras write them: bits, JPEG, clipped "
+      "highlights, response curves.",
+      PhotographSweep, &experiment);
+  experiment
+      ->add_option(
+          "--settings", photographs->settings,
+          "comma-separated, of: " + PhotographSettingNames() + "; default: all")
+      ->delimiter(',');
   ParetoSweepOptions* pareto = AddSolverExperiment(
       app, session, "pareto",
       "What accuracy costs in time: joint estimates with one setting of the "

@@ -19,6 +19,7 @@
 #include "ibrdf/solvers/programs/common_flags.h"
 #include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/report/write_results.h"
+#include "ibrdf/solvers/solve/curve_search.h"
 #include "ibrdf/solvers/solve/solve.h"
 
 namespace ibrdf {
@@ -85,6 +86,9 @@ Status Solve(const std::string& file, const std::vector<std::string>& overrides,
   const StatusOr<Solution> estimate =
       SolveInverseRendering(*inverse, progress, &stop_requested);
   if (!estimate.ok()) return estimate.status();
+  if (!estimate->curves.empty()) {
+    *inverse = WithCurve(*inverse, estimate->curves.front().curve);
+  }
   const StatusOr<ResultMetrics> metrics =
       MeasureResult(*inverse, *truth, *estimate);
   if (!metrics.ok()) return metrics.status();

@@ -81,6 +81,32 @@ std::string UncertainWarning(const Solution& solution) {
          " (root mean square over all angles, after the best scale).";
 }
 
+// A curve in words: aces, gamma 0.52 within a factor of 1.1.
+std::string CurveWords(const CurveEstimate& estimate) {
+  const ResponseDefinition& curve = estimate.curve;
+  std::string words = NameOf(curve.kind);
+  if (!curve.parameter) return words;
+  words += std::string(", ") + ParameterOf(curve.kind)->name + " " +
+           ShortNumber(*curve.parameter);
+  if (std::isfinite(estimate.log_parameter_std)) {
+    words += " within a factor of " +
+             ShortNumber(std::exp(estimate.log_parameter_std));
+  }
+  return words;
+}
+
+std::string CurveWarning(const std::vector<CurveEstimate>& curves) {
+  if (curves.empty()) return "";
+  std::string text =
+      "The response curve was estimated: " + CurveWords(curves.front()) + ".";
+  for (size_t k = 1; k < curves.size(); ++k) {
+    if (!(curves[k].cost < kRivalCost)) continue;
+    text +=
+        " The image's codes do not tell it from " + CurveWords(curves[k]) + ".";
+  }
+  return text;
+}
+
 std::string RivalWarning(const std::vector<Alternative>& alternatives) {
   for (const Alternative& other : alternatives) {
     const double difference = other.brdf_log_difference;
@@ -111,7 +137,7 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
         MisfitWarning(solved), PixelWarning(solved),
-        UncertainWarning(solved.solution),
+        CurveWarning(solved.solution.curves), UncertainWarning(solved.solution),
         RivalWarning(solved.solution.alternatives)}) {
     if (!warning.empty()) warnings.push_back(std::move(warning));
   }

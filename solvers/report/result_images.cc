@@ -1,9 +1,20 @@
 #include "ibrdf/solvers/report/result_images.h"
 
-#include <algorithm>
 #include <cmath>
 
+#include "ibrdf/image/radiance_interval.h"
+
 namespace ibrdf {
+namespace {
+
+RadianceInterval IntervalAt(const InverseProblem& inverse, size_t value) {
+  if (!inverse.bounds) {
+    return {inverse.image.rgb[value], inverse.image.rgb[value]};
+  }
+  return {inverse.bounds->low.rgb[value], inverse.bounds->high.rgb[value]};
+}
+
+}  // namespace
 
 Mask ObjectMask(const InverseProblem& inverse) {
   Mask mask(inverse.image.width, inverse.image.height, 0);
@@ -11,20 +22,41 @@ Mask ObjectMask(const InverseProblem& inverse) {
   return mask;
 }
 
+Mask UsedMask(const InverseProblem& inverse) {
+  Mask mask(inverse.image.width, inverse.image.height, 0);
+  for (const ShadingPoint& p : inverse.points) {
+    bool used = true;
+    for (size_t k = size_t{3} * p.pixel; k < size_t{3} * p.pixel + 3; ++k) {
+      const float v = inverse.image.rgb[k];
+      used &=
+          std::isfinite(v) && v > 0.0f && !IntervalAt(inverse, k).IsMissing();
+    }
+    mask.inside[p.pixel] = used ? 1 : 0;
+  }
+  return mask;
+}
+
+Image NearestObserved(const InverseProblem& inverse, const Solution& solution) {
+  Image nearest = inverse.image;
+  if (!inverse.bounds) return nearest;
+  const Mask used = UsedMask(inverse);
+  for (size_t k = 0; k < nearest.rgb.size(); ++k) {
+    if (used.inside[k / 3] == 0) continue;
+    nearest.rgb[k] = static_cast<float>(
+        IntervalAt(inverse, k).Nearest(solution.render.rgb[k]));
+  }
+  return nearest;
+}
+
 Image LogResidual(const InverseProblem& inverse, const Solution& solution) {
   Image residual(inverse.image.width, inverse.image.height);
-  for (const ShadingPoint& p : inverse.points) {
-    const float* const observed = &inverse.image.rgb[size_t{3} * p.pixel];
-    if (!std::all_of(observed, observed + 3,
-                     [](float v) { return std::isfinite(v) && v > 0.0f; })) {
-      continue;
-    }
-    for (int c = 0; c < 3; ++c) {
-      const size_t at = size_t{3} * p.pixel + c;
-      residual.rgb[at] = static_cast<float>(
-          std::log(solution.render.rgb[at] + solution.epsilon) -
-          std::log(observed[c] + solution.epsilon));
-    }
+  const Mask used = UsedMask(inverse);
+  const Image observed = NearestObserved(inverse, solution);
+  for (size_t k = 0; k < residual.rgb.size(); ++k) {
+    if (used.inside[k / 3] == 0) continue;
+    residual.rgb[k] =
+        static_cast<float>(std::log(solution.render.rgb[k] + solution.epsilon) -
+                           std::log(observed.rgb[k] + solution.epsilon));
   }
   return residual;
 }

@@ -98,6 +98,21 @@ Json TraceJson(const std::vector<TraceEntry>& trace) {
   return out;
 }
 
+// The curves that explain the image's codes; empty where it was known.
+Json CurvesJson(const std::vector<CurveEstimate>& curves) {
+  Json out = Json::array();
+  for (const CurveEstimate& c : curves) {
+    Json curve = {{"response", NameOf(c.curve.kind)},
+                  {"cost_above_best", Finite(c.cost)}};
+    if (c.curve.parameter) {
+      curve["response_parameter"] = *c.curve.parameter;
+      curve["log_parameter_std"] = Finite(c.log_parameter_std);
+    }
+    out.push_back(curve);
+  }
+  return out;
+}
+
 Json DeviationsJson(const std::vector<LobeSummary>& lobes) {
   Json out = Json::array();
   for (const LobeSummary& lobe : lobes) {
@@ -163,6 +178,7 @@ std::string ResultJson(const SolvedProblem& solved) {
                {"gauge", GaugeWords(inverse)},
                {"start", solution.start},
                {"posterior", PosteriorJson(inverse, solution)},
+               {"curves", CurvesJson(solution.curves)},
                {"seed", inverse.seed},
                {"pixels_used", solution.pixels_used},
                {"pixels_of_object", inverse.points.size()},

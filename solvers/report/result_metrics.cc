@@ -24,8 +24,8 @@ StatusOr<ResultMetrics> MeasureResult(const InverseProblem& inverse,
     if (!illumination.ok()) return illumination.status();
     metrics.illumination = *illumination;
   }
-  const StatusOr<ImageMetrics> image =
-      CompareImages(solution.render, inverse.image, ObjectMask(inverse));
+  const StatusOr<ImageMetrics> image = CompareImages(
+      solution.render, NearestObserved(inverse, solution), UsedMask(inverse));
   if (image.ok()) metrics.image = *image;
   return metrics;
 }

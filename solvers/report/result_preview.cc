@@ -47,9 +47,10 @@ Row ImagePanels(const ResultPreviewInput& input) {
   if (input.render.empty()) return row;
   row.push_back(Picture("Render of the estimate (same exposure)", input.render,
                         input.mask, exposure));
+  if (input.residual.empty()) return row;
   row.push_back(Picture("Residual log(render / input), mean of R, G, B",
-                        LogRatio(input.render, input.input, input.mask),
-                        input.mask, 1.0, PreviewPanel::Kind::kSignedResidual));
+                        input.residual, input.mask, 1.0,
+                        PreviewPanel::Kind::kSignedResidual));
   return row;
 }
 
@@ -171,6 +172,10 @@ Status CheckInput(const ResultPreviewInput& input) {
       differs(input.render.width, input.render.height)) {
     return InvalidInput("preview: render", "expected the size of the input");
   }
+  if (!input.residual.empty() &&
+      differs(input.residual.width, input.residual.height)) {
+    return InvalidInput("preview: residual", "expected the size of the input");
+  }
   const size_t entries = size_t{3} * kMerlBins;
   for (const MerlTable* table : {&input.brdf, &input.reference_brdf}) {
     if (!table->raw.empty() && table->raw.size() != entries) {
@@ -205,6 +210,7 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   input.input = solved.inverse.image;
   input.mask = ObjectMask(solved.inverse);
   input.render = solved.solution.render;
+  input.residual = LogResidual(solved.inverse, solved.solution);
   input.illumination = solved.solution.map;
   input.illumination_known = solved.inverse.known_map.has_value();
   input.reference_illumination = solved.truth.illumination;

@@ -18,6 +18,8 @@ struct ResultPreviewInput {
   Image input;
   Mask mask;     // of the object, of the input's size; empty: all pixels
   Image render;  // of the input's size
+  // log(render / input) where the pixel took part, else 0, of their size.
+  Image residual;
   Image illumination;
   bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace ibrdf {
@@ -43,28 +42,6 @@ uint8_t EncodeSrgb(double linear) {
   const double encoded =
       x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
   return static_cast<uint8_t>(std::lround(255.0 * encoded));
-}
-
-Image LogRatio(const Image& image, const Image& reference, const Mask& mask) {
-  CHECK_EQ(image.rgb.size(), reference.rgb.size());
-  double largest = 0.0;
-  for (size_t k = 0; k < reference.rgb.size(); ++k) {
-    const double value = reference.rgb[k];
-    if (mask.Holds(k / 3) && std::isfinite(value)) {
-      largest = std::max(largest, value);
-    }
-  }
-  const double floor =
-      std::max(1e-6 * largest, std::numeric_limits<double>::min());
-  Image ratio(image.width, image.height);
-  for (size_t k = 0; k < image.rgb.size(); ++k) {
-    const double a = image.rgb[k], b = reference.rgb[k];
-    ratio.rgb[k] = std::isfinite(a) && std::isfinite(b)
-                       ? static_cast<float>(std::log(std::max(a, 0.0) + floor) -
-                                            std::log(std::max(b, 0.0) + floor))
-                       : std::numeric_limits<float>::quiet_NaN();
-  }
-  return ratio;
 }
 
 void DivergingColour(double t, uint8_t rgb[3]) {

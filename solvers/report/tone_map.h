@@ -21,11 +21,6 @@ uint8_t EncodeSrgb(double linear);
 // Its inverse, from and to [0, 1].
 double DecodeSrgb(double encoded);
 
-// log((max(image, 0) + f) / (max(reference, 0) + f)) per channel, natural,
-// f = 1e-6 times the largest reference inside the mask; NaN where either is not
-// finite. Images of one size.
-Image LogRatio(const Image& image, const Image& reference, const Mask& mask);
-
 // Blue (-1), white (0), red (+1), as sRGB bytes; t is clipped.
 void DivergingColour(double t, uint8_t rgb[3]);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ibrdf/solvers/costs/log_likelihood.h"
+#include "ibrdf/solvers/costs/observations.h"
 #include "ibrdf/solvers/observation/observation.h"
 
 namespace ibrdf {
@@ -22,7 +22,7 @@ void Scale(double factor, Image* image) {
 
 double ExposureOf(const InverseProblem& problem) {
   const Observations observed =
-      MakeObservations(RadianceOf(problem.image, problem.points));
+      Observe(problem.image, nullptr, problem.points).observed;
   if (observed.num_valid == 0) return 1.0;
   double sum = 0.0;
   for (size_t i = 0; i < observed.radiance.size(); ++i) {
@@ -34,6 +34,10 @@ double ExposureOf(const InverseProblem& problem) {
 InverseProblem InUnitsOf(double exposure, const InverseProblem& problem) {
   InverseProblem out = problem;
   Scale(1.0 / exposure, &out.image);
+  if (out.bounds) {
+    Scale(1.0 / exposure, &out.bounds->low);
+    Scale(1.0 / exposure, &out.bounds->high);
+  }
   if (out.known_map) Scale(1.0 / exposure, &*out.known_map);
   if (out.epsilon) *out.epsilon /= exposure;
   return out;

@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <utility>
+#include <vector>
 
 #include "ibrdf/solvers/estimation/light_given_reflectance.h"
 #include "ibrdf/solvers/estimation/marginal_search.h"
@@ -10,6 +11,7 @@
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 #include "ibrdf/solvers/published/joint_maximum.h"
+#include "ibrdf/solvers/solve/curve_search.h"
 #include "ibrdf/solvers/solve/exposure.h"
 #include "ibrdf/solvers/solve/summary.h"
 
@@ -60,21 +62,35 @@ StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
   return Summarise(*setup, *std::move(estimate), context);
 }
 
-}  // namespace
-
-StatusOr<Solution> SolveInverseRendering(const InverseProblem& problem,
-                                         const SolveProgress& progress,
-                                         const std::atomic<bool>* stop) {
+// Of an image whose radiance, or its bounds, are known.
+StatusOr<Solution> SolveDeveloped(const InverseProblem& problem,
+                                  SolveContext* context) {
   const double exposure = ExposureOf(problem);
   const InverseProblem scaled = InUnitsOf(exposure, problem);
-  SolveContext context(scaled, progress, stop);
-  StatusOr<Solution> solution = Solve(scaled, &context);
+  StatusOr<Solution> solution = Solve(scaled, context);
   if (!solution.ok()) return solution;
   RestoreUnits(exposure, &*solution);
   if (problem.solver.gauge != SolverGauge::kPrior &&
       !problem.known_map.has_value() && !problem.known_brdf.has_value()) {
     SetGauge(problem.solver.gauge, problem.lobes, &*solution);
   }
+  return solution;
+}
+
+}  // namespace
+
+StatusOr<Solution> SolveInverseRendering(const InverseProblem& problem,
+                                         const SolveProgress& progress,
+                                         const std::atomic<bool>* stop) {
+  SolveContext context(problem, progress, stop);
+  if (!problem.unknown_curve.has_value()) {
+    return SolveDeveloped(problem, &context);
+  }
+  StatusOr<std::vector<CurveEstimate>> curves = FindCurves(problem, &context);
+  if (!curves.ok()) return curves.status();
+  StatusOr<Solution> solution =
+      SolveDeveloped(WithCurve(problem, curves->front().curve), &context);
+  if (solution.ok()) solution->curves = *std::move(curves);
   return solution;
 }
 

@@ -99,10 +99,14 @@ const std::vector<ProblemKey>& AllKeys() { return ProblemFileSchema().keys; }
 
 TEST(ProblemSchema, ResponsesAreTheCurvesNamesInTheirOrder) {
   const ProblemKey& key = ProblemFileSchema().Key("image.response");
-  for (size_t i = 1; i < key.words.size(); ++i) {
-    EXPECT_EQ(NameOf(static_cast<ResponseKind>(i - 1)), key.words[i].word);
+  int known = 0;
+  for (size_t i = 0; i < key.words.size(); ++i) {
+    const auto kind = KnownResponse(static_cast<ResponseChoice>(i));
+    if (!kind.has_value()) continue;
+    EXPECT_EQ(NameOf(*kind), key.words[i].word);
+    ++known;
   }
-  EXPECT_EQ(static_cast<size_t>(ResponseKind::kTable) + 1, key.words.size());
+  EXPECT_EQ(static_cast<int>(ResponseKind::kTable), known);
 }
 
 TEST(ProblemSchema, DefaultsAreWhatAnEmptyProblemYields) {

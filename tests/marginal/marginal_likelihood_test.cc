@@ -7,111 +7,10 @@
 #include <random>
 #include <utility>
 
-#include "ibrdf/light/environment_map.h"
+#include "tests/marginal/small_light.h"
 
 namespace ibrdf {
 namespace {
-
-constexpr int kHeight = 4, kWidth = 8, kTexels = kHeight * kWidth;
-constexpr int kPoints = 6;
-
-// Lobes of a width in radians about random directions, as matrices of three
-// like channels; directional lights in random directions.
-std::array<RowMatrix, 3> Lobes(double width, int points = kPoints,
-                               int directional_lights = 0) {
-  std::mt19937_64 rng(7);
-  std::normal_distribution<double> g;
-  const auto direction = [&] {
-    return Eigen::Vector3d(g(rng), g(rng), g(rng)).normalized();
-  };
-  RowMatrix T(points, kTexels + directional_lights);
-  for (int p = 0; p < points; ++p) {
-    const Eigen::Vector3d axis = direction();
-    for (int r = 0; r < kHeight; ++r) {
-      for (int c = 0; c < kWidth; ++c) {
-        const double x =
-            axis.dot(MapDirection(r + 0.5, c + 0.5, kHeight, kWidth));
-        T(p, r * kWidth + c) = TexelSolidAngle(r, kHeight, kWidth) *
-                               (std::exp((x - 1) / (width * width)) + 1e-4);
-      }
-    }
-    for (int k = 0; k < directional_lights; ++k) {
-      const double x = axis.dot(direction());
-      T(p, kTexels + k) = 0.3 * (std::exp((x - 1) / (width * width)) + 1e-4);
-    }
-  }
-  return {T, 0.7 * T, 1.3 * T};
-}
-
-Eigen::VectorXd DrawLight(const LightProcess& process, double amplitude,
-                          uint64_t seed, int directional_lights = 0) {
-  LightHyperparameters hyperparameters;
-  hyperparameters.log_amplitude = std::log(amplitude);
-  const RowMatrix C =
-      LightCorrelation(kHeight, kWidth, process, hyperparameters);
-  const int n = kTexels + directional_lights;
-  Eigen::MatrixXd K(3 * n, 3 * n);
-  for (int c = 0; c < 3; ++c) {
-    for (int d = 0; d < 3; ++d) {
-      Eigen::MatrixXd local = Eigen::MatrixXd::Zero(n, n);
-      local.topLeftCorner(kTexels, kTexels) =
-          amplitude * process.Local()(c, d) * C;
-      local.diagonal()
-          .tail(directional_lights)
-          .setConstant(process.DirectionalLight()(c, d));
-      K.block(c * n, d * n, n, n) = local.array() + process.Level()(c, d);
-    }
-  }
-  std::mt19937_64 rng(seed);
-  std::normal_distribution<double> g;
-  Eigen::VectorXd white(3 * n);
-  for (double& w : white) w = g(rng);
-  return K.llt().matrixL() * white;
-}
-
-std::vector<double> LogRadiance(const std::array<RowMatrix, 3>& T,
-                                const Eigen::VectorXd& l) {
-  std::vector<double> y;
-  for (int c = 0; c < 3; ++c) {
-    const Eigen::VectorXd L_o =
-        T[c] * l.segment(c * T[c].cols(), T[c].cols()).array().exp().matrix();
-    for (const double e : L_o) y.push_back(std::log(e));
-  }
-  return y;
-}
-
-Eigen::VectorXd Noise(double sigma, int points = kPoints) {
-  return Eigen::VectorXd::Constant(3 * points, sigma * sigma);
-}
-
-// A level that the process itself holds, so that nothing is improper.
-LightProcess Proper() {
-  LightProcess process;
-  process.level_variance = 0.5;
-  return process;
-}
-
-// No band is like another.
-LightHyperparameters Rough() { return {0.3, {-1.5, 0.4, -0.3, 0.8}}; }
-
-// Scale `k` moved, the amplitude first.
-LightHyperparameters Moved(LightHyperparameters hyperparameters, int k,
-                           double step) {
-  (k == 0 ? hyperparameters.log_amplitude
-          : hyperparameters.log_roughness[k - 1]) += step;
-  return hyperparameters;
-}
-
-MarginalLikelihood Likelihood(std::vector<double> y,
-                              const LightProcess& process,
-                              int directional_lights = 0) {
-  return MarginalLikelihood(std::move(y), process, kHeight, kWidth,
-                            directional_lights, 1);
-}
-
-// Nats, of the mode: its last steps shrink slowly, and the log determinant
-// feels what is left to first order.
-constexpr double kTight = 1e-18;
 
 TEST(MarginalLikelihood, GradientMatchesDifferences) {
   for (const auto& [width, directional_lights] :
@@ -122,7 +21,7 @@ TEST(MarginalLikelihood, GradientMatchesDifferences) {
     // Not what the model can render: the mode keeps residuals.
     for (size_t i = 0; i < y.size(); ++i) y[i] += 0.2 * std::sin(5.0 * i);
     const MarginalLikelihood likelihood =
-        Likelihood(y, Proper(), directional_lights);
+        Likelihood({y, {}, {}}, Proper(), directional_lights);
     const auto cost = [&](const std::array<RowMatrix, 3>& matrices,
                           const LightHyperparameters& hyperparameters,
                           MarginalGradient* gradient) {
@@ -173,7 +72,7 @@ TEST(MarginalLikelihood, ModeIsWhereThePosteriorIsFlat) {
   const std::vector<double> y =
       LogRadiance(T, DrawLight(Proper(), 1.0, 3, kDirectionalLights));
   const MarginalLikelihood likelihood =
-      Likelihood(y, Proper(), kDirectionalLights);
+      Likelihood({y, {}, {}}, Proper(), kDirectionalLights);
   LightMode mode;
   ASSERT_TRUE(
       likelihood.Evaluate(T, Noise(0.05), {}, kTight, &mode, nullptr).ok);
@@ -207,7 +106,7 @@ TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
   process.horizon_share = 0.02;
   const double log_amplitude = std::log(0.02), sigma = 0.15;
   const auto evidence = [&](const std::vector<double>& y) {
-    const MarginalLikelihood likelihood(y, process, kHeight, kWidth,
+    const MarginalLikelihood likelihood({y, {}, {}}, process, kHeight, kWidth,
                                         directional_lights, 1);
     LightMode mode;
     mode.l = mode.representers =
@@ -252,8 +151,9 @@ TEST(MarginalLikelihood, TellsMatteFromMirror) {
     const Eigen::VectorXd light = DrawLight(LightProcess(), 1.0, seed);
     const auto cost = [&](const std::array<RowMatrix, 3>& truth,
                           const std::array<RowMatrix, 3>& guess) {
-      const MarginalLikelihood likelihood(
-          LogRadiance(truth, light), LightProcess(), kHeight, kWidth, 0, 1);
+      const MarginalLikelihood likelihood({LogRadiance(truth, light), {}, {}},
+                                          LightProcess(), kHeight, kWidth, 0,
+                                          1);
       LightMode mode;
       const MarginalValue value =
           likelihood.Evaluate(guess, Noise(0.05, 24), {}, 1e-3, &mode, nullptr);
@@ -267,8 +167,8 @@ TEST(MarginalLikelihood, TellsMatteFromMirror) {
 
 TEST(MarginalLikelihood, StartOfTheModeDoesNotMatter) {
   const std::array<RowMatrix, 3> T = Lobes(0.5);
-  const MarginalLikelihood likelihood =
-      Likelihood(LogRadiance(T, DrawLight(Proper(), 4.0, 3)), Proper());
+  const MarginalLikelihood likelihood = Likelihood(
+      {LogRadiance(T, DrawLight(Proper(), 4.0, 3)), {}, {}}, Proper());
   LightMode cold, warm;
   const double cost =
       likelihood.Evaluate(T, Noise(0.05), {}, 1e-9, &cold, nullptr).cost;
@@ -288,7 +188,7 @@ TEST(MarginalLikelihood, ExtremesAreFiniteOrRefused) {
     LightMode mode;
     MarginalGradient gradient;
     const MarginalValue value =
-        Likelihood(image, LightProcess())
+        Likelihood({image, {}, {}}, LightProcess())
             .Evaluate(matrices, Noise(0.03), {}, 1e-3, &mode, &gradient);
     if (!value.ok) return;
     EXPECT_TRUE(std::isfinite(value.cost));
@@ -306,7 +206,7 @@ TEST(MarginalLikelihood, ExtremesAreFiniteOrRefused) {
   std::array<RowMatrix, 3> bad = T;
   bad[0](1, 1) = std::nan("");
   LightMode mode;
-  EXPECT_FALSE(Likelihood(y, LightProcess())
+  EXPECT_FALSE(Likelihood({y, {}, {}}, LightProcess())
                    .Evaluate(bad, Noise(0.03), {}, 1e-3, &mode, nullptr)
                    .ok);
 }
@@ -315,8 +215,8 @@ TEST(MarginalLikelihood, VarianceIsThePriorsWhereNothingIsSeen) {
   std::array<RowMatrix, 3> T = Lobes(0.15);
   // No point sees the first texel's neighbourhood.
   for (RowMatrix& m : T) m.leftCols(kWidth).setZero();
-  const MarginalLikelihood likelihood =
-      Likelihood(LogRadiance(T, DrawLight(Proper(), 1.0, 3)), Proper());
+  const MarginalLikelihood likelihood = Likelihood(
+      {LogRadiance(T, DrawLight(Proper(), 1.0, 3)), {}, {}}, Proper());
   LightMode mode;
   likelihood.Evaluate(T, Noise(0.02), {}, 1e-6, &mode, nullptr);
   const Eigen::VectorXd variance =
@@ -336,7 +236,8 @@ TEST(MarginalLikelihood, NoiseGrowsAsLobesShrink) {
     LightMode mode;
     mode.l = Eigen::VectorXd::Zero(3 * kTexels);
     const Eigen::VectorXd noise =
-        Likelihood(std::vector<double>(3 * kPoints, 0.0), LightProcess())
+        Likelihood({std::vector<double>(3 * kPoints, 0.0), {}, {}},
+                   LightProcess())
             .NoiseVariance(T, 0.03, mode);
     EXPECT_GE(noise.minCoeff(), 0.03 * 0.03);
     EXPECT_GT(noise.mean(), last);

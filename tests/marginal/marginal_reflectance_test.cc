@@ -60,9 +60,9 @@ void ExpectGradient(const MarginalReflectance& reflectance,
 }
 
 TEST_F(MarginalReflectanceTest, GradientMatchesDifferences) {
-  const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
-                                        points_, radiance_, LightProcess(),
-                                        resolution_, 1, kDirectionalLights);
+  const MarginalReflectance reflectance(
+      FlowLobes::Factory(model_, 2, 1), points_, MakeObservations(radiance_),
+      LightProcess(), resolution_, 1, kDirectionalLights);
   ASSERT_EQ(18, reflectance.num_parameters());
   // Away from the truth, and at it.
   for (const double away : {0.2, 0.0}) {
@@ -75,9 +75,9 @@ TEST_F(MarginalReflectanceTest, GradientMatchesDifferences) {
 
 // Any lobes will do.
 TEST_F(MarginalReflectanceTest, GradientOfCookTorranceMatchesDifferences) {
-  const MarginalReflectance reflectance(CookTorranceLobes::Factory(1), points_,
-                                        radiance_, LightProcess(), resolution_,
-                                        1, kDirectionalLights);
+  const MarginalReflectance reflectance(
+      CookTorranceLobes::Factory(1), points_, MakeObservations(radiance_),
+      LightProcess(), resolution_, 1, kDirectionalLights);
   ASSERT_EQ(14, reflectance.num_parameters());
   // A glossy paint, and a rough metal.
   for (const double roughness : {0.15, 0.6}) {
@@ -111,11 +111,13 @@ TEST_F(MarginalReflectanceTest, CellsThatSeeNoLightAreLeftOut) {
   resolution_.visibility =
       std::make_shared<Visibility>(scene, points, VisibilityOptions());
   const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
-                                        points, radiance, LightProcess(),
-                                        resolution_, 1);
+                                        points, MakeObservations(radiance),
+                                        LightProcess(), resolution_, 1);
   const int kept = reflectance.bins().num_bins();
   EXPECT_GT(kept, 1);
-  EXPECT_LT(kept, BinByNormal(points, radiance, resolution_.bins).num_bins());
+  EXPECT_LT(kept,
+            BinByNormal(points, MakeObservations(radiance), resolution_.bins)
+                .num_bins());
   ASSERT_EQ(3 * kept, static_cast<int>(reflectance.bins().log_radiance.size()));
   LightMode mode;
   EXPECT_TRUE(reflectance
@@ -128,8 +130,8 @@ TEST_F(MarginalReflectanceTest, CellsThatSeeNoLightAreLeftOut) {
 // A trial leaves what is said of the last point as it is.
 TEST_F(MarginalReflectanceTest, LastValueIsOfTheLastGradient) {
   const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
-                                        points_, radiance_, LightProcess(),
-                                        resolution_, 1);
+                                        points_, MakeObservations(radiance_),
+                                        LightProcess(), resolution_, 1);
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   LightMode mode;
   const MarginalObjective objective(
@@ -148,9 +150,9 @@ TEST_F(MarginalReflectanceTest, LastValueIsOfTheLastGradient) {
 }
 
 TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
-  const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
-                                        points_, radiance_, LightProcess(),
-                                        resolution_, 1, kDirectionalLights);
+  const MarginalReflectance reflectance(
+      FlowLobes::Factory(model_, 2, 1), points_, MakeObservations(radiance_),
+      LightProcess(), resolution_, 1, kDirectionalLights);
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   LightMode mode;
   const MarginalObjective objective(
@@ -184,9 +186,9 @@ TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
 // G^T A^-1 G with G by differences of log L_o under the mode's light and A put
 // together densely. A clamped colour and a code beyond the ball among them.
 TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
-  const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
-                                        points_, radiance_, LightProcess(),
-                                        resolution_, 1, kDirectionalLights);
+  const MarginalReflectance reflectance(
+      FlowLobes::Factory(model_, 2, 1), points_, MakeObservations(radiance_),
+      LightProcess(), resolution_, 1, kDirectionalLights);
   const int P = reflectance.bins().num_bins(), t = 128, s = t + 2;
   const int n = 18, all = n + LightHyperparameters::kCount;
   Eigen::VectorXd noise(3 * P);
@@ -327,8 +329,8 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
 // nothing, and no start, however far out, raises the cost.
 TEST_F(MarginalReflectanceTest, DescentEndsWhereNewtonGainsNothing) {
   const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
-                                        points_, radiance_, LightProcess(),
-                                        resolution_, 1);
+                                        points_, MakeObservations(radiance_),
+                                        LightProcess(), resolution_, 1);
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   const Eigen::VectorXd noise =
       Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.0025);

@@ -58,8 +58,9 @@ TEST_F(ReflectanceSearchTest, AmongCookTorranceExplainsItsOwn) {
   }
   MaterialPrior prior = GaussianPrior(materials, CookTorranceLobes::kCode);
   prior.wall = 0.0;
-  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      CookTorranceLobes::Factory(1), prior, points_, image, Options());
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance(CookTorranceLobes::Factory(1), prior, points_,
+                        MakeObservations(image), Options());
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_LT(found->misfit, found->candidates[0].first_misfit);
   ASSERT_EQ(10u, found->parameters.size());
@@ -101,8 +102,9 @@ TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
   const std::vector<double> parameters = TableLobes::KnownParameters();
   const MaterialPrior prior = KnownMaterial(ToEigen(parameters));
   EXPECT_EQ(0.0, prior.Cost(ToEigen(parameters), nullptr));
-  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      TableLobes::Factory(known), prior, points, image, options);
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance(TableLobes::Factory(known), prior, points,
+                        MakeObservations(image), options);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_EQ("known", found->initial_guess);
   ASSERT_EQ(parameters.size(), found->parameters.size());
@@ -127,8 +129,9 @@ TEST_F(ReflectanceSearchTest, UnderABlackReflectanceSaysSo) {
   ReflectanceSearchOptions options = Options();
   int reports = 0;
   options.report = [&](const std::string&, double, double) { ++reports; };
-  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      TableLobes::Factory(black), prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance(TableLobes::Factory(black), prior, points_,
+                        MakeObservations(radiance_), options);
   ASSERT_FALSE(found.ok());
   EXPECT_EQ(StatusCode::kNoImprovement, found.status().code());
   EXPECT_EQ(0, reports);
@@ -137,8 +140,9 @@ TEST_F(ReflectanceSearchTest, UnderABlackReflectanceSaysSo) {
 TEST_F(ReflectanceSearchTest, LowersTheCostWhateverTheThreads) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   ReflectanceSearchOptions options = Options();
-  const StatusOr<ReflectanceSearchResult> one = SearchReflectance(
-      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> one =
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        MakeObservations(radiance_), options);
   ASSERT_TRUE(one.ok()) << one.status().message();
   ASSERT_EQ(14u, one->parameters.size());
   ASSERT_EQ(4u, one->candidates.size());
@@ -162,8 +166,9 @@ TEST_F(ReflectanceSearchTest, LowersTheCostWhateverTheThreads) {
       (prior.factor * prior.factor.transpose()).diagonal();
   EXPECT_LT(one->covariance.trace(), prior_variance.sum());
   options.num_threads = 2;
-  const StatusOr<ReflectanceSearchResult> two = SearchReflectance(
-      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> two =
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        MakeObservations(radiance_), options);
   ASSERT_TRUE(two.ok());
   EXPECT_EQ(one->parameters, two->parameters);
   EXPECT_EQ(one->log_radiance, two->log_radiance);
@@ -180,11 +185,11 @@ TEST_F(ReflectanceSearchTest, BouncesAreTakenOutOfTheImage) {
   ReflectanceSearchOptions options = Options();
   const ReflectanceSearchResult clean =
       SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
-                        radiance_, options)
+                        MakeObservations(radiance_), options)
           .value();
   const ReflectanceSearchResult left =
       SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
-                        brighter, options)
+                        MakeObservations(brighter), options)
           .value();
   int calls = 0;
   options.bounce_gain = [&](const std::vector<double>& lobes,
@@ -197,7 +202,7 @@ TEST_F(ReflectanceSearchTest, BouncesAreTakenOutOfTheImage) {
   };
   const ReflectanceSearchResult taken =
       SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
-                        brighter, options)
+                        MakeObservations(brighter), options)
           .value();
   EXPECT_EQ(options.bounce_iterations, calls);
   EXPECT_GT(left.cost, clean.cost + 5.0);
@@ -210,7 +215,7 @@ TEST_F(ReflectanceSearchTest, BouncesAreTakenOutOfTheImage) {
   };
   EXPECT_EQ(left.parameters,
             SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
-                              brighter, options)
+                              MakeObservations(brighter), options)
                 .value()
                 .parameters);
 }
@@ -221,11 +226,13 @@ TEST_F(ReflectanceSearchTest, WiderMarginsNeverEndAtAHigherCost) {
   options.covariance = false;
   options.coarse_margin = 1e9;
   options.margin = 0.0;
-  const StatusOr<ReflectanceSearchResult> one = SearchReflectance(
-      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> one =
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        MakeObservations(radiance_), options);
   options.margin = 1e9;
-  const StatusOr<ReflectanceSearchResult> all = SearchReflectance(
-      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> all =
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        MakeObservations(radiance_), options);
   ASSERT_TRUE(one.ok() && all.ok());
   EXPECT_LE(all->cost, one->cost);
   // What the narrow ones left where it was is refined now.
@@ -242,8 +249,9 @@ TEST_F(ReflectanceSearchTest, StoppedSearchIsWhole) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   ReflectanceSearchOptions options = Options();
   options.should_stop = [] { return true; };
-  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      FlowLobes::Factory(model_, 2, 1), prior, points_, radiance_, options);
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        MakeObservations(radiance_), options);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_EQ(14u, found->parameters.size());
   EXPECT_EQ(14, found->covariance.rows());
@@ -255,9 +263,10 @@ TEST_F(ReflectanceSearchTest, ImageWithoutAUsablePixelIsNamed) {
   for (size_t i = 0; i < bad.size(); i += 3) {
     bad[i] = i % 2 == 0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
   }
-  const Status status = SearchReflectance(FlowLobes::Factory(model_, 2, 1),
-                                          prior, points_, bad, Options())
-                            .status();
+  const Status status =
+      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+                        MakeObservations(bad), Options())
+          .status();
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
   EXPECT_EQ(0u, status.message().find("image"));
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/base/gauss_legendre.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
@@ -50,18 +51,6 @@ CookTorrance Chrome() {
   brdf.roughness = {0.02, 0.03, 0.05};
   brdf.f0 = {0.9, 0.8, 0.6};
   return brdf;
-}
-
-TEST(GaussLegendre, IsExactForPolynomials) {
-  for (const int n : {1, 2, 7, 40, 128}) {
-    std::vector<double> x, w;
-    GaussLegendre(n, &x, &w);
-    for (const int power : {0, 1, n, 2 * n - 1}) {
-      double sum = 0.0;
-      for (int i = 0; i < n; ++i) sum += w[i] * std::pow(x[i], power);
-      EXPECT_NEAR(sum, 1.0 / (power + 1), kRounding) << n << " " << power;
-    }
-  }
 }
 
 TEST(Albedo, WhiteLambertianIsOneAtAllViews) {

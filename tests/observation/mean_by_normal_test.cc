@@ -27,7 +27,7 @@ std::vector<double> RandomRadiance(size_t points, unsigned seed) {
 
 void ExpectSame(const BinMeans& a, const BinMeans& b) {
   ASSERT_EQ(a.points.size(), b.points.size());
-  EXPECT_EQ(a.radiance, b.radiance);
+  EXPECT_EQ(a.observed.radiance, b.observed.radiance);
   for (size_t i = 0; i < a.points.size(); ++i) {
     EXPECT_EQ(a.points[i].normal, b.points[i].normal);
     EXPECT_EQ(a.points[i].wo, b.points[i].wo);
@@ -40,8 +40,9 @@ TEST(MeanByNormal, ASphereBecomesADiscOfCells) {
   const std::vector<double> radiance = RandomRadiance(points.size(), 1);
   size_t before = 0;
   for (const int across : {1, 4, 12, 24}) {
-    const BinMeans bins = MeanByNormal(points, radiance, across, kMinCosine);
-    ASSERT_EQ(3 * bins.points.size(), bins.radiance.size());
+    const BinMeans bins =
+        MeanByNormal(points, MakeObservations(radiance), across, kMinCosine);
+    ASSERT_EQ(3 * bins.points.size(), bins.observed.radiance.size());
     EXPECT_GT(bins.points.size(), before);
     EXPECT_LE(bins.points.size(),
               std::min<size_t>((across + 1) * (across + 1), points.size()));
@@ -60,7 +61,8 @@ TEST(MeanByNormal, ASphereBecomesADiscOfCells) {
     }
   }
   // So fine that every point has a bin of its own.
-  const BinMeans all = MeanByNormal(points, radiance, 1000, 0.0);
+  const BinMeans all =
+      MeanByNormal(points, MakeObservations(radiance), 1000, 0.0);
   EXPECT_EQ(points.size(), all.points.size());
 }
 
@@ -70,9 +72,11 @@ TEST(MeanByNormal, ConstantRadianceStays) {
   for (size_t i = 0; i < points.size(); ++i) {
     radiance.insert(radiance.end(), {2.0, 3e-5, 7e4});
   }
-  const BinMeans bins = MeanByNormal(points, radiance, 6, kMinCosine);
-  for (size_t i = 0; i < bins.radiance.size(); ++i) {
-    EXPECT_NEAR(1.0, bins.radiance[i] / radiance[i % 3], 10 * kRounding);
+  const BinMeans bins =
+      MeanByNormal(points, MakeObservations(radiance), 6, kMinCosine);
+  for (size_t i = 0; i < bins.observed.radiance.size(); ++i) {
+    EXPECT_NEAR(1.0, bins.observed.radiance[i] / radiance[i % 3],
+                10 * kRounding);
   }
 }
 
@@ -92,20 +96,23 @@ TEST(MeanByNormal, InvalidAndGrazingPointsAreLeftOut) {
     for (int c = 0; c < 3; ++c) kept_radiance.push_back(radiance[3 * i + c]);
   }
   ASSERT_LT(kept.size(), 0.8 * points.size() - 4);  // some graze
-  ExpectSame(MeanByNormal(kept, kept_radiance, 8, 0.0),
-             MeanByNormal(points, radiance, 8, kMinCosine));
+  ExpectSame(MeanByNormal(kept, MakeObservations(kept_radiance), 8, 0.0),
+             MeanByNormal(points, MakeObservations(radiance), 8, kMinCosine));
 
   std::fill(radiance.begin(), radiance.end(), 0.0);
-  EXPECT_TRUE(MeanByNormal(points, radiance, 8, kMinCosine).points.empty());
+  EXPECT_TRUE(MeanByNormal(points, MakeObservations(radiance), 8, kMinCosine)
+                  .points.empty());
 }
 
 TEST(MeanByNormal, ViewsFromOtherDirectionsStayApart) {
   ShadingPoint a = PointAt(0.3, 0.4), b = a;
   const std::vector<double> radiance = {1, 2, 3, 4, 5, 6};
-  EXPECT_EQ(1u, MeanByNormal({a, b}, radiance, 4, kMinCosine).points.size());
+  EXPECT_EQ(1u, MeanByNormal({a, b}, MakeObservations(radiance), 4, kMinCosine)
+                    .points.size());
   // Around the normal, so that all cosines are the same.
   b.wo = Eigen::AngleAxisf(0.4f, a.normal) * a.wo;
-  EXPECT_EQ(2u, MeanByNormal({a, b}, radiance, 4, kMinCosine).points.size());
+  EXPECT_EQ(2u, MeanByNormal({a, b}, MakeObservations(radiance), 4, kMinCosine)
+                    .points.size());
   // A whole image in perspective: a bin's members see along like directions.
   Camera camera;
   camera.type = CameraType::kPerspective;
@@ -114,7 +121,8 @@ TEST(MeanByNormal, ViewsFromOtherDirectionsStayApart) {
   const std::vector<ShadingPoint> points =
       FindShadingPoints(Scene::UnitSphere(), camera, 32, 32, Mask(), 1).value();
   const BinMeans bins =
-      MeanByNormal(points, RandomRadiance(points.size(), 3), 4, kMinCosine);
+      MeanByNormal(points, MakeObservations(RandomRadiance(points.size(), 3)),
+                   4, kMinCosine);
   for (const ShadingPoint& p : bins.points) {
     const auto member =
         std::find_if(points.begin(), points.end(),
@@ -124,19 +132,20 @@ TEST(MeanByNormal, ViewsFromOtherDirectionsStayApart) {
   }
   // One view alone would leave fewer.
   const BinMeans one_view =
-      MeanByNormal(SpherePoints(32), RandomRadiance(SpherePoints(32).size(), 3),
+      MeanByNormal(SpherePoints(32),
+                   MakeObservations(RandomRadiance(SpherePoints(32).size(), 3)),
                    4, kMinCosine);
   EXPECT_GT(bins.points.size(), one_view.points.size());
 }
 
 TEST(MeanByNormal, NoiseAveragesAsLogarithms) {
   const ShadingPoint p = PointAt(0.5, 1.0);
-  const BinMeans two =
-      MeanByNormal({p, p}, {1.0, 2.0, 1e-3, 4.0, 2.0, 1e3}, 8, kMinCosine);
-  ASSERT_EQ(3u, two.radiance.size());
-  EXPECT_NEAR(2.0, two.radiance[0], kRounding);
-  EXPECT_NEAR(2.0, two.radiance[1], kRounding);
-  EXPECT_NEAR(1.0, two.radiance[2], kRounding);
+  const BinMeans two = MeanByNormal(
+      {p, p}, MakeObservations({1.0, 2.0, 1e-3, 4.0, 2.0, 1e3}), 8, kMinCosine);
+  ASSERT_EQ(3u, two.observed.radiance.size());
+  EXPECT_NEAR(2.0, two.observed.radiance[0], kRounding);
+  EXPECT_NEAR(2.0, two.observed.radiance[1], kRounding);
+  EXPECT_NEAR(1.0, two.observed.radiance[2], kRounding);
 
   const int n = 400;
   const double sigma = 0.3;
@@ -144,11 +153,11 @@ TEST(MeanByNormal, NoiseAveragesAsLogarithms) {
   std::normal_distribution<double> g;
   std::vector<double> radiance(3 * n);
   for (double& e : radiance) e = std::exp(sigma * g(rng));
-  const BinMeans many =
-      MeanByNormal(std::vector<ShadingPoint>(n, p), radiance, 8, kMinCosine);
-  ASSERT_EQ(3u, many.radiance.size());
+  const BinMeans many = MeanByNormal(std::vector<ShadingPoint>(n, p),
+                                     MakeObservations(radiance), 8, kMinCosine);
+  ASSERT_EQ(3u, many.observed.radiance.size());
   // Four standard deviations of a mean.
-  for (const double e : many.radiance) {
+  for (const double e : many.observed.radiance) {
     EXPECT_LT(std::abs(std::log(e)), 4 * sigma / std::sqrt(n));
   }
 }
@@ -156,21 +165,26 @@ TEST(MeanByNormal, NoiseAveragesAsLogarithms) {
 TEST(MeanByNormal, OrderIsThatOfTheCells) {
   std::vector<ShadingPoint> points = SpherePoints(24);
   std::vector<double> radiance = RandomRadiance(points.size(), 5);
-  const BinMeans bins = MeanByNormal(points, radiance, 8, kMinCosine);
-  ExpectSame(bins, MeanByNormal(points, radiance, 8, kMinCosine));
+  const BinMeans bins =
+      MeanByNormal(points, MakeObservations(radiance), 8, kMinCosine);
+  ExpectSame(bins,
+             MeanByNormal(points, MakeObservations(radiance), 8, kMinCosine));
   // Whatever order the points come in.
   std::reverse(points.begin(), points.end());
   std::reverse(radiance.begin(), radiance.end());
   for (size_t i = 0; i < points.size(); ++i) {
     std::swap(radiance[3 * i], radiance[3 * i + 2]);
   }
-  const BinMeans reversed = MeanByNormal(points, radiance, 8, kMinCosine);
+  const BinMeans reversed =
+      MeanByNormal(points, MakeObservations(radiance), 8, kMinCosine);
   ASSERT_EQ(bins.points.size(), reversed.points.size());
   for (size_t i = 0; i < bins.points.size(); ++i) {
     EXPECT_LT((bins.points[i].normal - reversed.points[i].normal).norm(),
               1e-6f);
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(1.0, bins.radiance[3 * i + c] / reversed.radiance[3 * i + c],
+      EXPECT_NEAR(1.0,
+                  bins.observed.radiance[3 * i + c] /
+                      reversed.observed.radiance[3 * i + c],
                   kRounding);
     }
   }
@@ -226,11 +240,13 @@ RenderedCells RenderCells(int across) {
   for (size_t first = 0; first < members.size(); first += kMembers) {
     const BinMeans bin = MeanByNormal(
         {members.begin() + first, members.begin() + first + kMembers},
-        {L_o.begin() + 3 * first, L_o.begin() + 3 * (first + kMembers)}, across,
-        0.05);
+        MakeObservations(
+            {L_o.begin() + 3 * first, L_o.begin() + 3 * (first + kMembers)}),
+        across, 0.05);
     EXPECT_EQ(1u, bin.points.size());
     means.push_back(bin.points[0]);
-    radiance.insert(radiance.end(), bin.radiance.begin(), bin.radiance.end());
+    radiance.insert(radiance.end(), bin.observed.radiance.begin(),
+                    bin.observed.radiance.end());
   }
   const std::vector<double> at_mean = render(means);
   RenderedCells out;

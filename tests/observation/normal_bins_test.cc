@@ -16,7 +16,8 @@ TEST(NormalBins, RadianceIsTheMeanOfTheirPoints) {
   std::vector<double> radiance;
   for (size_t i = 0; i < 3 * points.size(); ++i) radiance.push_back(1.0 + i);
   radiance[3 * 100 + 1] = -1.0;
-  const NormalBins bins = BinByNormal(points, radiance, {5, 3, 0.2});
+  const NormalBins bins =
+      BinByNormal(points, MakeObservations(radiance), {5, 3, 0.2});
   ASSERT_GT(bins.num_bins(), 10);
   ASSERT_LE(bins.num_bins(), 25);
   for (int i = 0; i < bins.num_bins(); ++i) {

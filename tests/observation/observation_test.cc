@@ -24,7 +24,7 @@ Observation SphereObservation() {
     image.rgb[i] = static_cast<float>(std::exp(std::sin(7.0 * i)));
   }
   image.rgb[size_t{3} * (kSize / 2 * kSize + kSize / 2)] = 0.0f;
-  return Observe(image, SpherePoints(kSize));
+  return Observe(image, nullptr, SpherePoints(kSize));
 }
 
 TEST(ObservationPair, IsANinthOfTheImageAndItsBins) {
@@ -38,18 +38,18 @@ TEST(ObservationPair, IsANinthOfTheImageAndItsBins) {
     blocks.insert(p.pixel / kSize / 8 * 100 + p.pixel % kSize / 8);
   }
   EXPECT_GE(blocks.size(), 8u);  // of nine, corners may miss the sphere
-  const BinMeans bins = MeanByNormal(
-      pair.pixels.points, pair.pixels.observed.radiance, kAcross, kMinCosine);
+  const BinMeans bins = MeanByNormal(pair.pixels.points, pair.pixels.observed,
+                                     kAcross, kMinCosine);
   ASSERT_EQ(bins.points.size(), pair.bins.points.size());
   EXPECT_LT(3 * bins.points.size(), pair.pixels.points.size());
-  EXPECT_EQ(bins.radiance, pair.bins.observed.radiance);
+  EXPECT_EQ(bins.observed.radiance, pair.bins.observed.radiance);
 }
 
 // All pixels of the pair are transported at once.
 TEST(ObservationPair, OfALargeImageIsThinner) {
   Image image(700, 700);
   std::fill(image.rgb.begin(), image.rgb.end(), 1.0f);
-  const Observation all = Observe(image, SpherePoints(700));
+  const Observation all = Observe(image, nullptr, SpherePoints(700));
   ASSERT_GT(all.points.size() / 9, 40000u);
   const ObservationPair pair = MakePair(all, 700, kAcross);
   EXPECT_LT(pair.pixels.points.size(), 9000u);
@@ -96,7 +96,7 @@ TEST(OnePixelPerBin, KeepsPixelsAsTheyAre) {
 TEST(Thin, KeepsEveryFewRowsAndColumnsOfALargeImage) {
   Image image(300, 300);
   std::fill(image.rgb.begin(), image.rgb.end(), 1.0f);
-  const Observation all = Observe(image, SpherePoints(300));
+  const Observation all = Observe(image, nullptr, SpherePoints(300));
   const Observation thin = Thin(all, 300);
   ASSERT_GT(all.points.size(), 60000u);
   EXPECT_LE(thin.points.size(), 4100u);
@@ -109,7 +109,7 @@ TEST(Thin, KeepsEveryFewRowsAndColumnsOfALargeImage) {
 
 // What cannot be used leaves nothing to thin.
 TEST(Thin, OfABlackImageIsTheImage) {
-  const Observation all = Observe(Image(300, 300), SpherePoints(300));
+  const Observation all = Observe(Image(300, 300), nullptr, SpherePoints(300));
   EXPECT_EQ(all.points.size(), Thin(all, 300).points.size());
 }
 

@@ -92,6 +92,30 @@ TEST(FindDirectionalLights, EqualPixelsAreOneDirectionalLight) {
   EXPECT_EQ(1u, FindDirectionalLights(points, radiance, 3).size());
 }
 
+// Of a plateau the brightest pixels are where it is seen best, and say nothing
+// of where the light is.
+TEST(FindDirectionalLights, AClippedHighlightIsInItsMiddle) {
+  const std::vector<ShadingPoint> points = SpherePoints(96);
+  const Eigen::Vector3d light = Unit(0.6, 0.5, 0.1);
+  std::vector<double> radiance = Highlights(points, {{light, 300.0, 8.0}});
+  std::vector<char> clipped(points.size(), 0);
+  constexpr double kWhite = 4.0;
+  for (size_t i = 0; i < radiance.size(); ++i) {
+    if (radiance[i] < kWhite) continue;
+    radiance[i] = kWhite;
+    clipped[i / 3] = 1;
+  }
+  const std::vector<Eigen::Vector3d> found =
+      FindDirectionalLights(points, radiance, 1, clipped);
+  ASSERT_EQ(1u, found.size());
+  EXPECT_LT(DegreesBetween(light, found[0]), 3.0);
+  const std::vector<Eigen::Vector3d> unaware =
+      FindDirectionalLights(points, radiance, 1);
+  ASSERT_EQ(1u, unaware.size());
+  EXPECT_GT(DegreesBetween(light, unaware[0]),
+            1.5 * DegreesBetween(light, found[0]));
+}
+
 TEST(FindDirectionalLights, NoiseIsNoDirectionalLight) {
   const std::vector<ShadingPoint> points = SpherePoints(64);
   EXPECT_TRUE(FindDirectionalLights(points, Highlights(points, {}), 5).empty());
@@ -168,8 +192,9 @@ class DirectionalLightResponsesTest : public ::testing::Test {
     };
     grid_ = BrdfGrid::FromFunction(brdf, {48, 20, 12});
     const std::vector<ShadingPoint> points = SpherePoints(12);
-    cells_ = BinByNormal(points, std::vector<double>(3 * points.size(), 1.0),
-                         {6, 3, 0.2});
+    cells_ = BinByNormal(
+        points, MakeObservations(std::vector<double>(3 * points.size(), 1.0)),
+        {6, 3, 0.2});
   }
   BrdfGrid grid_;
   NormalBins cells_;
@@ -261,10 +286,11 @@ TEST(DirectionalLights, ExplainASun) {
     return reflectance.Evaluate(x.data(), noise, {}, 1e-6, &mode, nullptr).cost;
   };
   const MarginalReflectance without(FlowLobes::Factory(model, 2, 1), points,
-                                    radiance, LightProcess(), resolution, 1);
+                                    MakeObservations(radiance), LightProcess(),
+                                    resolution, 1);
   const MarginalReflectance with(FlowLobes::Factory(model, 2, 1), points,
-                                 radiance, LightProcess(), resolution, 1,
-                                 {sun});
+                                 MakeObservations(radiance), LightProcess(),
+                                 resolution, 1, {sun});
   const double cost_without = cost(without, truth);
   EXPECT_LT(cost(with, truth), cost_without - 20.0);
   std::vector<double> x_with = truth;

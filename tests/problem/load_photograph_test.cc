@@ -68,6 +68,7 @@ TEST_F(LoadPhotographTest, FloatsKeepTheirBits) {
   const StatusOr<Photograph> found = LoadPhotograph(Spec(image));
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_EQ(image.rgb, found->radiance.rgb);
+  EXPECT_FALSE(found->bounds.has_value());
   EXPECT_TRUE(found->mask.empty());
   EXPECT_TRUE(found->warnings.empty());
 }
@@ -76,18 +77,24 @@ TEST_F(LoadPhotographTest, EightBitsThatSayNothingAreSrgbAndItIsSaid) {
   const StatusOr<Photograph> found =
       LoadPhotograph(Spec("a.png", GreyPng({0, 1, 10, 128, 254, 255}, 8)));
   ASSERT_TRUE(found.ok()) << found.status().message();
-  EXPECT_EQ(0.0f, *found->radiance.At(0, 0));
+  // Black has an upper end alone, and stands for it; white a lower one.
+  EXPECT_EQ(0.0f, *found->bounds->low.At(0, 0));
+  EXPECT_NEAR(FromSrgb(0.5 / 255.0), *found->radiance.At(0, 0), 1e-8);
+  EXPECT_EQ(*found->bounds->high.At(0, 0), *found->radiance.At(0, 0));
+  EXPECT_TRUE(std::isinf(*found->bounds->high.At(5, 0)));
+  EXPECT_NEAR(FromSrgb(254.5 / 255.0), *found->radiance.At(5, 0), 1e-6);
   for (const auto& [x, code] : {std::pair(1, 1), {2, 10}, {3, 128}, {4, 254}}) {
     EXPECT_NEAR(FromSrgb(code / 255.0), *found->radiance.At(x, 0), 1e-6);
   }
-  EXPECT_TRUE(std::isnan(*found->radiance.At(5, 0)));
+  EXPECT_NEAR(FromSrgb(127.5 / 255.0), *found->bounds->low.At(3, 0), 1e-6);
+  EXPECT_NEAR(FromSrgb(128.5 / 255.0), *found->bounds->high.At(3, 0), 1e-6);
   EXPECT_TRUE(AnySays(found->warnings, "sRGB is assumed"));
   EXPECT_TRUE(AnySays(found->warnings, "17 % of the object's values are clip"));
 }
 
 TEST_F(LoadPhotographTest, WhatIsSaidGoesBeforeTheFile) {
   ImageSpec spec = Spec("a.png", GreyPng({100, 200, 230}, 8));
-  spec.response = ResponseKind::kPower;
+  spec.response = ResponseChoice::kPower;
   spec.response_parameter = 2.0;
   spec.white = 220.0;
   spec.black = 20.0;
@@ -96,7 +103,7 @@ TEST_F(LoadPhotographTest, WhatIsSaidGoesBeforeTheFile) {
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_NEAR(0.16 / 4, *found->radiance.At(0, 0), 1e-7);
   EXPECT_NEAR(0.81 / 4, *found->radiance.At(1, 0), 1e-7);
-  EXPECT_TRUE(std::isnan(*found->radiance.At(2, 0)));
+  EXPECT_TRUE(std::isinf(*found->bounds->high.At(2, 0)));
   EXPECT_FALSE(AnySays(found->warnings, "assumed"));
 }
 
@@ -106,7 +113,7 @@ TEST_F(LoadPhotographTest, SixteenBitsMustSayWhatTheyAre) {
   EXPECT_EQ(StatusCode::kInvalidInput, refused.code());
   EXPECT_NE(std::string::npos, refused.message().find("image.response"));
   EXPECT_NE(std::string::npos, refused.message().find("a.png"));
-  spec.response = ResponseKind::kLinear;
+  spec.response = ResponseChoice::kLinear;
   const StatusOr<Photograph> found = LoadPhotograph(spec);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_NEAR(1000 / 65535.0, *found->radiance.At(0, 0), 1e-7);
@@ -116,12 +123,29 @@ TEST_F(LoadPhotographTest, FloatsThroughACurve) {
   Image image(2, 1);
   image.rgb.assign(6, 0.5f);
   ImageSpec spec = Spec(image);
-  spec.response = ResponseKind::kSrgb;
+  spec.response = ResponseChoice::kSrgb;
   const StatusOr<Photograph> found = LoadPhotograph(spec);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_NEAR(FromSrgb(0.5), *found->radiance.At(0, 0), 1e-6);
   spec.white = 200.0;
   EXPECT_EQ(StatusCode::kInvalidInput, LoadPhotograph(spec).status().code());
+  spec.white.reset();
+  spec.response = ResponseChoice::kUnknown;
+  const Status refused = LoadPhotograph(spec).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, refused.code());
+  EXPECT_NE(std::string::npos, refused.message().find("image.response"));
+}
+
+TEST_F(LoadPhotographTest, AnUnknownCurveKeepsTheCodes) {
+  ImageSpec spec = Spec("a.png", GreyPng({0, 100, 255}, 8));
+  spec.response = ResponseChoice::kUnknownAces;
+  const StatusOr<Photograph> found = LoadPhotograph(spec);
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  ASSERT_TRUE(found->unknown_curve.has_value());
+  EXPECT_EQ(100.0f, *found->unknown_curve->codes.At(1, 0));
+  ASSERT_EQ(1u, found->unknown_curve->families.size());
+  EXPECT_EQ(ResponseKind::kAces, found->unknown_curve->families[0].kind);
+  EXPECT_TRUE(found->bounds.has_value());
 }
 
 TEST_F(LoadPhotographTest, MasksOfAnotherSizeNameBoth) {

@@ -28,6 +28,7 @@ TEST(ResultPreview, WritesWhatThereIsAndNothingElse) {
   EXPECT_EQ(dir.CountFiles(), 2);  // overview and input
 
   input.render = input.input;
+  input.residual = Image(12, 10);
   input.illumination = ProceduralSky(8, 16);
   input.brdf.raw.assign(size_t{3} * kMerlBins, 100.0);
   ASSERT_TRUE(WriteResultPreviews(input, dir.path()).ok());

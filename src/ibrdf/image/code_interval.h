@@ -1,36 +1,13 @@
 // What a value of a file says of radiance: an interval.
 #pragma once
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "ibrdf/base/status.h"
+#include "ibrdf/image/radiance_interval.h"
 #include "ibrdf/image/response_curve.h"
 
 namespace ibrdf {
-
-// Radiance from low to high, ends included; low <= high unless it is empty.
-//
-// low = 0 says that there is no lower end: radiance is > 0, and log low is
-// -infinity. high is infinite where there is no upper end. A sum or product
-// with the log of such an end may be NaN: ask HasLow() and HasHigh() first.
-struct RadianceInterval {
-  double low = 0.0;
-  double high = std::numeric_limits<double>::infinity();
-
-  bool HasLow() const { return low > 0.0; }
-  bool HasHigh() const {
-    return high < std::numeric_limits<double>::infinity();
-  }
-  // Nothing is known.
-  bool IsMissing() const { return !HasLow() && !HasHigh(); }
-  // One radiance, as of an HDR file.
-  bool IsExact() const { return low == high; }
-  bool IsEmpty() const { return low > high; }
-  bool Contains(double radiance) const {
-    return low <= radiance && radiance <= high;
-  }
-};
 
 // How a file's whole numbers stand for code values y of a response curve:
 // y = (code - black) / (white - black).

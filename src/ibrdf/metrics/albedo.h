@@ -73,8 +73,4 @@ class FurnaceRules {
   std::vector<double> hemisphere_weights_;
 };
 
-// Nodes and weights of Gauss and Legendre on [0, 1], n >= 1.
-void GaussLegendre(int n, std::vector<double>* nodes,
-                   std::vector<double>* weights);
-
 }  // namespace ibrdf

@@ -1,0 +1,212 @@
+#include "ibrdf/solvers/solve/curve_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "ibrdf/base/format.h"
+#include "ibrdf/solvers/estimation/marginal_search.h"
+#include "ibrdf/solvers/estimation/reflectance_given_light.h"
+#include "ibrdf/solvers/estimation/solve_setup.h"
+#include "ibrdf/solvers/solve/exposure.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Deviations of the prior that are searched, either way; points and refinements
+// of a family's line.
+constexpr double kReach = 2.0;
+constexpr int kPoints = 5;
+constexpr int kRefinements = 2;
+// Of the time that remains, at most.
+constexpr double kTimeShare = 0.6;
+// Of a search under known light, for one curve.
+constexpr int kKnownLightIterations = 6;
+
+// -log of the widths of the codes' intervals in log radiance, of the values
+// whose ends are both known, and their number.
+struct CodeWidths {
+  double cost = 0.0;
+  int count = 0;
+};
+CodeWidths WidthsOf(const Observations& observed) {
+  CodeWidths widths;
+  for (size_t i = 0; i < observed.radiance.size(); ++i) {
+    const RadianceInterval interval = observed.Interval(i);
+    if (!observed.valid[i / 3] || interval.IsOneSided()) continue;
+    widths.cost -= std::log(std::log(interval.high / interval.low));
+    ++widths.count;
+  }
+  return widths;
+}
+
+// Under known light: the Laplacian's density in log radiance times the widths.
+double KnownLightCost(const SolveSetup& setup, SolveContext* context) {
+  const Estimate estimate = EstimateReflectanceGivenLight(setup, context);
+  const TraceEntry end = Evaluate("curve", setup, *context, estimate.iterate,
+                                  estimate.pixels.get());
+  const CodeWidths widths = WidthsOf(estimate.pixels->observed());
+  return end.cost + widths.count * std::log(2.0 * estimate.iterate.scale) +
+         widths.cost;
+}
+
+double CostOf(const InverseProblem& problem, SolveContext* context) {
+  InverseProblem scaled = InUnitsOf(ExposureOf(problem), problem);
+  scaled.solver.max_iterations =
+      std::min(scaled.solver.max_iterations, kKnownLightIterations);
+  const StatusOr<SolveSetup> setup = SetUp(scaled);
+  if (!setup.ok()) return kInfinity;
+  if (setup->light_unknown()) return CoarseEvidence(*setup, context);
+  scaled.seconds_spent = context->Elapsed();
+  const SolveProgress none;
+  SolveContext quiet(scaled, none, context->stop());
+  return KnownLightCost(*setup, &quiet);
+}
+
+ResponseDefinition CurveAt(const CurveFamily& family, double deviations) {
+  ResponseDefinition curve;
+  curve.kind = family.kind;
+  if (!family.has_parameter) return curve;
+  const ResponseParameter range = *ParameterOf(family.kind);
+  curve.parameter =
+      std::clamp(std::exp(family.log_mean + deviations * family.log_std),
+                 range.least, range.most);
+  return curve;
+}
+
+// Deviations of the prior at which the parameter comes to an end of its range.
+double DeviationsOf(const CurveFamily& family, double parameter) {
+  return (std::log(parameter) - family.log_mean) / family.log_std;
+}
+
+CurveEstimate BestOfFamily(
+    const CurveFamily& family,
+    const std::function<double(const ResponseDefinition&)>& cost) {
+  CurveEstimate best;
+  if (!family.has_parameter) {
+    best.curve = CurveAt(family, 0.0);
+    best.cost = cost(best.curve);
+    return best;
+  }
+  const ResponseParameter range = *ParameterOf(family.kind);
+  const LineMinimum minimum = MinimiseOnLine(
+      [&](double u) { return cost(CurveAt(family, u)) + 0.5 * u * u; },
+      std::max(-kReach, DeviationsOf(family, range.least)),
+      std::min(kReach, DeviationsOf(family, range.most)), kPoints,
+      kRefinements);
+  best.curve = CurveAt(family, minimum.at);
+  best.cost = minimum.value;
+  if (minimum.curvature > 0.0) {
+    best.log_parameter_std = family.log_std / std::sqrt(minimum.curvature);
+    // Laplace: the evidence of the family, its parameter integrated out.
+    best.cost += 0.5 * std::log(minimum.curvature);
+  }
+  return best;
+}
+
+std::string StageName(const ResponseDefinition& curve) {
+  std::string name = "curve " + NameOf(curve.kind);
+  if (curve.parameter) name += Format(" %.3g", *curve.parameter);
+  return name;
+}
+
+// Through three points of increasing x.
+struct Parabola {
+  double vertex = 0.0, curvature = 0.0;
+};
+Parabola Through(const double* x, const double* f) {
+  const double left = (f[1] - f[0]) / (x[1] - x[0]);
+  const double right = (f[2] - f[1]) / (x[2] - x[1]);
+  Parabola parabola;
+  parabola.curvature = 2.0 * (right - left) / (x[2] - x[0]);
+  parabola.vertex = 0.5 * (x[0] + x[1]) - left / parabola.curvature;
+  return parabola;
+}
+
+}  // namespace
+
+LineMinimum MinimiseOnLine(const std::function<double(double)>& f, double low,
+                           double high, int count, int refinements) {
+  std::map<double, double> values;
+  const auto add = [&](double x) {
+    const double value = f(x);
+    if (std::isfinite(value)) values[x] = value;
+  };
+  for (int k = 0; k < count; ++k) {
+    add(low + (high - low) * k / (count - 1));
+  }
+  LineMinimum minimum;
+  minimum.value = kInfinity;
+  for (int k = 0; k <= refinements && !values.empty(); ++k) {
+    const auto best = std::min_element(
+        values.begin(), values.end(),
+        [](const auto& a, const auto& b) { return a.second < b.second; });
+    minimum.at = best->first;
+    minimum.value = best->second;
+    minimum.curvature = 0.0;
+    if (values.size() < 3) break;
+    // At an end of the line, the three points there.
+    auto middle = best;
+    if (middle == values.begin()) ++middle;
+    if (std::next(middle) == values.end()) --middle;
+    const auto before = std::prev(middle), after = std::next(middle);
+    const double x[3] = {before->first, middle->first, after->first};
+    const double y[3] = {before->second, middle->second, after->second};
+    const Parabola parabola = Through(x, y);
+    if (!(parabola.curvature > 0.0)) break;
+    minimum.curvature = parabola.curvature;
+    const double next = std::clamp(parabola.vertex, low, high);
+    if (k == refinements || values.count(next) != 0) break;
+    add(next);
+  }
+  return minimum;
+}
+
+InverseProblem WithCurve(const InverseProblem& problem,
+                         const ResponseDefinition& curve) {
+  InverseProblem out = problem;
+  DecodedCodes decoded =
+      DecodeCodes(ResponseCurve(curve), problem.unknown_curve->levels,
+                  problem.unknown_curve->codes);
+  out.image = std::move(decoded.radiance);
+  out.bounds = std::move(decoded.bounds);
+  return out;
+}
+
+StatusOr<std::vector<CurveEstimate>> FindCurves(const InverseProblem& problem,
+                                                SolveContext* context) {
+  const std::function<bool()> stop = context->StopAfter(kTimeShare);
+  bool first = true;
+  const auto cost = [&](const ResponseDefinition& curve) {
+    if (!std::exchange(first, false) && stop()) return kInfinity;
+    const double found = CostOf(WithCurve(problem, curve), context);
+    TraceEntry entry;
+    entry.stage = StageName(curve);
+    entry.cost = entry.likelihood = found;
+    entry.seconds = context->Elapsed();
+    context->Report(entry);
+    return found;
+  };
+  std::vector<CurveEstimate> found;
+  for (const CurveFamily& family : problem.unknown_curve->families) {
+    CurveEstimate best = BestOfFamily(family, cost);
+    if (std::isfinite(best.cost)) found.push_back(best);
+  }
+  if (found.empty()) {
+    return Status(StatusCode::kNoImprovement,
+                  "no response curve explains the image's codes");
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const CurveEstimate& a, const CurveEstimate& b) {
+                     return a.cost < b.cost;
+                   });
+  const double least = found.front().cost;
+  for (CurveEstimate& estimate : found) estimate.cost -= least;
+  return found;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,43 @@
+// The response curve of a photograph, found with the light and the reflectance
+// that explain it.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/solvers/estimation/solution.h"
+#include "ibrdf/solvers/estimation/solve_context.h"
+#include "ibrdf/solvers/problem/inverse_problem.h"
+
+namespace ibrdf {
+
+// The best curve of each family of problem.unknown_curve, the best first.
+//
+// Curves compare by the probability of the codes: light is integrated out and
+// reflectance at its mode, at the coarse resolution of the search; under known
+// light the likelihood's scale is at its mode too. A curve that squeezes many
+// radiances into a code gains nothing by it, as the probability of each code
+// falls with its interval. A parameter is found on a line of 2 deviations of
+// its prior either way, refined where the parabola through the best three
+// points is lowest; its curvature gives the deviation.
+//
+// kNoImprovement where no curve has a finite cost. Each evaluation is a stage
+// of the trace; once the context stops, the best so far counts.
+StatusOr<std::vector<CurveEstimate>> FindCurves(const InverseProblem& problem,
+                                                SolveContext* context);
+
+// The problem with image and bounds by this curve.
+InverseProblem WithCurve(const InverseProblem& problem,
+                         const ResponseDefinition& curve);
+
+// The lowest point of a function on [low, high]: values at `count` points in
+// equal steps, then `refinements` points at the vertex of the parabola through
+// the lowest and its neighbours. Infinite values are passed over.
+struct LineMinimum {
+  double at = 0.0, value = 0.0;
+  double curvature = 0.0;  // second derivative there; 0: the ends are lowest
+};
+LineMinimum MinimiseOnLine(const std::function<double(double)>& f, double low,
+                           double high, int count, int refinements);
+
+}  // namespace ibrdf
