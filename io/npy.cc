@@ -172,10 +172,10 @@ struct NpyType {
 };
 
 constexpr NpyType kTypes[] = {{"|u1", 1, 8, ReadValues<uint8_t>},
-                                {"<u1", 1, 8, ReadValues<uint8_t>},
-                                {"<u2", 2, 16, ReadValues<uint16_t>},
-                                {"<f4", 4, 0, ReadValues<float>},
-                                {"<f8", 8, 0, ReadValues<double>}};
+                              {"<u1", 1, 8, ReadValues<uint8_t>},
+                              {"<u2", 2, 16, ReadValues<uint16_t>},
+                              {"<f4", 4, 0, ReadValues<float>},
+                              {"<f8", 8, 0, ReadValues<double>}};
 
 StatusOr<NpyType> FindType(const std::string& path, const std::string& name) {
   for (const NpyType& type : kTypes) {

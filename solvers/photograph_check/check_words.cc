@@ -10,8 +10,9 @@ std::string Two(double value) { return Format("%.2f", value); }
 std::string Three(double value) { return Format("%.3f", value); }
 
 std::string ImageLine(const PhotographCheck& check) {
-  std::string line = SizeName(check.width, check.height) + " pixels; curve: " +
-                     check.curve + "; exposure " + Number(check.exposure);
+  std::string line = SizeName(check.width, check.height) +
+                     " pixels; curve: " + check.curve + "; exposure " +
+                     Number(check.exposure);
   if (check.counts.used > 0) {
     line += "; radiance " + Number(check.radiance_1) + " to " +
             Number(check.radiance_99) + " (1 % to 99 %)";
@@ -44,8 +45,9 @@ std::string SpreadLine(const PhotographCheck& check) {
   if (like.pixels == 0) return "too few pixels to compare";
   return "log radiance differs by " + Three(like.log_radiance) +
          ", log colour by " + Three(like.log_colour) +
-         ": one material and distant light leave a misfit of about " +
-         Three(like.log_radiance) + " or more";
+         ": without shadows and bounces, no material and distant light come "
+         "below a misfit of about " +
+         Three(like.log_radiance);
 }
 
 std::string NormalsLine(const PhotographCheck& check) {
@@ -66,8 +68,8 @@ std::string NormalsVerdict(const PhotographCheck& check) {
   int together = 0;
   for (const NormalScore& score : check.normals) {
     if (score.disagreement - least >= kToldApart) break;
-    names += (together == 0 ? "" : " or ") +
-             std::string(NameOf(score.hypothesis));
+    names +=
+        (together == 0 ? "" : " or ") + std::string(NameOf(score.hypothesis));
     ++together;
   }
   return together == 1 ? names + ": most plausible"
@@ -113,13 +115,13 @@ std::vector<std::string> CheckWarnings(const PhotographCheck& check,
         "that as mirrored light. Mask one material alone");
   }
   if (const NormalScore* better = check.BetterNormals()) {
-    warnings.push_back(
-        normals_file + ": the normals would agree better with a surface and "
-        "its outline if \"" +
-        std::string(NameOf(better->hypothesis)) + "\" (disagreement " +
-        Two(better->disagreement) + ", as given " +
-        Two(check.AsGiven()->disagreement) +
-        "): " + AdviceFor(better->hypothesis));
+    warnings.push_back(normals_file +
+                       ": the normals would agree better with a surface and "
+                       "its outline if \"" +
+                       std::string(NameOf(better->hypothesis)) +
+                       "\" (disagreement " + Two(better->disagreement) +
+                       ", as given " + Two(check.AsGiven()->disagreement) +
+                       "): " + AdviceFor(better->hypothesis));
   }
   return warnings;
 }

@@ -99,8 +99,8 @@ ColourSpread SpreadOfColours(const std::vector<NormalSample>& samples) {
     const size_t count = end - begin;
     // Steps in the cell's list, which runs in image order: neighbours, and what
     // is far from them.
-    for (const size_t step : {size_t{1}, size_t{2}, count / 5, count / 3,
-                              count / 2}) {
+    for (const size_t step :
+         {size_t{1}, size_t{2}, count / 5, count / 3, count / 2}) {
       if (step == 0 || step >= count) continue;
       for (size_t k = 0; k < count; ++k) {
         const size_t i = cells[begin + k].second;

@@ -33,7 +33,8 @@ struct ColourSpread {
 
 // From here on ColourSpread::excess means paint. A difference of 4 % between
 // two channels is what an eye begins to see. Bounces, normals off by some
-// degrees and masks off by a pixel stay below it (experiments/photograph_check).
+// degrees and masks off by a pixel stay below it
+// (experiments/photograph_check).
 inline constexpr double kSeveralMaterials = 0.04;
 
 ColourSpread SpreadOfColours(const std::vector<NormalSample>& samples);

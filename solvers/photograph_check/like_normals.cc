@@ -79,9 +79,8 @@ class Cells {
     const double scale = std::sqrt(count / static_cast<double>(freedom));
     for (Iterator s = begin; s != end; ++s) {
       const Eigen::Array3d r =
-          scale *
-          (s->log_radiance - mean_log -
-           (slope.transpose() * (s->normal - mean)).array());
+          scale * (s->log_radiance - mean_log -
+                   (slope.transpose() * (s->normal - mean)).array());
       const Eigen::Vector2d colour(r[0] - r[1], r[2] - r[1]);
       sum_radiance_ += r.abs().mean();
       sum_colour_ += colour.cwiseAbs().mean();

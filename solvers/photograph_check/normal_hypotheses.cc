@@ -40,8 +40,8 @@ Eigen::Vector3d Changed(const Eigen::Vector3d& n, NormalHypothesis hypothesis) {
 
 const char* NameOf(NormalHypothesis hypothesis) {
   static constexpr const char* kNames[kNumNormalHypotheses] = {
-      "as given",       "x flipped",    "y flipped",     "x and y flipped",
-      "x, y swapped",   "OpenCV frame", "was (n + 1)/2", "was float"};
+      "as given",     "x flipped",    "y flipped",    "x and y flipped",
+      "x, y swapped", "y, z negated", "0..1 encoded", "float, not 0..1"};
   return kNames[static_cast<int>(hypothesis)];
 }
 
@@ -52,7 +52,7 @@ const char* AdviceFor(NormalHypothesis hypothesis) {
       "negate y in the file (y is up)",
       "negate x and y in the file (x is right, y is up)",
       "swap x and y in the file",
-      "geometry.frame: opencv",
+      "the other geometry.frame of opengl and opencv",
       "geometry.encoding: unit_0_1",
       "geometry.encoding: float"};
   return kAdvice[static_cast<int>(hypothesis)];

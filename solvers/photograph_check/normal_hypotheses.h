@@ -1,4 +1,5 @@
-// What a normal map may be in truth, if its frame or encoding was taken wrongly.
+// What a normal map may be in truth, if its frame or encoding was taken
+// wrongly.
 #pragma once
 #include <array>
 
@@ -11,18 +12,17 @@ enum class NormalHypothesis {
   kXFlipped,
   kYFlipped,
   kBothFlipped,
-  kSwapped,      // x and y
-  kOpenCv,       // y down, z away from the camera
-  kWasEncoded,   // (n + 1) / 2, taken for n
-  kWasFloat,     // n, taken for (n + 1) / 2
+  kSwapped,     // x and y
+  kOpenCv,      // y down, z away from the camera, or the other way round
+  kWasEncoded,  // (n + 1) / 2, taken for n
+  kWasFloat,    // n, taken for (n + 1) / 2
 };
 inline constexpr int kNumNormalHypotheses = 8;
 
 // In a picture: "y flipped".
 const char* NameOf(NormalHypothesis hypothesis);
 
-// What to do where it is true: "geometry.frame: opencv", a key of a problem
-// file, or words.
+// What to do where it is true: a key of the problem file, or words.
 const char* AdviceFor(NormalHypothesis hypothesis);
 
 // The normals as they would be if the hypothesis were true. `normals`: unit

@@ -1,9 +1,6 @@
 #include "ibrdf/solvers/photograph_check/normal_samples.h"
 
-#include <cmath>
-#include <optional>
-
-#include "ibrdf/solvers/observation/normal_bins.h"
+#include "ibrdf/solvers/photograph_check/pixel_counts.h"
 #include "ibrdf/transport/quadrature.h"
 
 namespace ibrdf {
@@ -16,9 +13,10 @@ constexpr double kLeastCosine = 0.2;
 Eigen::Vector3d NormalToViewer(const ShadingPoint& point) {
   const Eigen::Vector3d n = point.normal.cast<double>().normalized();
   const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
-  Eigen::Vector3d right, up;
-  ViewFrame(wo, Eigen::Vector3d::UnitY(), &up, &right);
-  return {n.dot(right), n.dot(up), n.dot(wo)};
+  // The other axis of the frame points left.
+  Eigen::Vector3d left, up;
+  ViewFrame(wo, Eigen::Vector3d::UnitY(), &up, &left);
+  return {-n.dot(left), n.dot(up), n.dot(wo)};
 }
 
 std::vector<NormalSample> SampleNormals(
@@ -28,13 +26,13 @@ std::vector<NormalSample> SampleNormals(
   for (size_t i = 0; i < points.size(); ++i) {
     const int pixel = points[i].pixel;
     const float* const rgb = &radiance.rgb[3 * static_cast<size_t>(pixel)];
-    const double value[3] = {rgb[0], rgb[1], rgb[2]};
-    const std::optional<Eigen::Vector2d> normal =
-        NormalInView(points[i], value, kLeastCosine);
-    if (!normal.has_value()) continue;
+    if (KindOfPixel(rgb, false) != PixelKind::kUsed) continue;
+    const Eigen::Vector3d normal = NormalToViewer(points[i]);
+    if (normal.z() < kLeastCosine) continue;
     NormalSample sample;
-    sample.normal = *normal;
-    sample.log_radiance = Eigen::Map<const Eigen::Array3d>(value).log();
+    sample.normal = normal.head<2>();
+    sample.log_radiance =
+        Eigen::Map<const Eigen::Array3f>(rgb).cast<double>().log();
     sample.position = {pixel % radiance.width, pixel / radiance.width};
     sample.point = i;
     samples.push_back(sample);

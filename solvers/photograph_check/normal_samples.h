@@ -12,10 +12,10 @@ namespace ibrdf {
 Eigen::Vector3d NormalToViewer(const ShadingPoint& point);
 
 struct NormalSample {
-  Eigen::Vector2d normal;        // right and up, in the pixel's own view
-  Eigen::Array3d log_radiance;   // natural
-  Eigen::Vector2d position;      // of the pixel, column and row
-  size_t point = 0;              // its place in the list of points
+  Eigen::Vector2d normal;       // right and up, in the pixel's own view
+  Eigen::Array3d log_radiance;  // natural
+  Eigen::Vector2d position;     // of the pixel, column and row
+  size_t point = 0;             // its place in the list of points
 
   // log R/G and log B/G.
   Eigen::Vector2d LogColour() const {

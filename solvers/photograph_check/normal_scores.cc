@@ -107,8 +107,10 @@ double CurlDisagreement(const NormalField& field) {
           !field.Inside(x, y + 1)) {
         continue;
       }
-      const Eigen::Vector3f dx = 0.5f * (field.At(x + 1, y) - field.At(x - 1, y));
-      const Eigen::Vector3f dy = 0.5f * (field.At(x, y - 1) - field.At(x, y + 1));
+      const Eigen::Vector3f dx =
+          0.5f * (field.At(x + 1, y) - field.At(x - 1, y));
+      const Eigen::Vector3f dy =
+          0.5f * (field.At(x, y - 1) - field.At(x, y + 1));
       if (!IsSmooth(dx) || !IsSmooth(dy)) continue;
       // n . curl n of a field that does not depend on z.
       const Eigen::Vector3f n = field.At(x, y);
@@ -147,8 +149,7 @@ std::vector<NormalScore> RankNormalHypotheses(const Image& normals,
   std::vector<NormalScore> scores;
   for (int k = 0; k < kNumNormalHypotheses; ++k) {
     const auto hypothesis = static_cast<NormalHypothesis>(k);
-    scores.push_back(
-        ScoreNormals(UnderHypothesis(normals, hypothesis), mask));
+    scores.push_back(ScoreNormals(UnderHypothesis(normals, hypothesis), mask));
     scores.back().hypothesis = hypothesis;
   }
   std::stable_sort(scores.begin(), scores.end(),

@@ -41,8 +41,8 @@ const NormalScore* PhotographCheck::AsGiven() const {
 
 const NormalScore* PhotographCheck::BetterNormals() const {
   const NormalScore* const given = AsGiven();
-  if (given == nullptr || given->disagreement - normals.front().disagreement <
-                              kClearlyBetter) {
+  if (given == nullptr ||
+      given->disagreement - normals.front().disagreement < kClearlyBetter) {
     return nullptr;
   }
   return &normals.front();
@@ -53,8 +53,8 @@ PhotographCheck CheckPhotograph(const LookInput& input) {
   check.width = input.radiance.width;
   check.height = input.radiance.height;
   check.has_mask = !input.mask.empty();
-  check.mask_pixels = check.has_mask ? input.mask.CountInside()
-                                     : input.radiance.num_pixels();
+  check.mask_pixels =
+      check.has_mask ? input.mask.CountInside() : input.radiance.num_pixels();
   check.codes = input.codes;
   check.curve = input.curve;
   check.exposure = input.exposure;

@@ -17,17 +17,17 @@ std::shared_ptr<const ObjectLook> Look(const Problem& problem,
                                        const PhotographedObject& object,
                                        Silhouette silhouette) {
   ObjectLook look;
-  const LookInput input{
-      observed.radiance,
-      observed.mask,
-      object.points,
-      object.scene.normal_map(),
-      observed.codes,
-      observed.curve,
-      problem.image.exposure,
-      observed.missing,
-      problem.image.mask.empty() ? std::nullopt
-                                 : std::optional<double>(silhouette.overlap)};
+  const LookInput input{observed.radiance,
+                        observed.mask,
+                        object.points,
+                        object.scene.normal_map(),
+                        observed.codes,
+                        observed.curve,
+                        problem.image.exposure,
+                        observed.missing,
+                        problem.image.mask.empty()
+                            ? std::nullopt
+                            : std::optional<double>(silhouette.overlap)};
   look.check = CheckPhotograph(input);
   look.mask = observed.mask;
   look.silhouette = std::move(silhouette.object);
@@ -61,12 +61,10 @@ StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
   Silhouette silhouette =
       FindSilhouette(object.scene, problem.camera, width, height,
                      observed->mask, object.points, num_threads);
-  IBRDF_RETURN_IF_ERROR(
-      CheckSilhouette(problem, silhouette, &object.warnings));
+  IBRDF_RETURN_IF_ERROR(CheckSilhouette(problem, silhouette, &object.warnings));
   object.look = Look(problem, *observed, object, std::move(silhouette));
-  for (std::string& warning :
-       CheckWarnings(object.look->check, problem.image.file,
-                     problem.geometry.file)) {
+  for (std::string& warning : CheckWarnings(
+           object.look->check, problem.image.file, problem.geometry.file)) {
     object.warnings.push_back(std::move(warning));
   }
   object.radiance = std::move(observed->radiance);

@@ -16,8 +16,8 @@ namespace ibrdf {
 // What the look before a solve saw, and what it is drawn from.
 struct ObjectLook {
   PhotographCheck check;
-  Mask mask;        // of the object; empty: all pixels
-  Mask silhouette;  // pixels that see the object, inside the mask or not
+  Mask mask;         // of the object; empty: all pixels
+  Mask silhouette;   // pixels that see the object, inside the mask or not
   Image normal_map;  // as Scene::normal_map(); empty: another geometry
 };
 

@@ -14,10 +14,11 @@ struct Photograph {
   // Linear radiance. NaN where the file bounds a channel from one side alone:
   // clipped codes. 0 at codes of black.
   Image radiance;
-  Mask mask;  // of the object; empty: all pixels
+  Mask mask;           // of the object; empty: all pixels
   bool codes = false;  // the file holds whole numbers
   std::string curve;   // the response curve and who says so, in words
-  size_t missing = 0;  // pixels of the mask's file that the image lacks or hides
+  size_t missing =
+      0;  // pixels of the mask's file that the image lacks or hides
   // What was taken for granted or left out: sentences for the user.
   std::vector<std::string> warnings;
 };

@@ -22,8 +22,8 @@ Silhouette FindSilhouette(const Scene& scene, const Camera& camera, int width,
   Mask beside = mask;
   for (uint8_t& inside : beside.inside) inside = inside == 0 ? 1 : 0;
   // Fails where there are none: the sizes fitted before.
-  const StatusOr<std::vector<ShadingPoint>> outside = FindShadingPoints(
-      scene, camera, width, height, beside, 1, num_threads);
+  const StatusOr<std::vector<ShadingPoint>> outside =
+      FindShadingPoints(scene, camera, width, height, beside, 1, num_threads);
   size_t more = 0;
   if (outside.ok()) {
     more = outside->size();

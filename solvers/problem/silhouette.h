@@ -18,9 +18,9 @@ inline constexpr double kLeastCovered = 0.05;
 inline constexpr double kUsualOverlap = 0.92;
 
 struct Silhouette {
-  Mask object;         // pixels whose centre sees the object
-  size_t covered = 0;  // those of the mask
-  size_t of_mask = 0;  // all of the mask; an empty one holds all
+  Mask object;           // pixels whose centre sees the object
+  size_t covered = 0;    // those of the mask
+  size_t of_mask = 0;    // all of the mask; an empty one holds all
   double overlap = 1.0;  // intersection of mask and object over their union
 };
 

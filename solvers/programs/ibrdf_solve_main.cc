@@ -206,8 +206,9 @@ void AddProblemFlags(CLI::App* app, SolveFlags* flags) {
                   "the photograph, in place of a problem file");
   app->add_option("--normals", problem->normals,
                   "its normal map (x right, y up, z to the camera)");
-  app->add_option("--mesh", problem->mesh,
-                  "its mesh, in place of normals; the camera by --set camera...");
+  app->add_option(
+      "--mesh", problem->mesh,
+      "its mesh, in place of normals; the camera by --set camera...");
   app->add_option("--mask", problem->mask, "its mask: white is the object");
   app->add_option("--known-light", problem->known_light,
                   "the environment map, where it is known");
@@ -225,8 +226,9 @@ void AddProblemFlags(CLI::App* app, SolveFlags* flags) {
   app->add_flag("--check", flags->check,
                 "look at photograph, mask and shape: numbers, warnings and "
                 "check.png; solve nothing");
-  app->add_flag("--explain", flags->explain,
-                "print which effects would be simulated and why; solve nothing");
+  app->add_flag(
+      "--explain", flags->explain,
+      "print which effects would be simulated and why; solve nothing");
 }
 
 int Main(int argc, char** argv) {

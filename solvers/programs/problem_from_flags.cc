@@ -66,11 +66,13 @@ ConfigNode TreeOf(const ProblemFlags& flags) {
 }
 
 Status CheckText(const ProblemFlags& flags) {
-  for (const auto& [option, text] :
-       {std::pair("the photograph", flags.photo), {"--mask", flags.mask},
-        {"--response", flags.response}, {"--normals", flags.normals},
-        {"--mesh", flags.mesh}, {"--known-light", flags.known_light},
-        {"--out", flags.out}}) {
+  for (const auto& [option, text] : {std::pair("the photograph", flags.photo),
+                                     {"--mask", flags.mask},
+                                     {"--response", flags.response},
+                                     {"--normals", flags.normals},
+                                     {"--mesh", flags.mesh},
+                                     {"--known-light", flags.known_light},
+                                     {"--out", flags.out}}) {
     if (!IsUtf8(text)) {
       return InvalidInput(std::string(kCommandLine) + ": " + option,
                           "expected a name in UTF-8");
@@ -126,9 +128,9 @@ void MovePaths(const std::string& out, ConfigNode* root) {
 bool IsShellSafe(const std::string& text) {
   return !text.empty() &&
          std::all_of(text.begin(), text.end(), [](unsigned char c) {
-           return std::isalnum(c) != 0 || std::string("_-./=,:+%@").find(
-                                              static_cast<char>(c)) !=
-                                              std::string::npos ||
+           return std::isalnum(c) != 0 ||
+                  std::string("_-./=,:+%@").find(static_cast<char>(c)) !=
+                      std::string::npos ||
                   c >= 0x80;
          });
 }

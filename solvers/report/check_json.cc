@@ -15,12 +15,9 @@ Json Finite(double value) {
 
 Json PixelsJson(const PhotographCheck& check) {
   const PixelCounts& counts = check.counts;
-  return {{"object", counts.object},
-          {"used", counts.used},
-          {"clipped", counts.clipped},
-          {"zero", counts.zero},
-          {"negative", counts.negative},
-          {"not_finite", counts.not_finite},
+  return {{"object", counts.object},     {"used", counts.used},
+          {"clipped", counts.clipped},   {"zero", counts.zero},
+          {"negative", counts.negative}, {"not_finite", counts.not_finite},
           {"missing", check.missing}};
 }
 
@@ -61,18 +58,19 @@ Json NormalsJson(const PhotographCheck& check) {
 }  // namespace
 
 nlohmann::ordered_json CheckToJson(const PhotographCheck& check) {
-  return {{"width", check.width},
-          {"height", check.height},
-          {"mask_pixels", check.has_mask ? Json(check.mask_pixels) : Json()},
-          {"overlap", check.overlap.has_value() ? Json(*check.overlap) : Json()},
-          {"curve", check.curve},
-          {"exposure", check.exposure},
-          {"radiance_1_percent", check.radiance_1},
-          {"radiance_99_percent", check.radiance_99},
-          {"pixels", PixelsJson(check)},
-          {"like_normals", LikeNormalsJson(check.like_normals)},
-          {"materials", MaterialsJson(check.colours)},
-          {"normals", NormalsJson(check)}};
+  return {
+      {"width", check.width},
+      {"height", check.height},
+      {"mask_pixels", check.has_mask ? Json(check.mask_pixels) : Json()},
+      {"overlap", check.overlap.has_value() ? Json(*check.overlap) : Json()},
+      {"curve", check.curve},
+      {"exposure", check.exposure},
+      {"radiance_1_percent", check.radiance_1},
+      {"radiance_99_percent", check.radiance_99},
+      {"pixels", PixelsJson(check)},
+      {"like_normals", LikeNormalsJson(check.like_normals)},
+      {"materials", MaterialsJson(check.colours)},
+      {"normals", NormalsJson(check)}};
 }
 
 std::string CheckJson(const PhotographCheck& check,

@@ -18,9 +18,8 @@ const Eigen::Vector3d kLamp = Eigen::Vector3d(-1.0, 1.0, 1.2).normalized();
 
 float Lit(const Eigen::Vector3d& normal) {
   constexpr double kAmbient = 0.06;
-  return static_cast<float>(kAmbient +
-                            (1.0 - kAmbient) *
-                                std::max(normal.dot(kLamp), 0.0));
+  return static_cast<float>(kAmbient + (1.0 - kAmbient) *
+                                           std::max(normal.dot(kLamp), 0.0));
 }
 
 void Fill(float* rgb, float value) { std::fill(rgb, rgb + 3, value); }
@@ -43,8 +42,8 @@ Image ExposedPhotograph(const Image& radiance, const Mask& mask) {
   for (size_t k = 0; k < out.rgb.size(); ++k) {
     const double v = radiance.rgb[k] * exposure;
     // Clipped values are as bright as can be shown.
-    out.rgb[k] = std::isnan(v) ? 1.0f
-                               : static_cast<float>(std::clamp(v, 0.0, 1.0));
+    out.rgb[k] =
+        std::isnan(v) ? 1.0f : static_cast<float>(std::clamp(v, 0.0, 1.0));
   }
   return out;
 }

@@ -16,12 +16,15 @@ constexpr int kWidth = 1560;
 constexpr int kMargin = 24;
 constexpr int kGap = 20;
 constexpr int kColumns = 4;
-constexpr int kPanel = (kWidth - 2 * kMargin - (kColumns - 1) * kGap) / kColumns;
-constexpr int kBall = 72;  // diameter of the legend's balls
+constexpr int kPanel =
+    (kWidth - 2 * kMargin - (kColumns - 1) * kGap) / kColumns;
+constexpr int kBall = 72;     // diameter of the legend's balls
 constexpr int kCaption = 48;  // below a panel: two lines
 constexpr int kHead = 64;
 constexpr double kTitleText = 15.0, kText = 10.0;
 constexpr int kLine = 20;
+constexpr int kVerdictIndent = 120;
+constexpr int kVerdictGap = 6;
 constexpr Ink kGreenInk = {20, 130, 50};
 constexpr Ink kOutlineInk = {255, 210, 0};
 
@@ -71,7 +74,12 @@ Image Cropped(const Image& image, const Crop& crop) {
   return out;
 }
 
-// Where a crop lies in a square cell.
+struct Verdict {
+  std::string name;
+  std::vector<std::string> lines;
+};
+
+// Where a crop lies in a cell.
 struct Place {
   double x, y, scale;
   int width, height;
@@ -84,7 +92,7 @@ Place FitInto(const Crop& crop, double x, double y, int cell_width,
                          cell_height / static_cast<double>(crop.height));
   place.width = std::max(1, static_cast<int>(crop.width * place.scale));
   place.height = std::max(1, static_cast<int>(crop.height * place.scale));
-  place.x = x + (cell_width - place.width) / 2;
+  place.x = x;
   place.y = y;
   return place;
 }
@@ -165,6 +173,7 @@ class CheckDrawing {
         crop_(CropOf(input.look)),
         row_(FitInto(crop_, 0, 0, kPanel, kPanel).height),
         photograph_(ExposedPhotograph(input.radiance, input.look.mask)),
+        verdicts_(Verdicts()),
         picture_(kWidth, Height()) {}
 
   Rgb8Image Draw() {
@@ -178,10 +187,18 @@ class CheckDrawing {
 
  private:
   static int Column(int column) { return kMargin + column * (kPanel + kGap); }
-  // Verdicts need some height even beside a flat object.
-  int SecondHeight() const { return std::max(row_, 17 * kLine); }
+  // Beside a flat object the verdicts are higher.
+  int SecondHeight() const {
+    int height = kLine;
+    for (const Verdict& verdict : verdicts_) {
+      height += static_cast<int>(verdict.lines.size()) * kLine + kVerdictGap;
+    }
+    return std::max(row_, height - kCaption);
+  }
   int SecondRow() const { return kHead + row_ + kCaption + kGap; }
-  int ThirdRow() const { return SecondRow() + SecondHeight() + kCaption + kGap; }
+  int ThirdRow() const {
+    return SecondRow() + SecondHeight() + kCaption + kGap;
+  }
   static int HypothesisCell() {
     return (kWidth - 2 * kMargin - (kNumNormalHypotheses - 1) * kGap) /
            kNumNormalHypotheses;
@@ -204,9 +221,42 @@ class CheckDrawing {
     return place;
   }
 
-  void Legend(bool lit, int column, int top) {
-    picture_.Sphere(LegendBall(lit), Column(column) + kPanel - kBall / 2 - 4,
-                    top + row_ - kBall / 2 - 4, kBall, 1.0);
+  // How many pixels of the object a rectangle of a panel hides.
+  int Hides(const Place& place, double left, double top) const {
+    const Mask& object = input_.look.silhouette;
+    const int size = static_cast<int>(kBall / place.scale);
+    const int x0 =
+        crop_.left + static_cast<int>((left - place.x) / place.scale);
+    const int y0 = crop_.top + static_cast<int>((top - place.y) / place.scale);
+    int hidden = 0;
+    for (int y = std::max(y0, 0); y < std::min(y0 + size, object.height); ++y) {
+      for (int x = std::max(x0, 0); x < std::min(x0 + size, object.width);
+           ++x) {
+        hidden += object.inside[static_cast<size_t>(y) * object.width + x];
+      }
+    }
+    return hidden;
+  }
+
+  // Beside the panel where there is room, else in its emptiest corner.
+  void Legend(bool lit, const Place& place) {
+    double x = place.x + place.width + 6, y = place.y + place.height - kBall;
+    if (place.width + 6 + kBall > kPanel) {
+      int least = -1;
+      for (const double left :
+           {place.x + place.width - kBall - 4.0, place.x + 4.0}) {
+        for (const double top :
+             {place.y + place.height - kBall - 4.0, place.y + 4.0}) {
+          const int hidden = Hides(place, left, top);
+          if (least >= 0 && hidden >= least) continue;
+          least = hidden;
+          x = left;
+          y = top;
+        }
+      }
+    }
+    picture_.Sphere(LegendBall(lit), x + kBall / 2.0, y + kBall / 2.0, kBall,
+                    1.0);
   }
 
   void DrawShape(int top) {
@@ -217,24 +267,21 @@ class CheckDrawing {
                               : "Photograph and the shape's outline (no mask)");
     DrawOutline(check_.has_mask ? input_.look.mask : input_.look.silhouette,
                 crop_, place, &picture_);
-    Panel(NormalColours(input_.points, photograph_), 1, top,
-          "Normals: red right, green up, blue to the camera, as on the ball");
-    Legend(false, 1, top);
-    Panel(LampLit(input_.points, width, height), 2, top,
-          "The same shape, matte, lamp at the upper left");
-    Legend(true, 2, top);
+    Legend(false, Panel(NormalColours(input_.points, photograph_), 1, top,
+                        "Normals, in the ball's colours: red right, green up"));
+    Legend(true, Panel(LampLit(input_.points, width, height), 2, top,
+                       "The shape, matte, lamp at the upper left"));
     Panel(MaskAndShape(input_.look.mask, input_.look.silhouette), 3, top,
           check_.overlap.has_value()
-              ? "Mask and shape overlap by " +
-                    Format("%.3f", *check_.overlap) +
+              ? "Mask and shape overlap by " + Format("%.3f", *check_.overlap) +
                     "; red: mask alone, blue: shape alone"
               : "The shape's silhouette (no mask)");
   }
 
   void DrawPixels(int top) {
-    Panel(MarkedPixels(input_.radiance, input_.look, input_.points,
-                       photograph_),
-          0, top, "");
+    Panel(
+        MarkedPixels(input_.radiance, input_.look, input_.points, photograph_),
+        0, top, "");
     double x = Column(0), y = top + row_ + kLine;
     picture_.Text("No part:", x, y, kText);
     x += Picture::TextWidth("No part: ", kText) + 8;
@@ -246,41 +293,56 @@ class CheckDrawing {
       }
       float rgb[3];
       ColourOf(static_cast<Mark>(k), rgb);
-      picture_.Dot(x + 5, y - 5, 5,
-                   {EncodeSrgb(rgb[0]), EncodeSrgb(rgb[1]),
-                    EncodeSrgb(rgb[2])});
+      picture_.Dot(
+          x + 5, y - 5, 5,
+          {EncodeSrgb(rgb[0]), EncodeSrgb(rgb[1]), EncodeSrgb(rgb[2])});
       picture_.Text(name, x + 14, y, kText);
       x += 28 + Picture::TextWidth(name, kText);
     }
     Panel(ColourDeviations(check_.like_normals, input_.points,
                            input_.radiance.width, input_.radiance.height),
           1, top,
-          "Colour against pixels of like normals: white as they, red off by "
-          "0.3 (log)");
+          "Colour off that of like normals: white 0, red 0.3 (log of a ratio)");
+  }
+
+  // What is said of the look, in lines that fit beside a mirror ball.
+  std::vector<Verdict> Verdicts() const {
+    const int columns = input_.mirror_ball.empty() ? 2 : 1;
+    const int width = columns * (kPanel + kGap) - kGap - kVerdictIndent;
+    std::vector<Verdict> verdicts;
+    for (const std::string& line : CheckLines(check_)) {
+      constexpr size_t kName = 14;  // of CheckLines
+      verdicts.push_back(
+          {line.substr(0, std::min(line.find("  "), kName)),
+           Wrapped(Printable(line.substr(kName)), width, kText)});
+    }
+    return verdicts;
   }
 
   void DrawVerdicts(int top) {
-    const double x = Column(2), width = 2 * kPanel + kGap;
-    double y = top + kLine / 2 + 4;
-    for (const std::string& line : CheckLines(check_)) {
-      // A name, then what is said of it.
-      constexpr size_t kName = 14;
-      picture_.Text(line.substr(0, std::min(line.find("  "), kName)), x, y,
-                    kText);
-      for (const std::string& part :
-           Wrapped(Printable(line.substr(kName)), width - 120, kText)) {
-        picture_.Text(part, x + 120, y, kText, Picture::Align::kLeft, kGreyInk);
+    const double x = Column(2);
+    double y = top + 14;
+    for (const Verdict& verdict : verdicts_) {
+      picture_.Text(verdict.name, x, y, kText);
+      for (const std::string& line : verdict.lines) {
+        picture_.Text(line, x + kVerdictIndent, y, kText, Picture::Align::kLeft,
+                      kGreyInk);
         y += kLine;
       }
-      y += 6;
+      y += kVerdictGap;
     }
+    if (input_.mirror_ball.empty()) return;
+    picture_.Sphere(input_.mirror_ball, Column(3) + row_ / 2.0,
+                    top + row_ / 2.0, row_, 1.0);
+    DrawLines("The known light in a mirror ball", Column(3), top + row_ + kLine,
+              kPanel, &picture_, kBlackInk);
   }
 
   void DrawHypotheses(int top) {
     picture_.Text(
         "What the normals may be: each as it would look under the lamp, the "
-        "most plausible first (framed). Disagreement with a surface and its "
-        "outline, 0 to 1:",
+        "most plausible first (framed). Numbers: disagreement with a surface "
+        "and its outline, 0 to 1.",
         kMargin, top + 12, kText);
     const int cell = HypothesisCell();
     const double y = top + kLine + 8;
@@ -313,6 +375,7 @@ class CheckDrawing {
   Crop crop_;
   int row_;  // height of a panel
   Image photograph_;
+  std::vector<Verdict> verdicts_;
   Picture picture_;
 };
 

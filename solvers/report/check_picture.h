@@ -16,6 +16,9 @@ struct CheckPictureInput {
   const Image& radiance;
   const std::vector<ShadingPoint>& points;
   const ObjectLook& look;
+  // The known light as a mirror ball shows it, a square of linear display
+  // colours; empty: none.
+  Image mirror_ball;
 };
 
 // 1560 pixels wide: the photograph with the mask's outline, normals as colours

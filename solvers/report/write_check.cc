@@ -14,10 +14,10 @@ std::vector<std::string> CheckPaths(const std::string& folder) {
 Status WriteCheck(const Problem& problem, const PhotographedObject& object,
                   const std::string& folder) {
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(
-      folder + "/check.json",
-      CheckJson(object.look->check, object.warnings)));
+      folder + "/check.json", CheckJson(object.look->check, object.warnings)));
   const CheckPictureInput input{"Check of " + problem.image.file,
-                                object.radiance, object.points, *object.look};
+                                object.radiance, object.points, *object.look,
+                                Image()};
   return WritePng(DrawCheck(input), folder + "/check.png");
 }
 
