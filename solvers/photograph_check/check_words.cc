@@ -42,12 +42,14 @@ std::string CountsLine(const PhotographCheck& check) {
 
 std::string SpreadLine(const PhotographCheck& check) {
   const LikeNormalsSpread& like = check.like_normals;
-  if (like.pixels == 0) return "too few pixels to compare";
-  return "log radiance differs by " + Three(like.log_radiance) +
-         ", log colour by " + Three(like.log_colour) +
-         ": without shadows and bounces, no material and distant light come "
-         "below a misfit of about " +
-         Three(like.log_radiance);
+  const std::string share = Number(100.0 * like.share) + " % of the pixels";
+  if (like.pixels == 0) return "none are seen at several places";
+  return "at several places (" + share + ") log radiance differs by " +
+         Three(like.log_radiance) + ", log colour by " +
+         Three(like.log_colour) +
+         "; without shadows and bounces, no material and distant light come "
+         "below a misfit of " +
+         Three(like.Floor());
 }
 
 std::string NormalsLine(const PhotographCheck& check) {

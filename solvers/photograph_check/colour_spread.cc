@@ -6,13 +6,14 @@
 #include <utility>
 
 #include "ibrdf/base/pi.h"
+#include "ibrdf/solvers/photograph_check/like_normals.h"
 
 namespace ibrdf {
 namespace {
 
 const double kCellWidth = std::sin(2.0 * kPi / 180.0);
 // Of the object's size, the square root of its pixels.
-constexpr double kFar = 0.1, kNear = 0.03;
+constexpr double kNear = 0.03;
 constexpr double kLeastFar = 4.0, kLeastNear = 1.5;  // pixels
 constexpr size_t kFewestPairs = 100;
 constexpr double kLeastShare = 0.02;
@@ -88,7 +89,7 @@ ColourSpread SpreadOfColours(const std::vector<NormalSample>& samples) {
   if (samples.empty()) return spread;
   spread.own = MedianColour(samples);
   const double size = std::sqrt(static_cast<double>(samples.size()));
-  const double far_from = std::max(kFar * size, kLeastFar);
+  const double far_from = std::max(kOtherPlace * size, kLeastFar);
   const double near_to = std::max(kNear * size, kLeastNear);
   MeanDifference far(spread.own), near(spread.own);
   std::vector<bool> has_far(samples.size(), false);

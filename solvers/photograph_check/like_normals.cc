@@ -10,13 +10,14 @@ namespace ibrdf {
 namespace {
 using Iterator = std::vector<NormalSample>::iterator;
 
-constexpr std::ptrdiff_t kMostOfCell = 24;
+constexpr std::ptrdiff_t kMostOfCell = 12;
 // Normals closer than this are the same: no slope can be told.
 constexpr double kSameNormals = 1e-5;
 
 class Cells {
  public:
-  explicit Cells(LikeNormalsSpread* spread) : spread_(spread) {}
+  Cells(size_t samples, LikeNormalsSpread* spread)
+      : samples_(static_cast<double>(samples)), spread_(spread) {}
 
   // Halves by the median of the wider axis until a cell is small enough.
   void Divide(Iterator begin, Iterator end) {
@@ -46,9 +47,20 @@ class Cells {
     if (spread_->pixels == 0) return;
     spread_->log_radiance = sum_radiance_ / count;
     spread_->log_colour = sum_colour_ / count;
+    spread_->share = count / samples_;
   }
 
  private:
+  // Whether the cell's pixels lie at different places.
+  bool HasPlaces(Iterator begin, Iterator end) const {
+    Eigen::Vector2d low = begin->position, high = begin->position;
+    for (Iterator s = begin; s != end; ++s) {
+      low = low.cwiseMin(s->position);
+      high = high.cwiseMax(s->position);
+    }
+    return (high - low).norm() >= kOtherPlace * std::sqrt(samples_);
+  }
+
   void AddCell(Iterator begin, Iterator end) {
     const auto count = static_cast<int>(end - begin);
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -76,19 +88,22 @@ class Cells {
       --freedom;
     }
     if (freedom <= 0) return;
+    const bool places = HasPlaces(begin, end);
     const double scale = std::sqrt(count / static_cast<double>(freedom));
     for (Iterator s = begin; s != end; ++s) {
       const Eigen::Array3d r =
           scale * (s->log_radiance - mean_log -
                    (slope.transpose() * (s->normal - mean)).array());
       const Eigen::Vector2d colour(r[0] - r[1], r[2] - r[1]);
+      spread_->colour_of_point[s->point] = static_cast<float>(colour.norm());
+      if (!places) continue;
       sum_radiance_ += r.abs().mean();
       sum_colour_ += colour.cwiseAbs().mean();
       ++spread_->pixels;
-      spread_->colour_of_point[s->point] = static_cast<float>(colour.norm());
     }
   }
 
+  double samples_;
   LikeNormalsSpread* spread_;
   double sum_radiance_ = 0.0, sum_colour_ = 0.0;
 };
@@ -101,7 +116,7 @@ LikeNormalsSpread SpreadOfLikeNormals(std::vector<NormalSample> samples,
   spread.colour_of_point.assign(points,
                                 std::numeric_limits<float>::quiet_NaN());
   if (samples.empty()) return spread;
-  Cells cells(&spread);
+  Cells cells(samples.size(), &spread);
   cells.Divide(samples.begin(), samples.end());
   cells.Finish();
   return spread;

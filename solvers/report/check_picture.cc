@@ -268,7 +268,7 @@ class CheckDrawing {
     DrawOutline(check_.has_mask ? input_.look.mask : input_.look.silhouette,
                 crop_, place, &picture_);
     Legend(false, Panel(NormalColours(input_.points, photograph_), 1, top,
-                        "Normals, in the ball's colours: red right, green up"));
+                        "Normals, in the colours of the ball"));
     Legend(true, Panel(LampLit(input_.points, width, height), 2, top,
                        "The shape, matte, lamp at the upper left"));
     Panel(MaskAndShape(input_.look.mask, input_.look.silhouette), 3, top,
@@ -361,10 +361,11 @@ class CheckDrawing {
         picture_.Frame(place.x - 4, place.y - 4, place.width + 8,
                        place.height + 8, 3, kGreenInk);
       }
+      const double middle = place.x + place.width / 2.0;
       const double below = y + place.height + kLine + 2;
-      picture_.Text(NameOf(score.hypothesis), x + cell / 2.0, below, kText,
+      picture_.Text(NameOf(score.hypothesis), middle, below, kText,
                     Picture::Align::kCentre, best ? kGreenInk : kBlackInk);
-      picture_.Text(Format("%.3f", score.disagreement), x + cell / 2.0,
+      picture_.Text(Format("%.3f", score.disagreement), middle,
                     below + kLine, kText, Picture::Align::kCentre,
                     best ? kGreenInk : kGreyInk);
     }
