@@ -59,8 +59,8 @@ def main():
         for name, options in cases(folder):
             look = check(arguments.bin, arguments.out / kind / name, options)
             materials, like = look["materials"], look["like_normals"]
-            rows.append((kind, name, materials["verdict"], materials["colour_spread"], materials["far"],
-                         materials["near"], materials["share_of_pixels"], like["log_radiance"], like["log_colour"],
+            rows.append((kind, name, materials["verdict"], materials["colour_spread"], materials["far"]["across"],
+                         materials["near"]["across"], materials["share_of_pixels"], like["log_radiance"], like["log_colour"],
                          like["misfit_floor"]))
     with open(arguments.out / "materials.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

@@ -87,7 +87,7 @@ std::string ColourVerdict(const ColourSpread& colours) {
   return (SaysSeveralMaterials(colours) ? "several materials"
                                         : "may be one material") +
          std::string(": colours of like normals far apart differ by ") +
-         Three(colours.excess) + " across the object's own (several from " +
+         Three(colours.excess) + " (several materials from " +
          Two(kSeveralMaterials) + ", " + share + ")";
 }
 

@@ -35,14 +35,16 @@ Json MaterialsJson(const ColourSpread& colours) {
                               : SaysSeveralMaterials(colours)
                                   ? "several materials"
                                   : "may be one material";
-  return {{"verdict", verdict},
-          {"colour_spread", colours.observable ? Json(colours.excess) : Json()},
-          {"threshold", kSeveralMaterials},
-          {"far", Finite(colours.far)},
-          {"near", Finite(colours.near)},
-          {"pairs", colours.pairs},
-          {"share_of_pixels", colours.share},
-          {"own_log_colour", {colours.own.x(), colours.own.y()}}};
+  return {
+      {"verdict", verdict},
+      {"colour_spread", colours.observable ? Json(colours.excess) : Json()},
+      {"threshold", kSeveralMaterials},
+      {"far", {{"across", colours.far.across}, {"along", colours.far.along}}},
+      {"near",
+       {{"across", colours.near.across}, {"along", colours.near.along}}},
+      {"pairs", colours.pairs},
+      {"share_of_pixels", colours.share},
+      {"own_log_colour", {colours.own.x(), colours.own.y()}}};
 }
 
 Json NormalsJson(const PhotographCheck& check) {
