@@ -40,6 +40,8 @@ def grid(folder):
 
 def scenes(folder):
     for problem in sorted(folder.glob("*/problem.yaml")):
+        if not (problem.parent / "image.exr").exists():
+            continue  # not rendered yet
         yield problem.parent.name, ["--problem", problem]
 
 
