@@ -55,7 +55,7 @@ std::string SpreadLine(const PhotographCheck& check) {
 std::string NormalsLine(const PhotographCheck& check) {
   std::string line = NormalsVerdict(check) + " (disagreement";
   for (size_t k = 0; k < 3 && k < check.normals.size(); ++k) {
-    line += (k == 0 ? " " : ", ") + Two(check.normals[k].disagreement) + " " +
+    line += (k == 0 ? " " : "; ") + Two(check.normals[k].disagreement) + " " +
             NameOf(check.normals[k].hypothesis);
   }
   return line + ")";

@@ -16,12 +16,12 @@ constexpr double kSameNormals = 1e-5;
 
 class Cells {
  public:
-  Cells(size_t samples, LikeNormalsSpread* spread)
-      : samples_(static_cast<double>(samples)), spread_(spread) {}
+  Cells(size_t samples, std::ptrdiff_t most, LikeNormalsSpread* spread)
+      : samples_(static_cast<double>(samples)), most_(most), spread_(spread) {}
 
   // Halves by the median of the wider axis until a cell is small enough.
   void Divide(Iterator begin, Iterator end) {
-    if (end - begin <= kMostOfCell) {
+    if (end - begin <= most_) {
       AddCell(begin, end);
       return;
     }
@@ -104,21 +104,41 @@ class Cells {
   }
 
   double samples_;
+  std::ptrdiff_t most_;  // samples of a cell
   LikeNormalsSpread* spread_;
   double sum_radiance_ = 0.0, sum_colour_ = 0.0;
 };
 
-}  // namespace
-
-LikeNormalsSpread SpreadOfLikeNormals(std::vector<NormalSample> samples,
-                                      size_t points) {
+LikeNormalsSpread SpreadInCells(std::vector<NormalSample> samples,
+                                size_t points, std::ptrdiff_t most) {
   LikeNormalsSpread spread;
   spread.colour_of_point.assign(points,
                                 std::numeric_limits<float>::quiet_NaN());
   if (samples.empty()) return spread;
-  Cells cells(samples.size(), &spread);
+  Cells cells(samples.size(), most, &spread);
   cells.Divide(samples.begin(), samples.end());
   cells.Finish();
+  return spread;
+}
+
+// The deviation in cells of no extent, from that in cells and in cells twice as
+// large: what differs between places is the same in both, and the variance of
+// what changes with the normal at least doubles.
+double AtNoExtent(double cells, double twice) {
+  return std::sqrt(std::max(2.0 * cells * cells - twice * twice, 0.0));
+}
+
+}  // namespace
+
+LikeNormalsSpread SpreadOfLikeNormals(const std::vector<NormalSample>& samples,
+                                      size_t points) {
+  LikeNormalsSpread spread = SpreadInCells(samples, points, kMostOfCell);
+  const LikeNormalsSpread twice =
+      SpreadInCells(samples, points, 2 * kMostOfCell);
+  spread.log_radiance = std::min(
+      spread.log_radiance, AtNoExtent(spread.log_radiance, twice.log_radiance));
+  spread.log_colour = std::min(spread.log_colour,
+                               AtNoExtent(spread.log_colour, twice.log_colour));
   return spread;
 }
 

@@ -34,8 +34,10 @@ inline constexpr double kOtherPlace = 0.1;
 // Divides the disc of normals into cells of 6 to 12 samples of most alike
 // normals. Within each, log radiance is a linear function of the normal, so
 // that what normals explain is no spread; deviations from it are scaled for the
-// degrees of freedom that it takes. `points`: how many the samples are of.
-LikeNormalsSpread SpreadOfLikeNormals(std::vector<NormalSample> samples,
+// degrees of freedom that it takes. Cells twice as large say how much of the
+// deviation is a reflection that changes within a cell; it is taken off.
+// `points`: how many the samples are of.
+LikeNormalsSpread SpreadOfLikeNormals(const std::vector<NormalSample>& samples,
                                       size_t points);
 
 }  // namespace ibrdf

@@ -59,6 +59,19 @@ TEST(LikeNormals, ASphereHasNoOtherPlaces) {
   EXPECT_EQ(0.0, spread.Floor());
 }
 
+TEST(LikeNormals, ASharpReflectionIsHardlyASpread) {
+  // Checkers of 2 degrees: a few to a cell.
+  const Image normals = SurfaceNormals(96, Bumps);
+  const auto checkered = [](const Eigen::Vector3d& n, int, int) {
+    const bool even =
+        static_cast<int>(std::floor(30 * n.x()) + std::floor(30 * n.y())) % 2 ==
+        0;
+    return Eigen::Array3d(Eigen::Array3d::Constant(even ? 1.0 : 0.5));
+  };
+  // Log radiance itself deviates by half of log 2 from its mean.
+  EXPECT_LT(SpreadOf(normals, Painted(normals, checkered)).log_radiance, 0.2);
+}
+
 TEST(LikeNormals, FlatPiecesHaveNoSlopes) {
   Image normals(64, 64);
   for (size_t i = 0; i < normals.num_pixels(); ++i) {
