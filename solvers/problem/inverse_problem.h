@@ -13,6 +13,7 @@
 #include "ibrdf/io/problem.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/effects/effects_plan.h"
+#include "ibrdf/solvers/problem/load_object.h"
 #include "ibrdf/solvers/problem/unknown_curve.h"
 #include "ibrdf/transport/transport.h"
 
@@ -31,6 +32,8 @@ struct InverseProblem {
   // What makes the inputs doubtful or was taken for granted: sentences that
   // name the file.
   std::vector<std::string> warnings;
+  // The look before, which copies share; null where nobody looked.
+  std::shared_ptr<const ObjectLook> look;
 
   // Unknown reflectance: the trained model, which copies of the problem share;
   // known: null, and its grid.

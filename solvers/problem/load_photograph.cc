@@ -86,6 +86,23 @@ StatusOr<ResponseCurve> CurveOf(const ImageSpec& spec, const Photo& photo,
   return ResponseCurve(curve);
 }
 
+// "srgb (gAMA 0.45455)": the curve and who says so.
+std::string CurveInWords(const ImageSpec& spec, const Photo& photo,
+                         const ResponseCurve& curve) {
+  std::string source = "assumed of 8 bits";
+  if (spec.response >= ResponseChoice::kUnknown) {
+    return "to be found; " + NameOf(curve.kind()) + " until then";
+  }
+  if (spec.response != ResponseChoice::kAuto) {
+    source = "image.response";
+  } else if (photo.bits == 0) {
+    source = "the file holds floats";
+  } else if (!photo.curve.source.empty()) {
+    source = photo.curve.source;
+  }
+  return NameOf(curve.kind()) + " (" + source + ")";
+}
+
 StatusOr<CodeLevels> LevelsOf(const ImageSpec& spec, const Photo& photo) {
   CodeLevels levels = CodeLevels::OfBits(photo.bits);
   levels.black = spec.black.value_or(levels.black);
@@ -230,6 +247,8 @@ StatusOr<Photograph> LoadPhotograph(const ImageSpec& spec) {
   const StatusOr<ResponseCurve> curve =
       CurveOf(spec, *photo, &photograph.warnings);
   if (!curve.ok()) return curve.status();
+  photograph.codes = photo->bits > 0;
+  photograph.curve = CurveInWords(spec, *photo, *curve);
   photograph.radiance = std::move(photo->image);
   IBRDF_RETURN_IF_ERROR(Linearise(spec, *curve, *photo, &photograph));
   if (!spec.mask.empty()) {
@@ -237,8 +256,12 @@ StatusOr<Photograph> LoadPhotograph(const ImageSpec& spec) {
     if (!mask.ok()) return mask.status();
     photograph.mask = *std::move(mask);
   }
+  const size_t of_mask_file = photograph.mask.CountInside();
   Restrict(photo->has_data, &photograph.mask);
   Restrict(photo->opaque, &photograph.mask);
+  if (!spec.mask.empty()) {
+    photograph.missing = of_mask_file - photograph.mask.CountInside();
+  }
   if (photo->bits > 0) {
     WarnOfClipped(spec.file, photograph, &photograph.warnings);
   } else if (curve->kind() == ResponseKind::kLinear) {

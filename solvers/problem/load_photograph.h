@@ -24,6 +24,10 @@ struct Photograph {
   // first family's curve at its mean.
   std::optional<UnknownCurve> unknown_curve;
   Mask mask;  // of the object; empty: all pixels
+  bool codes = false;  // the file holds whole numbers
+  std::string curve;   // the response curve and who says so, in words
+  // Pixels of the mask's file that the image lacks or hides.
+  size_t missing = 0;
   // What was taken for granted or left out: sentences for the user.
   std::vector<std::string> warnings;
 };

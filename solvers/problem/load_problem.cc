@@ -7,10 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "ibrdf/base/format.h"
-#include "ibrdf/io/problem_file.h"
 #include "ibrdf/light/environment_map.h"
-#include "ibrdf/solvers/problem/load_photograph.h"
 #include "ibrdf/solvers/problem/load_scene.h"
 #include "ibrdf/solvers/problem/open_model.h"
 #include "ibrdf/solvers/problem/quadrature_level.h"
@@ -25,77 +22,6 @@ constexpr int kMostKnownWidth = 256;
 // Blocks of texels that a transport takes of a map; the rest of its sources are
 // patches and bright samples.
 constexpr int kMostFarCells = 3 * kMaxFarSources / 4;
-
-// Below this share of the mask's pixels that see the object there is nothing to
-// estimate from; below this overlap (intersection over union) of mask and
-// object it is worth a word. The same silhouette drawn by two programs overlaps
-// by 0.95 and more.
-constexpr double kLeastCovered = 0.05;
-constexpr double kUsualOverlap = 0.92;
-
-struct ObjectPoints {
-  Scene scene = Scene::UnitSphere();
-  std::vector<ShadingPoint> points;  // at pixels' centres
-};
-
-// Follows "geometry".
-std::string FitAdvice(const Problem& problem) {
-  const bool moved = problem.geometry.kind == GeometryKind::kMesh &&
-                     problem.geometry.fit == MeshFit::kUnitSphere;
-  return moved ? ".fit: unit_sphere moved and scaled the mesh, not the camera"
-               : "";
-}
-
-// Holds the object's silhouette against the mask, of whose pixels `covered` see
-// the object.
-Status CheckSilhouette(const Problem& problem, const Photograph& observed,
-                       const Scene& scene, size_t covered, int num_threads,
-                       std::vector<std::string>* warnings) {
-  if (problem.image.mask.empty()) return OkStatus();
-  Mask beside = observed.mask;
-  for (uint8_t& inside : beside.inside) inside = inside == 0 ? 1 : 0;
-  const size_t of_mask = beside.inside.size() -
-                         static_cast<size_t>(std::count(
-                             beside.inside.begin(), beside.inside.end(), 1));
-  // Fails where there are none: the sizes fitted before.
-  const StatusOr<std::vector<ShadingPoint>> outside =
-      FindShadingPoints(scene, problem.camera, observed.radiance.width,
-                        observed.radiance.height, beside, 1, num_threads);
-  const auto both = static_cast<double>(covered);
-  const double overlap =
-      both /
-      static_cast<double>(of_mask + (outside.ok() ? outside->size() : 0));
-  if (overlap >= kUsualOverlap) return OkStatus();
-  const std::string text =
-      "the object covers " + std::to_string(covered) + " of the mask's " +
-      std::to_string(of_mask) + " pixels (overlap " + Format("%.2f", overlap) +
-      "): check the camera, its field of view and up axis, and geometry" +
-      FitAdvice(problem);
-  if (both < kLeastCovered * static_cast<double>(of_mask)) {
-    return InvalidInput(problem.image.mask, text);
-  }
-  warnings->push_back(problem.image.mask + ": " + text);
-  return OkStatus();
-}
-
-StatusOr<ObjectPoints> FindObjectPoints(const Problem& problem,
-                                        const Photograph& observed,
-                                        int num_threads,
-                                        std::vector<std::string>* warnings) {
-  const StatusOr<Scene> scene = LoadScene(problem.geometry, warnings);
-  if (!scene.ok()) return scene.status();
-  StatusOr<std::vector<ShadingPoint>> points = FindShadingPoints(
-      *scene, problem.camera, observed.radiance.width, observed.radiance.height,
-      observed.mask, 1, num_threads);
-  if (!points.ok()) {
-    return InvalidInput(problem.path, points.status().message() +
-                                          "; check the camera and geometry" +
-                                          FitAdvice(problem));
-  }
-  IBRDF_RETURN_IF_ERROR(CheckSilhouette(problem, observed, *scene,
-                                        points->size(), num_threads, warnings));
-  return ObjectPoints{*scene, *std::move(points)};
-}
 
 // Sets the model, or the grid of a known reflectance.
 Status LoadReflectance(const ReflectanceSpec& reflectance,
@@ -227,26 +153,32 @@ InverseProblem SettingsOf(const Problem& problem, uint64_t default_seed,
 }  // namespace
 
 StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
+                                            PhotographedObject object,
                                             uint64_t default_seed,
                                             int num_threads) {
-  IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
   InverseProblem inverse = SettingsOf(problem, default_seed, num_threads);
   IBRDF_RETURN_IF_ERROR(
       CheckMapSize(problem, inverse.transport.quadrature.far_width));
-  StatusOr<Photograph> observed = LoadPhotograph(problem.image);
-  if (!observed.ok()) return observed.status();
-  inverse.warnings = std::move(observed->warnings);
-  StatusOr<ObjectPoints> object =
-      FindObjectPoints(problem, *observed, num_threads, &inverse.warnings);
-  if (!object.ok()) return object.status();
-  inverse.image = std::move(observed->radiance);
-  inverse.bounds = std::move(observed->bounds);
-  inverse.unknown_curve = std::move(observed->unknown_curve);
-  inverse.points = std::move(object->points);
+  inverse.warnings = std::move(object.warnings);
+  inverse.image = std::move(object.radiance);
+  inverse.bounds = std::move(object.bounds);
+  inverse.unknown_curve = std::move(object.unknown_curve);
+  inverse.points = std::move(object.points);
+  inverse.look = std::move(object.look);
   IBRDF_RETURN_IF_ERROR(LoadReflectance(problem.reflectance, &inverse));
   IBRDF_RETURN_IF_ERROR(LoadIllumination(problem, &inverse));
-  IBRDF_RETURN_IF_ERROR(PlanAndTraceEffects(problem, object->scene, &inverse));
+  IBRDF_RETURN_IF_ERROR(PlanAndTraceEffects(problem, object.scene, &inverse));
   return inverse;
+}
+
+StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
+                                            uint64_t default_seed,
+                                            int num_threads) {
+  StatusOr<PhotographedObject> object =
+      LoadPhotographedObject(problem, num_threads);
+  if (!object.ok()) return object.status();
+  return LoadInverseProblem(problem, *std::move(object), default_seed,
+                            num_threads);
 }
 
 }  // namespace ibrdf

@@ -110,6 +110,42 @@ void Picture::Sphere(const Image& image, double x, double y, int diameter,
   }
 }
 
+void Picture::Photo(const Image& image, double x, double y, int width,
+                    int height) {
+  CHECK(!image.empty() && width > 0 && height > 0);
+  const cv::Mat whole(image.height, image.width, CV_32FC3,
+                      const_cast<float*>(image.rgb.data()));
+  cv::Mat resized;
+  cv::resize(whole, resized, {width, height}, 0, 0,
+             width < image.width ? cv::INTER_AREA : cv::INTER_NEAREST);
+  const int left = static_cast<int>(std::lround(x));
+  const int top = static_cast<int>(std::lround(y));
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      if (left + u < 0 || top + v < 0 || left + u >= canvas_->pixels.cols ||
+          top + v >= canvas_->pixels.rows) {
+        continue;
+      }
+      for (int c = 0; c < 3; ++c) {
+        canvas_->pixels.at<cv::Vec3b>(top + v, left + u)[c] =
+            EncodeSrgb(resized.at<cv::Vec3f>(v, u)[c]);
+      }
+    }
+  }
+}
+
+void Picture::Frame(double x, double y, double width, double height,
+                    int thickness, const Ink& ink) {
+  for (int k = 0; k < thickness; ++k) {
+    const double left = x + k, top = y + k;
+    const double right = x + width - 1 - k, bottom = y + height - 1 - k;
+    Line(left, top, right, top, ink);
+    Line(right, top, right, bottom, ink);
+    Line(right, bottom, left, bottom, ink);
+    Line(left, bottom, left, top, ink);
+  }
+}
+
 Rgb8Image Picture::ToImage() const {
   const cv::Mat& pixels = canvas_->pixels;
   Rgb8Image image(pixels.cols, pixels.rows);

@@ -41,6 +41,14 @@ class Picture {
   void Sphere(const Image& image, double x, double y, int diameter,
               double exposure);
 
+  // Linear display colours in [0, 1], resized in linear light to a rectangle:
+  // by area where that is smaller, else in squares.
+  void Photo(const Image& image, double x, double y, int width, int height);
+
+  // A rectangle's outline, `thickness` pixels inwards.
+  void Frame(double x, double y, double width, double height, int thickness,
+             const Ink& ink);
+
   Rgb8Image ToImage() const;
 
  private:

@@ -9,8 +9,10 @@
 #include "ibrdf/io/problem_json.h"
 #include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/optim/conditioning.h"
+#include "ibrdf/solvers/report/check_json.h"
 #include "ibrdf/solvers/report/gauge_words.h"
 #include "ibrdf/solvers/report/lobe_summary.h"
+#include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
@@ -169,9 +171,11 @@ std::string Text(const Json& document) {
 std::string ResultJson(const SolvedProblem& solved) {
   const InverseProblem& inverse = solved.inverse;
   const Solution& solution = solved.solution;
+  const ObjectLook* const look = inverse.look.get();
   return Text({{"ibrdf_version", kVersion},
                {"status", StatusName(solution.status)},
                {"warnings", ResultWarnings(solved)},
+               {"check", look == nullptr ? Json() : CheckToJson(look->check)},
                {"problem", ProblemToJson(solved.problem)},
                {"effects", Describe(inverse.effects)},
                {"effects_plan", EffectsJson(inverse)},

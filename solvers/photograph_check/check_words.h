@@ -1,0 +1,24 @@
+// A check in words.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/solvers/photograph_check/photograph_check.h"
+
+namespace ibrdf {
+
+// A short block for a terminal, a line each, without line ends.
+std::vector<std::string> CheckLines(const PhotographCheck& check);
+
+// What makes the inputs doubtful: sentences that name the files.
+std::vector<std::string> CheckWarnings(const PhotographCheck& check,
+                                       const std::string& image_file,
+                                       const std::string& normals_file);
+
+// "as given", or "as given or x and y flipped, not told apart", or "y flipped".
+std::string NormalsVerdict(const PhotographCheck& check);
+
+// "one material may be", "several materials", or why it cannot be told.
+std::string ColourVerdict(const ColourSpread& colours);
+
+}  // namespace ibrdf

@@ -1,0 +1,93 @@
+#include "ibrdf/solvers/problem/load_object.h"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "ibrdf/io/problem_file.h"
+#include "ibrdf/solvers/photograph_check/check_words.h"
+#include "ibrdf/solvers/problem/load_photograph.h"
+#include "ibrdf/solvers/problem/load_scene.h"
+#include "ibrdf/solvers/problem/silhouette.h"
+
+namespace ibrdf {
+namespace {
+
+// As ObjectLook's.
+Image KnownRadiance(const Photograph& observed) {
+  Image known = observed.radiance;
+  if (!observed.bounds) return known;
+  for (size_t k = 0; k < known.rgb.size(); ++k) {
+    if (std::isinf(observed.bounds->high.rgb[k])) {
+      known.rgb[k] = std::numeric_limits<float>::quiet_NaN();
+    } else if (observed.bounds->low.rgb[k] == 0.0f) {
+      known.rgb[k] = 0.0f;
+    }
+  }
+  return known;
+}
+
+std::shared_ptr<const ObjectLook> Look(const Problem& problem,
+                                       const Photograph& observed,
+                                       const PhotographedObject& object,
+                                       Silhouette silhouette) {
+  ObjectLook look;
+  look.radiance = KnownRadiance(observed);
+  const LookInput input{look.radiance,
+                        observed.mask,
+                        object.points,
+                        object.scene.normal_map(),
+                        observed.codes,
+                        observed.curve,
+                        problem.image.exposure,
+                        observed.missing,
+                        problem.image.mask.empty()
+                            ? std::nullopt
+                            : std::optional<double>(silhouette.overlap)};
+  look.check = CheckPhotograph(input);
+  look.mask = observed.mask;
+  look.silhouette = std::move(silhouette.object);
+  look.normal_map = object.scene.normal_map();
+  return std::make_shared<const ObjectLook>(std::move(look));
+}
+
+}  // namespace
+
+StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
+                                                    int num_threads) {
+  IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
+  StatusOr<Photograph> observed = LoadPhotograph(problem.image);
+  if (!observed.ok()) return observed.status();
+  PhotographedObject object;
+  object.warnings = std::move(observed->warnings);
+  StatusOr<Scene> scene = LoadScene(problem.geometry, &object.warnings);
+  if (!scene.ok()) return scene.status();
+  object.scene = *std::move(scene);
+  const int width = observed->radiance.width;
+  const int height = observed->radiance.height;
+  StatusOr<std::vector<ShadingPoint>> points =
+      FindShadingPoints(object.scene, problem.camera, width, height,
+                        observed->mask, 1, num_threads);
+  if (!points.ok()) {
+    return InvalidInput(problem.path, points.status().message() +
+                                          "; check the camera and geometry" +
+                                          FitAdvice(problem));
+  }
+  object.points = *std::move(points);
+  Silhouette silhouette =
+      FindSilhouette(object.scene, problem.camera, width, height,
+                     observed->mask, object.points, num_threads);
+  IBRDF_RETURN_IF_ERROR(CheckSilhouette(problem, silhouette, &object.warnings));
+  object.look = Look(problem, *observed, object, std::move(silhouette));
+  for (std::string& warning : CheckWarnings(
+           object.look->check, problem.image.file, problem.geometry.file)) {
+    object.warnings.push_back(std::move(warning));
+  }
+  object.radiance = std::move(observed->radiance);
+  object.bounds = std::move(observed->bounds);
+  object.unknown_curve = std::move(observed->unknown_curve);
+  return object;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,118 @@
+#include "ibrdf/solvers/problem/load_object.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "ibrdf/image/rgb8_image.h"
+#include "ibrdf/io/exr.h"
+#include "ibrdf/io/png.h"
+#include "ibrdf/io/problem_file.h"
+#include "ibrdf/solvers/problem/load_problem.h"
+#include "tests/support/temp_dir.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr int kSize = 48;
+
+// Normals of the unit sphere, `up` 1 or -1 times their y.
+Image Normals(float up) {
+  Image normals(kSize, kSize);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const float u = 2.2f * (x + 0.5f) / kSize - 1.1f;
+      const float v = 1.1f - 2.2f * (y + 0.5f) / kSize;
+      const float rest = 1.0f - u * u - v * v;
+      if (rest <= 0.0f) continue;
+      normals.At(x, y)[0] = u;
+      normals.At(x, y)[1] = up * v;
+      normals.At(x, y)[2] = std::sqrt(rest);
+    }
+  }
+  return normals;
+}
+
+class LoadObjectTest : public ::testing::Test {
+ protected:
+  Problem Parse(const std::string& image_keys) const {
+    const StatusOr<Problem> problem =
+        ParseProblem(dir_.File("p.yaml"),
+                     "problem: illumination\nimage: {file: " + image_keys +
+                         "}\ngeometry: {normals: n.exr}\n"
+                         "reflectance: {known: {lambertian: 0.5}}\n",
+                     {});
+    EXPECT_TRUE(problem.ok()) << problem.status().message();
+    return *problem;
+  }
+
+  const TempDir dir_;
+};
+
+TEST_F(LoadObjectTest, CountsWhatAFileOfFloatsHolds) {
+  EXPECT_TRUE(WriteExr(Normals(1.0f), dir_.File("n.exr")).ok());
+  Image image(kSize, kSize);
+  for (size_t k = 0; k < image.rgb.size(); ++k) {
+    image.rgb[k] = 0.5f + 1e-3f * static_cast<float>(k % 497);
+  }
+  const int middle = kSize / 2;
+  image.At(middle, middle)[0] = 0.0f;
+  image.At(middle + 1, middle)[1] = -1.0f;
+  image.At(middle + 2, middle)[2] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(WriteExr(image, dir_.File("i.exr")).ok());
+  const StatusOr<PhotographedObject> object =
+      LoadPhotographedObject(Parse("i.exr"), 1);
+  ASSERT_TRUE(object.ok()) << object.status().message();
+  const PhotographCheck& check = object->look->check;
+  EXPECT_EQ(object->points.size(), check.counts.object);
+  EXPECT_EQ(check.counts.object - 3, check.counts.used);
+  EXPECT_EQ(1u, check.counts.zero);
+  EXPECT_EQ(1u, check.counts.negative);
+  EXPECT_EQ(1u, check.counts.not_finite);
+  EXPECT_EQ("linear (the file holds floats)", check.curve);
+  EXPECT_FALSE(check.overlap.has_value());
+  EXPECT_TRUE(object->look->mask.empty());
+  EXPECT_EQ(object->points.size(), object->look->silhouette.CountInside());
+}
+
+TEST_F(LoadObjectTest, CountsClippedCodesAndSaysWhichCurve) {
+  EXPECT_TRUE(WriteExr(Normals(1.0f), dir_.File("n.exr")).ok());
+  Rgb8Image image(kSize, kSize);
+  for (uint8_t& v : image.rgb) v = 120;
+  image.At(kSize / 2, kSize / 2)[1] = 255;
+  EXPECT_TRUE(WritePng(image, dir_.File("i.png")).ok());
+  Rgb8Image mask(kSize, kSize);
+  for (uint8_t& v : mask.rgb) v = 255;
+  EXPECT_TRUE(WritePng(mask, dir_.File("m.png")).ok());
+  const StatusOr<PhotographedObject> object = LoadPhotographedObject(
+      Parse("i.png, mask: m.png, response: srgb, exposure: 2"), 1);
+  ASSERT_TRUE(object.ok()) << object.status().message();
+  const PhotographCheck& check = object->look->check;
+  EXPECT_EQ(1u, check.counts.clipped);
+  EXPECT_EQ("srgb (image.response)", check.curve);
+  EXPECT_EQ(2.0, check.exposure);
+  EXPECT_EQ(static_cast<size_t>(kSize * kSize), check.mask_pixels);
+  ASSERT_TRUE(check.overlap.has_value());
+  EXPECT_NEAR(static_cast<double>(check.counts.object) / (kSize * kSize),
+              *check.overlap, 1e-12);
+}
+
+TEST_F(LoadObjectTest, WarningsReachTheProblemOfTheSolve) {
+  EXPECT_TRUE(WriteExr(Normals(-1.0f), dir_.File("n.exr")).ok());
+  Image image(kSize, kSize);
+  for (size_t k = 0; k < image.rgb.size(); ++k) {
+    image.rgb[k] = 0.5f + 1e-3f * static_cast<float>(k % 497);
+  }
+  EXPECT_TRUE(WriteExr(image, dir_.File("i.exr")).ok());
+  const StatusOr<InverseProblem> inverse =
+      LoadInverseProblem(Parse("i.exr"), 1, 1);
+  ASSERT_TRUE(inverse.ok()) << inverse.status().message();
+  ASSERT_NE(nullptr, inverse->look);
+  ASSERT_EQ(1u, inverse->warnings.size());
+  EXPECT_NE(std::string::npos, inverse->warnings[0].find("\"y flipped\""));
+}
+
+}  // namespace
+}  // namespace ibrdf
