@@ -1,7 +1,11 @@
 #include "ibrdf/solvers/report/result_images.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "ibrdf/light/convert_map.h"
 
 namespace ibrdf {
 
@@ -27,6 +31,21 @@ Image LogResidual(const InverseProblem& inverse, const Solution& solution) {
     }
   }
   return residual;
+}
+
+Image MapForPicture(const Image& map) {
+  StatusOr<Image> out = FromLibraryFrame("map", map, MapFrame::kCamera);
+  CHECK(out.ok()) << out.status().message();
+  return *std::move(out);
+}
+
+std::string MiddleOfMapPicture(const Camera& camera) {
+  constexpr double kLeastCosine = 0.985;  // 10 degrees
+  const bool ahead =
+      camera.type == CameraType::kOrthographic ||
+      ((camera.from - camera.to).normalized().z() > kLeastCosine &&
+       camera.up.normalized().y() > kLeastCosine);
+  return ahead ? "what the camera looks at" : "-z";
 }
 
 }  // namespace ibrdf

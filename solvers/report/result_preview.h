@@ -16,11 +16,12 @@ namespace ibrdf {
 struct ResultPreviewInput {
   std::string title;  // printable ASCII
   Image input;
-  Mask mask;     // of the object, of the input's size; empty: all pixels
-  Image render;  // of the input's size
-  Image illumination;
+  Mask mask;           // of the object, of the input's size; empty: all pixels
+  Image render;        // of the input's size
+  Image illumination;  // in the library's frame
   bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;
+  std::string middle_of_map = "-z";  // of the pictures of maps, in words
   MerlTable brdf;
   MerlTable reference_brdf;
   std::vector<std::string> metrics;  // one line each, printable ASCII

@@ -16,6 +16,7 @@ using Ink = std::array<uint8_t, 3>;
 inline constexpr Ink kBlackInk = {25, 25, 25};
 inline constexpr Ink kGreyInk = {110, 110, 110};
 inline constexpr Ink kFaintInk = {200, 200, 200};
+inline constexpr Ink kGroundInk = {250, 250, 250};
 
 // Positions in pixels from the upper left corner; what lies outside is cut.
 class Picture {
@@ -40,6 +41,9 @@ class Picture {
   // of that diameter.
   void Sphere(const Image& image, double x, double y, int diameter,
               double exposure);
+
+  // Pixel by pixel; (left, top) is where its upper left corner goes.
+  void Place(const Rgb8Image& image, int left, int top);
 
   Rgb8Image ToImage() const;
 
