@@ -166,9 +166,12 @@ void ReadIllumination(ProblemReader reader, IlluminationSpec* illumination) {
   reader.Read("frame", &illumination->frame);
   reader.Read("output_frame", &illumination->output_frame);
   const ConfigNode* known = reader.Find("known");
-  reader.CheckNeeds("frame", known != nullptr && known->kind != Kind::kMap);
+  reader.CheckNeeds("frame", known != nullptr);
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {
+    if (reader.Has("frame")) {
+      reader.Fail("frame", "expected with the file of a known map only");
+    }
     illumination->sky.emplace();
     ReadSky(reader.Below("known"), &*illumination->sky);
   } else {

@@ -407,7 +407,7 @@ Keys IlluminationKeys() {
           "Which direction a texel of the known map stands for "
           "([frames](frames.md)).")
           .Choice("auto", AutoOrMapFrames())
-          .Needs("a file as illumination.known")
+          .Needs("illumination.known")
           .UsedBy(kKnownLight),
       Row("illumination.output_frame",
           "The frame of the maps that are written.")

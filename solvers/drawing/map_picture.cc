@@ -230,7 +230,8 @@ Rgb8Image DrawMapFrame(const Image& map, MapFrame frame) {
   const Rgb8Image axes = DrawMapAxes(map, frame, kMapSide);
   const Rgb8Image ball = DrawMirrorBall(map, frame, kBall);
   // The captions are as wide as the longest of them.
-  const std::string map_caption = "the map in its file";
+  const std::string map_caption =
+      "the map in its file; arrows point right (red) and up (blue)";
   const std::string ball_caption = "a mirror ball, as the camera sees it";
   const int map_width = std::max<int>(
       axes.width,

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Draws the pictures of docs/frames.md: one room in every frame of environment maps.
+
+    docs/draw_frames.py [--bin build/release/bin]
+
+The room is a cube seen from its middle: a blue wall ahead with a yellow lamp on the ceiling before it, a red door on the
+left, a white window on the right. The script writes it as a map in the frame camera; ibrdf_render writes that map in
+the other frames, and ibrdf_eval draws each.
+"""
+import argparse
+import math
+import pathlib
+import struct
+import subprocess
+import tempfile
+
+DOCS = pathlib.Path(__file__).resolve().parent
+FRAMES = ("camera", "openexr", "mitsuba", "blender", "polyhaven_y_up", "debevec_probe", "cube_cross", "ibrdf_0_1")
+HEIGHT = 256
+WALLS = {  # axis, sign: radiance
+    ("x", 1): (0.50, 0.42, 0.30), ("x", -1): (0.42, 0.50, 0.30), ("y", 1): (0.70, 0.70, 0.68),
+    ("y", -1): (0.25, 0.17, 0.10), ("z", 1): (0.35, 0.35, 0.35), ("z", -1): (0.20, 0.32, 0.60)}
+SCENE = """image: {width: 8, height: 8}
+geometry: {sphere: {}}
+reflectance: {known: {lambertian: 0.5}}
+illumination: {known: room.pfm, frame: camera}
+quality: preview
+"""
+
+
+def radiance(x, y, z):
+    """Of a direction in the room; the walls are at a distance of 1."""
+    axis, value = max((("x", x), ("y", y), ("z", z)), key=lambda a: abs(a[1]))
+    x, y, z = x / abs(value), y / abs(value), z / abs(value)
+    sign = 1 if value > 0 else -1
+    if (axis, sign) == ("x", 1) and abs(z) < 0.4 and -0.2 < y < 0.6:
+        return (1.0, 1.0, 1.0)
+    if (axis, sign) == ("x", -1) and abs(z) < 0.3 and y < 0.6:
+        return (0.65, 0.08, 0.06)
+    if (axis, sign) == ("y", 1) and abs(x) < 0.25 and -0.8 < z < -0.3:
+        return (1.0, 0.9, 0.3)
+    return WALLS[axis, sign]
+
+
+def write_room(path):
+    """As a PFM, whose first row is the lowest."""
+    width, rows = 2 * HEIGHT, []
+    for r in reversed(range(HEIGHT)):
+        theta = math.pi * (r + 0.5) / HEIGHT
+        for c in range(width):
+            phi = 2 * math.pi * (c + 0.5) / width - math.pi
+            s = math.sin(theta)
+            rows.append(struct.pack("<3f", *radiance(s * math.sin(phi), math.cos(theta), -s * math.cos(phi))))
+    path.write_bytes(f"PF\n{width} {HEIGHT}\n-1.0\n".encode() + b"".join(rows))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bin", type=pathlib.Path, default=DOCS.parent / "build/release/bin",
+                        help="folder of the programs; default: build/release/bin")
+    args = parser.parse_args()
+    (DOCS / "frames").mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        write_room(folder / "room.pfm")
+        (folder / "room.yaml").write_text(SCENE)
+        for frame in FRAMES:
+            subprocess.run([args.bin / "ibrdf_render", "--scene", folder / "room.yaml", "--out", folder / "ball.exr",
+                            "--illumination-out", folder / "map.exr", "--quiet", "--set",
+                            f"illumination.output_frame={frame}"], check=True)
+            subprocess.run([args.bin / "ibrdf_eval", "frame", folder / "map.exr", DOCS / "frames" / f"{frame}.png"],
+                           check=True)
+
+
+if __name__ == "__main__":
+    main()
