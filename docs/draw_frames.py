@@ -4,7 +4,7 @@
     docs/draw_frames.py [--bin build/release/bin]
 
 The room is a cube seen from its middle: a blue wall ahead with a yellow lamp on the ceiling before it, a red door on the
-left, a white window on the right. The script writes it as a map in the frame camera; ibrdf_render writes that map in
+left, a white window on the right, a violet wall behind. The script writes it as a map in the frame camera; ibrdf_render writes that map in
 the other frames, and ibrdf_eval draws each.
 """
 import argparse
@@ -13,13 +13,14 @@ import pathlib
 import struct
 import subprocess
 import tempfile
+import zlib
 
 DOCS = pathlib.Path(__file__).resolve().parent
 FRAMES = ("camera", "openexr", "mitsuba", "blender", "polyhaven_y_up", "debevec_probe", "cube_cross", "ibrdf_0_1")
-HEIGHT = 256
+HEIGHT = 160
 WALLS = {  # axis, sign: radiance
     ("x", 1): (0.50, 0.42, 0.30), ("x", -1): (0.42, 0.50, 0.30), ("y", 1): (0.70, 0.70, 0.68),
-    ("y", -1): (0.25, 0.17, 0.10), ("z", 1): (0.35, 0.35, 0.35), ("z", -1): (0.20, 0.32, 0.60)}
+    ("y", -1): (0.25, 0.17, 0.10), ("z", 1): (0.45, 0.25, 0.45), ("z", -1): (0.20, 0.32, 0.60)}
 SCENE = """image: {width: 8, height: 8}
 geometry: {sphere: {}}
 reflectance: {known: {lambertian: 0.5}}
@@ -54,6 +55,41 @@ def write_room(path):
     path.write_bytes(f"PF\n{width} {HEIGHT}\n-1.0\n".encode() + b"".join(rows))
 
 
+def read_png(path):
+    """Width and rows of an 8-bit RGB file, as bytearrays."""
+    data, at, packed = path.read_bytes(), 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        chunk = data[at + 8:at + 8 + length]
+        if kind == b"IHDR":
+            width, height = struct.unpack(">II", chunk[:8])
+        elif kind == b"IDAT":
+            packed += chunk
+        at += 12 + length
+    raw, stride, rows = zlib.decompress(packed), 3 * width + 1, []
+    above = bytearray(stride - 1)
+    for y in range(height):
+        row = bytearray(raw[y * stride + 1:(y + 1) * stride])
+        for x in range(len(row)):
+            a, b, c = (row[x - 3], above[x], above[x - 3]) if x >= 3 else (0, above[x], 0)
+            paeth = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+            row[x] = row[x] + (0, a, b, (a + b) // 2, paeth)[raw[y * stride]] & 255
+        rows.append(row)
+        above = row
+    return width, rows
+
+
+def shrink(path):
+    """Rounds colours to multiples of 8 and leaves out the filters, which do not pay for flat colours and text."""
+    width, rows = read_png(path)
+    raw = b"".join(b"\0" + bytes(min(255, (v + 4) // 8 * 8) for v in row) for row in rows)
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, len(rows), 8, 2, 0, 0, 0)) +
+                     chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", type=pathlib.Path, default=DOCS.parent / "build/release/bin",
@@ -70,6 +106,7 @@ def main():
                             f"illumination.output_frame={frame}"], check=True)
             subprocess.run([args.bin / "ibrdf_eval", "frame", folder / "map.exr", DOCS / "frames" / f"{frame}.png"],
                            check=True)
+            shrink(DOCS / "frames" / f"{frame}.png")
 
 
 if __name__ == "__main__":

@@ -226,7 +226,7 @@ Rgb8Image DrawMirrorBall(const Image& map, MapFrame frame, int diameter) {
 }
 
 Rgb8Image DrawMapFrame(const Image& map, MapFrame frame) {
-  constexpr int kMapSide = 400, kBall = 160, kMargin = 12, kTop = 46;
+  constexpr int kMapSide = 320, kBall = 140, kMargin = 12, kTop = 46;
   const Rgb8Image axes = DrawMapAxes(map, frame, kMapSide);
   const Rgb8Image ball = DrawMirrorBall(map, frame, kBall);
   // The captions are as wide as the longest of them.
