@@ -18,9 +18,10 @@ import zlib
 DOCS = pathlib.Path(__file__).resolve().parent
 FRAMES = ("camera", "openexr", "mitsuba", "blender", "polyhaven_y_up", "debevec_probe", "cube_cross", "ibrdf_0_1")
 HEIGHT = 160
-WALLS = {  # axis, sign: radiance
-    ("x", 1): (0.50, 0.42, 0.30), ("x", -1): (0.42, 0.50, 0.30), ("y", 1): (0.70, 0.70, 0.68),
-    ("y", -1): (0.25, 0.17, 0.10), ("z", 1): (0.45, 0.25, 0.45), ("z", -1): (0.20, 0.32, 0.60)}
+WALLS = {  # axis, sign: sRGB bytes
+    ("x", 1): (184, 168, 144), ("x", -1): (168, 184, 144), ("y", 1): (216, 216, 212), ("y", -1): (136, 112, 88),
+    ("z", 1): (176, 136, 176), ("z", -1): (120, 152, 200)}
+WINDOW, DOOR, LAMP = (255, 255, 255), (208, 80, 68), (255, 240, 144)
 SCENE = """image: {width: 8, height: 8}
 geometry: {sphere: {}}
 reflectance: {known: {lambertian: 0.5}}
@@ -29,18 +30,24 @@ quality: preview
 """
 
 
-def radiance(x, y, z):
+def colour(x, y, z):
     """Of a direction in the room; the walls are at a distance of 1."""
     axis, value = max((("x", x), ("y", y), ("z", z)), key=lambda a: abs(a[1]))
     x, y, z = x / abs(value), y / abs(value), z / abs(value)
     sign = 1 if value > 0 else -1
     if (axis, sign) == ("x", 1) and abs(z) < 0.4 and -0.2 < y < 0.6:
-        return (1.0, 1.0, 1.0)
+        return WINDOW
     if (axis, sign) == ("x", -1) and abs(z) < 0.3 and y < 0.6:
-        return (0.65, 0.08, 0.06)
+        return DOOR
     if (axis, sign) == ("y", 1) and abs(x) < 0.25 and -0.8 < z < -0.3:
-        return (1.0, 0.9, 0.3)
+        return LAMP
     return WALLS[axis, sign]
+
+
+def radiance(*direction):
+    """Linear, white is 1."""
+    return [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4
+            for v in (c / 255 for c in colour(*direction))]
 
 
 def write_room(path):
