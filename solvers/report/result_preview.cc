@@ -118,7 +118,7 @@ Row MapPanels(const ResultPreviewInput& input) {
                   MapForPicture(input.illumination), Mask(), scale * exposure,
                   kind),
           Picture("Reference illumination (" + White(exposure) +
-                      ", its 97th percentile)",
+                      ", its 97th percentile), " + seen,
                   MapForPicture(reference), Mask(), exposure, kind)};
 }
 
