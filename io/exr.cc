@@ -3,12 +3,15 @@
 #include <ImathBox.h>
 #include <ImfChannelList.h>
 #include <ImfCompression.h>
+#include <ImfEnvmap.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 
 #include <algorithm>
 #include <array>
@@ -149,12 +152,25 @@ StatusOr<Image> Decode(const std::string& path, const std::string& bytes,
   return image;
 }
 
+void AddAttributes(const ExrMapAttributes& attributes, Imf::Header* header) {
+  if (attributes.envmap.has_value()) {
+    Imf::addEnvmap(*header, *attributes.envmap == ExrEnvmap::kCube
+                                ? Imf::ENVMAP_CUBE
+                                : Imf::ENVMAP_LATLONG);
+  }
+  if (!attributes.map_frame.empty()) {
+    header->insert(kMapFrameAttribute,
+                   Imf::StringAttribute(attributes.map_frame));
+  }
+}
+
 std::string Encode(const Image& image, const std::string& path,
-                   ExrPixelType type) {
+                   ExrPixelType type, const ExrMapAttributes& attributes) {
   const bool half_floats = type == ExrPixelType::kHalf;
   const Imf::PixelType pixel_type = half_floats ? Imf::HALF : Imf::FLOAT;
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
+  AddAttributes(attributes, &header);
   std::vector<half> halves;
   if (half_floats) {
     halves.reserve(image.rgb.size());
@@ -204,13 +220,13 @@ StatusOr<Image> DecodeExr(const std::string& path, const std::string& bytes,
   }
 }
 
-Status WriteExr(const Image& image, const std::string& path,
-                ExrPixelType type) {
+Status WriteExr(const Image& image, const std::string& path, ExrPixelType type,
+                const ExrMapAttributes& attributes) {
   IBRDF_RETURN_IF_ERROR(
       CheckWritable(path, image.width, image.height, image.rgb.size()));
   std::string bytes;
   try {
-    bytes = Encode(image, path, type);
+    bytes = Encode(image, path, type, attributes);
   } catch (const std::exception& e) {
     return Status(StatusCode::kInternal,
                   path + ": cannot encode (" + std::string(e.what()) + ")");

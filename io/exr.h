@@ -1,10 +1,12 @@
 // OpenEXR images.
 #pragma once
+#include <optional>
 #include <string>
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/io/image_limits.h"
+#include "ibrdf/io/photo.h"
 
 namespace ibrdf {
 
@@ -27,8 +29,15 @@ enum class ExrPixelType {
   kHalf,   // 11 bits of precision; finite values are clamped to +-65504
 };
 
+// Attributes of an environment map; empty: not written.
+struct ExrMapAttributes {
+  std::optional<ExrEnvmap> envmap;
+  std::string map_frame;  // ibrdf:frame
+};
+
 // Scanlines, channels R, G, B, ZIP compression. Whole or absent.
 Status WriteExr(const Image& image, const std::string& path,
-                ExrPixelType type = ExrPixelType::kFloat);
+                ExrPixelType type = ExrPixelType::kFloat,
+                const ExrMapAttributes& attributes = {});
 
 }  // namespace ibrdf

@@ -164,21 +164,21 @@ void ReadValues(const char* data, size_t count, std::vector<float>* values) {
   }
 }
 
-struct NpyType {
+struct ArrayType {
   const char* name;
   size_t bytes;
   int bits;  // of codes; 0: floats
   void (*read)(const char*, size_t, std::vector<float>*);
 };
 
-constexpr NpyType kTypes[] = {{"|u1", 1, 8, ReadValues<uint8_t>},
-                              {"<u1", 1, 8, ReadValues<uint8_t>},
-                              {"<u2", 2, 16, ReadValues<uint16_t>},
-                              {"<f4", 4, 0, ReadValues<float>},
-                              {"<f8", 8, 0, ReadValues<double>}};
+constexpr ArrayType kTypes[] = {{"|u1", 1, 8, ReadValues<uint8_t>},
+                                {"<u1", 1, 8, ReadValues<uint8_t>},
+                                {"<u2", 2, 16, ReadValues<uint16_t>},
+                                {"<f4", 4, 0, ReadValues<float>},
+                                {"<f8", 8, 0, ReadValues<double>}};
 
-StatusOr<NpyType> FindType(const std::string& path, const std::string& name) {
-  for (const NpyType& type : kTypes) {
+StatusOr<ArrayType> FindType(const std::string& path, const std::string& name) {
+  for (const ArrayType& type : kTypes) {
     if (name == type.name) return type;
   }
   return InvalidInput(
@@ -208,7 +208,7 @@ StatusOr<Photo> DecodeNpy(const std::string& path, const std::string& bytes,
                           const ImageLimits& limits) {
   const StatusOr<NpyHeader> header = ReadNpyHeader(path, bytes);
   if (!header.ok()) return header.status();
-  const StatusOr<NpyType> type = FindType(path, header->type);
+  const StatusOr<ArrayType> type = FindType(path, header->type);
   if (!type.ok()) return type.status();
   IBRDF_RETURN_IF_ERROR(CheckShape(path, *header, limits));
   const bool grey = header->shape.size() == 2;

@@ -67,6 +67,12 @@ struct ColourTags {
   bool png_other_primaries = false;      // cHRM is not Rec. 709
 };
 
+// OpenEXR's attribute `envmap`.
+enum class ExrEnvmap { kLatLong, kCube };
+
+// The name of OpenEXR's text attribute by which our files say their frame.
+inline constexpr char kMapFrameAttribute[] = "ibrdf:frame";
+
 struct Photo {
   PhotoFormat format = PhotoFormat::kPng;
   // Codes as they stand in the file, 0 to 2^bits - 1, or floats; upright, row 0
@@ -91,6 +97,10 @@ struct Photo {
   int orientation = 1;              // of EXIF, 1 to 8; it has been undone
   std::string layer;                // of OpenEXR: the one read; may be empty
   std::vector<std::string> layers;  // of OpenEXR: all that may be asked for
+  // Of OpenEXR, as environment maps have them: the standard attribute `envmap`,
+  // and the text of the attribute `ibrdf:frame`; empty where there is none.
+  std::optional<ExrEnvmap> envmap;
+  std::string map_frame;
   // From EXIF, where it says them.
   std::optional<double> exposure_seconds, f_number, iso;
   // What was done to the picture or left undone: sentences for the user.

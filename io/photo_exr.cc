@@ -4,11 +4,13 @@
 #include <ImfChannelList.h>
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfCompression.h>
+#include <ImfEnvmap.h>
 #include <ImfFrameBuffer.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 #include <ImfTileDescription.h>
 
@@ -283,6 +285,27 @@ Status PlaceInDisplay(const std::string& path, const Imf::Header& header,
   return OkStatus();
 }
 
+// What the header says of an environment map's frame.
+void ReadMapAttributes(const Imf::Header& header, Photo* photo) {
+  if (Imf::hasEnvmap(header)) {
+    switch (Imf::envmap(header)) {
+      case Imf::ENVMAP_LATLONG:
+        photo->envmap = ExrEnvmap::kLatLong;
+        break;
+      case Imf::ENVMAP_CUBE:
+        photo->envmap = ExrEnvmap::kCube;
+        break;
+      default:
+        photo->notes.emplace_back(
+            "The attribute envmap is neither latlong nor cube; it was "
+            "ignored.");
+    }
+  }
+  const auto* frame =
+      header.findTypedAttribute<Imf::StringAttribute>(kMapFrameAttribute);
+  if (frame != nullptr) photo->map_frame = Printable(frame->value());
+}
+
 PrimaryColours FilePrimaries(const Imf::Header& header) {
   PrimaryColours primaries;
   if (!Imf::hasChromaticities(header)) return primaries;
@@ -416,6 +439,7 @@ StatusOr<Photo> DecodeOrThrow(const std::string& path, const std::string& bytes,
   const float aspect = header.pixelAspectRatio();
   photo.pixel_aspect = std::isfinite(aspect) && aspect > 0.0f ? aspect : 1.0;
   photo.grey = picture.kind == ExrChannels::kGrey;
+  ReadMapAttributes(header, &photo);
   if (!picture.alpha.empty()) {
     const Imf::Channel& alpha = header.channels()[picture.alpha.c_str()];
     if (alpha.xSampling != 1 || alpha.ySampling != 1) picture.alpha.clear();

@@ -8,6 +8,7 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/geometry/camera.h"
 #include "ibrdf/image/response_curve.h"
+#include "ibrdf/light/map_frame.h"
 #include "ibrdf/light/procedural_sky.h"
 
 namespace ibrdf {
@@ -97,8 +98,11 @@ struct IlluminationSpec {
   IlluminationPrior prior = IlluminationPrior::kProcess;
   int unet_channels = 32;  // of the network's feature maps, [1, 128]
   // Known illumination: at most one is set.
-  std::string known_file;  // .exr or .hdr
+  std::string known_file;  // floats of any format of photo_file.h
   std::optional<SkyOptions> sky;
+  // Of the file. Unset: what the file says, else camera (io/map_file.h).
+  std::optional<MapFrame> frame;
+  MapFrame output_frame = MapFrame::kCamera;  // of the maps that are written
 
   bool known() const { return !known_file.empty() || sky.has_value(); }
 };
@@ -178,8 +182,9 @@ struct SolverSpec {
 
 // Empty: not given.
 struct TruthSpec {
-  std::string brdf;          // MERL .binary
-  std::string illumination;  // .exr or .hdr
+  std::string brdf;               // MERL .binary
+  std::string illumination;       // as IlluminationSpec::known_file
+  std::optional<MapFrame> frame;  // of illumination; unset: as there
 };
 
 enum class RenderQuality { kPreview, kReference };

@@ -163,9 +163,15 @@ void ReadIllumination(ProblemReader reader, IlluminationSpec* illumination) {
   reader.Read("unet_channels", &illumination->unet_channels);
   reader.CheckNeeds("unet_channels",
                     illumination->prior == IlluminationPrior::kUNet);
+  reader.Read("frame", &illumination->frame);
+  reader.Read("output_frame", &illumination->output_frame);
   const ConfigNode* known = reader.Find("known");
+  reader.CheckNeeds("frame", known != nullptr);
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {
+    if (reader.Has("frame")) {
+      reader.Fail("frame", "expected with the file of a known map only");
+    }
     illumination->sky.emplace();
     ReadSky(reader.Below("known"), &*illumination->sky);
   } else {
@@ -251,6 +257,8 @@ void ReadSolver(ProblemReader reader, ProblemKind kind, SolverSpec* solver) {
 void ReadTruth(ProblemReader reader, TruthSpec* truth) {
   reader.Read("brdf", &truth->brdf);
   reader.Read("illumination", &truth->illumination);
+  reader.Read("frame", &truth->frame);
+  reader.CheckNeeds("frame", reader.Has("illumination"));
 }
 
 // What `auto` stands for.

@@ -84,14 +84,21 @@ json ReflectanceJson(const ReflectanceSpec& reflectance) {
           {"prior_sigma", reflectance.prior_sigma}};
 }
 
+std::string FrameJson(const std::optional<MapFrame>& frame) {
+  return frame.has_value() ? MapFrameName(*frame) : "auto";
+}
+
 json IlluminationJson(const IlluminationSpec& illumination, bool rendered) {
+  const bool file = !illumination.known_file.empty();
+  json out = {{"output_frame", MapFrameName(illumination.output_frame)}};
   // A render takes the file's map as it is, an estimate may resample it.
-  if (!illumination.known_file.empty() && (rendered || !illumination.sized)) {
-    return {{"known", illumination.known_file}};
+  if (!file || (!rendered && illumination.sized)) {
+    out["width"] = illumination.width;
+    out["height"] = illumination.height;
   }
-  json out = {{"width", illumination.width}, {"height", illumination.height}};
-  if (!illumination.known_file.empty()) {
+  if (file) {
     out["known"] = illumination.known_file;
+    out["frame"] = FrameJson(illumination.frame);
     return out;
   }
   if (illumination.sky.has_value()) {
@@ -180,6 +187,7 @@ nlohmann::json ProblemToJson(const Problem& problem) {
   if (!problem.truth.brdf.empty()) truth["brdf"] = problem.truth.brdf;
   if (!problem.truth.illumination.empty()) {
     truth["illumination"] = problem.truth.illumination;
+    truth["frame"] = FrameJson(problem.truth.frame);
   }
   if (!truth.empty()) out["truth"] = truth;
   return out;

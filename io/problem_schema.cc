@@ -18,6 +18,8 @@ const Range kNotNegative{0.0, kInfinity, true, true};
 const Range kUnitInterval{0.0, 1.0, true, true};
 const Range kAnyNumber{};
 
+constexpr char kMapFiles[] = ".exr, .hdr, .pfm, .tif, .npy";
+
 // A map's far light and the solver's unknowns grow with these.
 constexpr int kMaxMapSide = 8192;
 constexpr int kMaxUnetChannels = 128;
@@ -121,6 +123,34 @@ class Row {
 
   ProblemKey key_;
 };
+
+// Of MapFrame, in its order.
+Words MapFrames() {
+  return {
+      {"camera",
+       "The middle is what the camera looks at (-z), and right in the map is "
+       "right in the picture."},
+      {"openexr",
+       "OpenEXR's `envmap`: the middle is +z, and the outer texels' centres "
+       "are the borders; or a cube as a column."},
+      {"mitsuba", "Mitsuba 3, and USD's dome light: the middle is +z."},
+      {"blender", "Blender's Environment Texture: the left quarter is -z."},
+      {"polyhaven_y_up",
+       "Maps of Poly Haven in three.js; the same as `blender`."},
+      {"debevec_probe", "The angular map of Debevec's probes, square."},
+      {"cube_cross", "A cube: a cross (3:4 or 4:3) or OpenEXR's column (1:6)."},
+      {"ibrdf_0_1",
+       "This project's until version 0.1: `camera` mirrored left to right."}};
+}
+
+Words AutoOrMapFrames() {
+  Words words = MapFrames();
+  words.insert(words.begin(),
+               {"auto",
+                "What an OpenEXR file says (`ibrdf:frame`, which results "
+                "carry, else `envmap`). Else `camera`."});
+  return words;
+}
 
 Keys KindKeys() {
   return {
@@ -375,9 +405,18 @@ Keys IlluminationKeys() {
           .UsedBy(kUnknownLight),
       Row("illumination.known",
           "The known illumination: an environment map, or `sky`.")
-          .PathOrMap(".exr, .hdr")
+          .PathOrMap(kMapFiles)
           .Without("needed")
-          .UsedBy(kKnownLight)};
+          .UsedBy(kKnownLight),
+      Row("illumination.frame",
+          "Which direction a texel of the known map stands for "
+          "([frames](frames.md)).")
+          .Choice("auto", AutoOrMapFrames())
+          .Needs("illumination.known")
+          .UsedBy(kKnownLight),
+      Row("illumination.output_frame",
+          "The frame of the maps that are written.")
+          .Choice("camera", MapFrames())};
 }
 
 Keys SkyKeys() {
@@ -390,7 +429,9 @@ Keys SkyKeys() {
           "Angle between the sun and the zenith (+y).")
           .Number({0.0, 90.0, true, true}, "40")
           .Unit("degrees"),
-      Row(sky + ".sun_phi_degrees", "Azimuth of the sun, from +z towards +x.")
+      Row(sky + ".sun_phi_degrees",
+          "Azimuth of the sun, from behind the camera (+z) "
+          "towards the right (+x).")
           .Number({-360.0, 360.0, true, true}, "60")
           .Unit("degrees"),
       Row(sky + ".sun_radius_degrees",
@@ -569,18 +610,23 @@ Keys SolverKeys() {
 }
 
 Keys TruthKeys() {
-  return {Row("truth",
-              "The truth, where it is known. The results then have metrics "
-              "against it.")
-              .UsedBy(kUsedBySolve),
-          Row("truth.brdf", "True BRDF, a MERL table.")
-              .Path(".binary")
-              .UsedBy(kUsedBySolve)
-              .Example("true_brdf.binary"),
-          Row("truth.illumination", "True environment map.")
-              .Path(".exr, .hdr")
-              .UsedBy(kUsedBySolve)
-              .Example("true_map.exr")};
+  return {
+      Row("truth",
+          "The truth, where it is known. The results then have metrics "
+          "against it.")
+          .UsedBy(kUsedBySolve),
+      Row("truth.brdf", "True BRDF, a MERL table.")
+          .Path(".binary")
+          .UsedBy(kUsedBySolve)
+          .Example("true_brdf.binary"),
+      Row("truth.illumination", "True environment map.")
+          .Path(kMapFiles)
+          .UsedBy(kUsedBySolve)
+          .Example("true_map.exr"),
+      Row("truth.frame", "The frame of the true map, as `illumination.frame`.")
+          .Choice("auto", AutoOrMapFrames())
+          .Needs("truth.illumination")
+          .UsedBy(kUsedBySolve)};
 }
 
 Keys RenderKeys() {

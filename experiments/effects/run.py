@@ -59,7 +59,7 @@ def render_all(args, mesh, material, light):
     """A row of the table."""
     shape, camera = SCENES[mesh]
     geometry = shape if shape.startswith("{") else f"{{mesh: {args.meshes / shape}, fit: unit_sphere}}"
-    known = LIGHTS[light] if LIGHTS[light].startswith("{") else args.maps / LIGHTS[light]
+    known = LIGHTS[light] if LIGHTS[light].startswith("{") else f"{args.maps / LIGHTS[light]}, frame: ibrdf_0_1"
     folder = args.out / f"{mesh}-{material}-{light}"
     folder.mkdir(parents=True, exist_ok=True)
     row = {"mesh": mesh, "material": material, "light": light}

@@ -1,5 +1,5 @@
-// Draws the picture of the map convention in the README, from the functions
-// that the solver itself uses:
+// Draws the picture of the map convention in docs/conventions.md, from the
+// functions that readers and writers of maps use:
 //   cmake --build --preset release --target map_convention
 //   build/release/bin/map_convention docs/map_convention.png
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "ibrdf/io/png.h"
-#include "ibrdf/light/environment_map.h"
+#include "ibrdf/light/map_frame.h"
 
 namespace ibrdf {
 namespace {
@@ -30,13 +30,14 @@ void Text(cv::Mat* canvas, const std::string& text, double x, double y,
               cv::FONT_HERSHEY_SIMPLEX, scale, colour, 1, cv::LINE_AA);
 }
 
+MapGrid Grid() { return MapGrid(MapFrame::kCamera, {kMapWidth, kMapHeight}); }
+
 // Red, green, blue grow with the x, y, z of the direction, in steps that keep
 // the file small.
 void DrawGradient(cv::Mat* canvas) {
   for (int y = 0; y < kMapHeight; ++y) {
     for (int x = 0; x < kMapWidth; ++x) {
-      const Eigen::Vector3d d =
-          MapDirection(y + 0.5, x + 0.5, kMapHeight, kMapWidth);
+      const Eigen::Vector3d d = *Grid().Direction({x + 0.5, y + 0.5});
       for (int c = 0; c < 3; ++c) {
         canvas->at<cv::Vec3b>(kTop + y, kLeft + x)[c] =
             static_cast<uint8_t>(std::lround(46.0 + 14.0 * d[c]) * 4);
@@ -46,7 +47,7 @@ void DrawGradient(cv::Mat* canvas) {
 }
 
 void DrawGrid(cv::Mat* canvas) {
-  const char* const phi[] = {"0", "pi/2", "pi", "3 pi/2", "2 pi"};
+  const char* const phi[] = {"-pi", "-pi/2", "0", "pi/2", "pi"};
   const char* const column[] = {"column 0", "W/4", "W/2", "3W/4", "column W"};
   for (int i = 0; i <= 4; ++i) {
     const int x = kLeft + i * kMapWidth / 4;
@@ -72,8 +73,8 @@ void DrawGrid(cv::Mat* canvas) {
 
 void MarkAxis(cv::Mat* canvas, const Eigen::Vector3d& direction,
               const std::string& name, const std::string& note) {
-  double row = 0.0, column = 0.0;
-  MapPosition(direction, kMapHeight, kMapWidth, &row, &column);
+  const MapPoint point = Grid().Position(direction);
+  const double row = point.row, column = point.column;
   // +z is at both ends of the map; no text leaves the map.
   const bool seam = direction.z() > 0.5;
   for (int copy = 0; copy <= (seam ? 1 : 0); ++copy) {
@@ -106,18 +107,19 @@ cv::Mat Draw() {
   MarkAxis(&canvas, {-1, 0, 0}, "-x", "left");
   MarkPoles(&canvas);
   const double width = canvas.cols;
-  Text(&canvas, "Environment map, height H, width W", kLeft, 34, 0.0, 0.9,
-       kInk);
+  Text(&canvas, "Environment map in the frame camera, height H, width W", kLeft,
+       34, 0.0, 0.9, kInk);
   Text(&canvas,
        "Where light comes from, seen from the object. Right-handed, y up.",
        kLeft, 68, 0.0, 0.6, kFaint);
   const int below = kTop + kMapHeight + 90;
   Text(&canvas,
        "texel (row r, column c):  theta = pi (r + 0.5) / H,  "
-       "phi = 2 pi (c + 0.5) / W",
+       "phi = 2 pi (c + 0.5) / W - pi",
        kLeft, below, 0.0, 0.62, kInk);
-  Text(&canvas, "direction = (sin theta sin phi, cos theta, sin theta cos phi)",
-       kLeft, below + 32, 0.0, 0.62, kInk);
+  Text(&canvas,
+       "direction = (sin theta sin phi, cos theta, -sin theta cos phi)", kLeft,
+       below + 32, 0.0, 0.62, kInk);
   Text(&canvas, "red, green, blue: x, y, z of the direction", width - kRight,
        below + 68, 1.0, 0.5, kFaint);
   return canvas;

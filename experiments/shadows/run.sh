@@ -70,14 +70,14 @@ for mesh in ${MESHES:-torus bunny}; do
 image: {width: 96, height: 96}
 geometry: {mesh: $data/meshes/$mesh.obj}
 reflectance: {known: $tables/$material.binary}
-illumination: {known: $data/envmaps/$map.hdr}
+illumination: {known: $data/envmaps/$map.hdr, frame: ibrdf_0_1}
 quality: reference
 noise: 0.02
 YAML
       cat >"$folder/problem.yaml" <<YAML
 image: {file: input.exr, mask: mask.png}
 geometry: {mesh: $data/meshes/$mesh.obj}
-truth: {brdf: $tables/$material.binary, illumination: $data/envmaps/$map.hdr}
+truth: {brdf: $tables/$material.binary, illumination: $data/envmaps/$map.hdr, frame: ibrdf_0_1}
 solver: {seconds: $seconds}
 YAML
       if [[ ! -e $folder/input.exr ]]; then
@@ -88,7 +88,7 @@ YAML
       for effects in ${EFFECTS:-none visibility}; do
         solve reflectance "$mesh" "$material" "$map" "$effects" \
           --set "${!mesh}" --set reflectance.model="$model" \
-          --set "illumination={known: $data/envmaps/$map.hdr}"
+          --set "illumination={known: $data/envmaps/$map.hdr, frame: ibrdf_0_1}"
         solve illumination "$mesh" "$material" "$map" "$effects" \
           --set "${!mesh}" --set solver.seconds=600 \
           --set solver.max_iterations="$rounds" \

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ibrdf/base/format.h"
-#include "ibrdf/solvers/report/picture.h"
+#include "ibrdf/solvers/drawing/picture.h"
 
 namespace ibrdf {
 namespace {

@@ -1,8 +1,9 @@
 #include "ibrdf/solvers/bench/known_brdf_sweep.h"
 
 #include <memory>
+#include <optional>
 
-#include "ibrdf/io/image_file.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/solvers/bench/sphere_columns.h"
 
 namespace ibrdf {
@@ -17,7 +18,7 @@ std::string ProblemText(const KnownBrdfSweepOptions& options,
          "}\nillumination: {width: " + std::to_string(kSweepMapWidth) +
          ", height: " + std::to_string(kSweepMapHeight) + ", prior: " + prior +
          "}\n" + SolverYaml(options) +
-         "truth: {illumination: " + Quoted(c.map_path) + "}\n";
+         "truth: {illumination: " + MapAndFrame(c) + "}\n";
 }
 
 Status CompareMaps(const KnownBrdfSweepOptions& options,
@@ -28,7 +29,7 @@ Status CompareMaps(const KnownBrdfSweepOptions& options,
   IBRDF_RETURN_IF_ERROR(SetConstantMap(*truth, row));
   if (!solved) return OkStatus();
   const StatusOr<Image> map =
-      ReadImage(folder + "/" + run.estimate + "/illumination.exr");
+      ReadMap(folder + "/" + run.estimate + "/illumination.exr", std::nullopt);
   if (!map.ok()) return map.status();
   const auto spheres = gallery.Compare(*map, *truth);
   if (!spheres.ok()) return spheres.status();

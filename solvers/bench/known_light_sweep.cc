@@ -22,7 +22,7 @@ StatusOr<SolverSweep> KnownLightSweep(const KnownLightSweepOptions& options) {
         const std::string problem =
             "problem: reflectance\n" + ImageYaml(options) +
             "reflectance: " + ReflectanceYaml(model, options.lobes) +
-            "illumination: {known: " + Quoted(c.map_path) + "}\n" +
+            "illumination: {known: " + MapAndFrame(c) + "}\n" +
             SolverYaml(options) + "truth: {brdf: " + Quoted(c.brdf_path) +
             "}\n";
         sweep.runs.push_back(ModelRun(options, c, model, "known_light", problem,

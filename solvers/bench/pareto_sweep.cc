@@ -1,9 +1,10 @@
 #include "ibrdf/solvers/bench/pareto_sweep.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "ibrdf/base/format.h"
-#include "ibrdf/io/image_file.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/metrics/illumination_metrics.h"
 #include "ibrdf/solvers/bench/pareto_settings.h"
@@ -119,7 +120,7 @@ Status Finish(const ParetoSweepOptions& options, const SolverRun& run,
   if (!trace.ok()) return trace.status();
   row->Set("rounds", std::to_string(CountIterations(*trace)));
   const StatusOr<Image> map =
-      ReadImage(EstimateFile(options, run, "illumination.exr"));
+      ReadMap(EstimateFile(options, run, "illumination.exr"), std::nullopt);
   if (!map.ok()) return map.status();
   if (map->width == kSweepMapWidth) return OkStatus();
   const StatusOr<Image> truth = TrueMap(options, run.of);

@@ -242,7 +242,7 @@ std::string SolverYaml(const SolverSweepOptions& options) {
 
 std::string JointTruthYaml(const SweepCase& c) {
   return "truth: {brdf: " + Quoted(c.brdf_path) +
-         ", illumination: " + Quoted(c.map_path) + "}\n";
+         ", illumination: " + MapAndFrame(c) + "}\n";
 }
 
 StatusOr<Image> TrueMap(const SweepOptions& options, const SweepCase& c) {

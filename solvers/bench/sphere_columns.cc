@@ -1,9 +1,10 @@
 #include "ibrdf/solvers/bench/sphere_columns.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
-#include "ibrdf/io/image_file.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/solvers/bench/sweep_files.h"
 
@@ -35,7 +36,7 @@ Status SetMirror(const SweepOptions& options, const SolverRun& run,
   const StatusOr<Image> truth = TrueMap(options, run.of);
   if (!truth.ok()) return truth.status();
   const StatusOr<Image> map =
-      ReadImage(folder + "/" + run.estimate + "/illumination.exr");
+      ReadMap(folder + "/" + run.estimate + "/illumination.exr", std::nullopt);
   if (!map.ok()) return map.status();
   const StatusOr<SphereMetrics> sphere = CompareMirrors(*map, *truth);
   if (!sphere.ok()) return sphere.status();

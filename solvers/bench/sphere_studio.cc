@@ -4,8 +4,8 @@
 
 #include "ibrdf/brdf/lambertian.h"
 #include "ibrdf/render/reference_renderer.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/report/brdf_sphere.h"
-#include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
 namespace {

@@ -77,6 +77,7 @@ Problem RenderProblem(const SweepOptions& options, const SweepCase& c) {
   }
   problem.reflectance.known_file = c.brdf_path;
   problem.illumination.known_file = c.map_path;
+  problem.illumination.frame = kSweepMapFrame;
   problem.quality = RenderQuality::kReference;
   problem.noise = options.noise;
   return problem;
@@ -89,6 +90,10 @@ std::string ImageYaml(const SweepOptions& options, const std::string& image) {
                 ", fit: unit_sphere}"
           : "{sphere: {}}";
   return "image: {" + image + "}\ngeometry: " + geometry + "\n";
+}
+
+std::string MapAndFrame(const SweepCase& c) {
+  return Quoted(c.map_path) + ", frame: " + MapFrameName(kSweepMapFrame);
 }
 
 StatusOr<std::vector<SweepCase>> ListSweepCases(const SweepOptions& options) {

@@ -65,4 +65,12 @@ std::string ImageYaml(
 // A string as JSON and YAML have it.
 std::string Quoted(const std::string& text);
 
+// The frame that all maps of sweeps are read in, whatever their files say, so
+// that results of all versions can be compared.
+inline constexpr MapFrame kSweepMapFrame = MapFrame::kIbrdf01;
+
+// The case's map as the value of `known` or `illumination` in a problem file,
+// and the key `frame` beside it.
+std::string MapAndFrame(const SweepCase& c);
+
 }  // namespace ibrdf

@@ -31,7 +31,7 @@ std::string ObjectLine(const PhotographCheck& check) {
 }
 
 std::string CountsLine(const PhotographCheck& check) {
-  const PixelCounts& counts = check.counts;
+  const ObjectPixelCounts& counts = check.counts;
   return std::to_string(counts.used) + " used; " +
          std::to_string(counts.clipped) + " clipped, " +
          std::to_string(counts.zero) + " zero, " +

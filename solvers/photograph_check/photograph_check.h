@@ -37,7 +37,7 @@ struct PhotographCheck {
   double exposure = 1.0;
   size_t missing = 0;
   std::optional<double> overlap;
-  PixelCounts counts;
+  ObjectPixelCounts counts;
   double radiance_1 = 0.0, radiance_99 = 0.0;  // percentiles of used values
   LikeNormalsSpread like_normals;
   ColourSpread colours;

@@ -17,9 +17,10 @@ PixelKind KindOfPixel(const float* radiance, bool codes) {
   return PixelKind::kUsed;
 }
 
-PixelCounts CountPixels(const Image& radiance,
-                        const std::vector<ShadingPoint>& points, bool codes) {
-  PixelCounts counts;
+ObjectPixelCounts CountPixels(const Image& radiance,
+                              const std::vector<ShadingPoint>& points,
+                              bool codes) {
+  ObjectPixelCounts counts;
   for (const ShadingPoint& point : points) {
     ++counts.object;
     switch (KindOfPixel(&radiance.rgb[3 * static_cast<size_t>(point.pixel)],

@@ -10,7 +10,7 @@ namespace ibrdf {
 
 // Pixels of the object by what the worst of their channels is, in this order:
 // the kinds after `used` make up the rest of `object`.
-struct PixelCounts {
+struct ObjectPixelCounts {
   size_t object = 0;
   size_t used = 0;        // finite and > 0 in all channels
   size_t clipped = 0;     // codes without an upper end
@@ -25,7 +25,8 @@ enum class PixelKind { kUsed, kClipped, kNotFinite, kNegative, kZero };
 PixelKind KindOfPixel(const float* radiance, bool codes);
 
 // Of the pixels of these points, which have at most one each.
-PixelCounts CountPixels(const Image& radiance,
-                        const std::vector<ShadingPoint>& points, bool codes);
+ObjectPixelCounts CountPixels(const Image& radiance,
+                              const std::vector<ShadingPoint>& points,
+                              bool codes);
 
 }  // namespace ibrdf

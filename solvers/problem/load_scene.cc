@@ -4,10 +4,9 @@
 #include <vector>
 
 #include "ibrdf/brdf/sample_merl.h"
-#include "ibrdf/io/image_file.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/mesh.h"
-#include "ibrdf/light/negative_radiance.h"
 #include "ibrdf/light/procedural_sky.h"
 #include "ibrdf/solvers/problem/load_normals.h"
 
@@ -51,18 +50,7 @@ StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination,
     return RenderSky(*illumination.sky, illumination.height,
                      illumination.width);
   }
-  StatusOr<Image> map = ReadImage(illumination.known_file);
-  if (!map.ok()) return map.status();
-  const std::string& path = illumination.known_file;
-  const StatusOr<NegativeRadiance> below =
-      ClampNegativeRadiance(path, MapFrame::kIbrdf01, &*map);
-  if (!below.ok()) return below.status();
-  if (below->values > 0 && warnings != nullptr) {
-    warnings->push_back(path + ": " + std::to_string(below->values) +
-                        " values below 0, down to " +
-                        std::to_string(below->lowest) + ", were set to 0");
-  }
-  return map;
+  return ReadMap(illumination.known_file, illumination.frame, warnings);
 }
 
 StatusOr<MerlTable> LoadKnownReflectance(const ReflectanceSpec& reflectance) {

@@ -17,9 +17,8 @@ namespace ibrdf {
 StatusOr<Scene> LoadScene(const GeometrySpec& geometry,
                           std::vector<std::string>* warnings = nullptr);
 
-// The known illumination: the file, or the sky made into a map of the problem's
-// size. A few values below 0 count as 0; refuses many, and values that are not
-// finite.
+// The known illumination in the library's frame: the file (ReadMap), or the sky
+// made into a map of the problem's size.
 StatusOr<Image> LoadKnownIllumination(
     const IlluminationSpec& illumination,
     std::vector<std::string>* warnings = nullptr);

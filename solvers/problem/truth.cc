@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "ibrdf/io/image_file.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/metrics/brdf_metrics.h"
@@ -21,7 +21,8 @@ StatusOr<Truth> LoadTruth(const TruthSpec& spec, int map_width,
     if (!itself.ok()) return InvalidInput(spec.brdf, itself.status().message());
   }
   if (!spec.illumination.empty()) {
-    const StatusOr<Image> map = ReadImage(spec.illumination);
+    const StatusOr<Image> map =
+        ReadMap(spec.illumination, spec.frame, &truth.warnings);
     if (!map.ok()) return map.status();
     truth.illumination = ResizeMap(*map, map_height, map_width);
     const StatusOr<IlluminationMetrics> itself =

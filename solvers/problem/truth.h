@@ -1,5 +1,8 @@
 // What an estimate is compared with, where a problem gives it.
 #pragma once
+#include <string>
+#include <vector>
+
 #include "ibrdf/base/status.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
@@ -10,7 +13,8 @@ namespace ibrdf {
 // Empty: not given. The solver never sees it.
 struct Truth {
   MerlTable brdf;
-  Image illumination;  // at the size of the estimate
+  Image illumination;  // in the library's frame, at the size of the estimate
+  std::vector<std::string> warnings;  // of the files: sentences for the user
 };
 
 // Reads the files and refuses what no metric can be taken against (a table

@@ -21,7 +21,9 @@ Status SweepFlags::Apply(const BenchSession& session, SweepOptions* options) {
 void AddSweepFlags(CLI::App* app, SweepOptions* options, SweepFlags* flags) {
   app->add_option("--data", options->data, "folder of MERL .binary tables")
       ->required();
-  app->add_option("--maps", options->maps, "folder of .hdr or .exr maps")
+  app->add_option("--maps", options->maps,
+                  "folder of .hdr or .exr maps, read in the frame ibrdf_0_1 "
+                  "whatever they say, as by all versions")
       ->required();
   app->add_option("--out", options->out, "folder of results")->required();
   app->add_option("--materials", options->materials,

@@ -1,8 +1,12 @@
 #include "ibrdf/solvers/programs/evaluate_files.h"
 
+#include <algorithm>
+
 #include "ibrdf/io/image_file.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/png.h"
+#include "ibrdf/light/convert_map.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/metrics/illumination_metrics.h"
 #include "ibrdf/metrics/image_metrics.h"
@@ -19,6 +23,10 @@ Status NameFile(const Status& status,
     }
   }
   return status;
+}
+
+int Rows(const StoredMap& map) {
+  return RowsForSize(map.frame, {map.image.width, map.image.height});
 }
 
 }  // namespace
@@ -39,23 +47,36 @@ StatusOr<NamedMetrics> EvaluateBrdfFiles(const std::string& estimate,
                       {"brdf_log_rmse_below80", metrics->log_rmse_below80}};
 }
 
-StatusOr<NamedMetrics> EvaluateIlluminationFiles(const std::string& estimate,
-                                                 const std::string& reference) {
-  const StatusOr<Image> a = ReadImage(estimate);
+StatusOr<IlluminationComparison> EvaluateIlluminationFiles(
+    const MapToCompare& estimate, const MapToCompare& reference) {
+  const StatusOr<StoredMap> a = ReadStoredMap(estimate.path, estimate.frame);
   if (!a.ok()) return a.status();
-  const StatusOr<Image> b = ReadImage(reference);
+  const StatusOr<StoredMap> b = ReadStoredMap(reference.path, reference.frame);
   if (!b.ok()) return b.status();
-  const StatusOr<IlluminationMetrics> metrics = CompareIlluminations(*a, *b);
+  IlluminationComparison out;
+  out.warnings = a->warnings;
+  out.warnings.insert(out.warnings.end(), b->warnings.begin(),
+                      b->warnings.end());
+  out.compared_at =
+      SizeForRows(MapFrame::kCamera, std::min(Rows(*a), Rows(*b)));
+  const StatusOr<Image> map_a = ConvertMap(estimate.path, a->image, a->frame,
+                                           MapFrame::kCamera, out.compared_at);
+  if (!map_a.ok()) return map_a.status();
+  const StatusOr<Image> map_b = ConvertMap(reference.path, b->image, b->frame,
+                                           MapFrame::kCamera, out.compared_at);
+  if (!map_b.ok()) return map_b.status();
+  const StatusOr<IlluminationMetrics> metrics =
+      CompareIlluminations(*map_a, *map_b);
   if (!metrics.ok()) {
-    return NameFile(metrics.status(),
-                    {{"estimate", estimate}, {"reference", reference}});
+    return NameFile(metrics.status(), {{"estimate", estimate.path},
+                                       {"reference", reference.path}});
   }
-  return NamedMetrics{
-      {"illumination_relative_log_rmse", metrics->relative_log_rmse},
-      {"illumination_relative_log_rmse_aligned",
-       metrics->relative_log_rmse_aligned},
-      {"illumination_relative_log_rmse_unweighted",
-       metrics->relative_log_rmse_unweighted}};
+  out.metrics = {{"illumination_relative_log_rmse", metrics->relative_log_rmse},
+                 {"illumination_relative_log_rmse_aligned",
+                  metrics->relative_log_rmse_aligned},
+                 {"illumination_relative_log_rmse_unweighted",
+                  metrics->relative_log_rmse_unweighted}};
+  return out;
 }
 
 StatusOr<NamedMetrics> EvaluateImageFiles(const std::string& estimate,

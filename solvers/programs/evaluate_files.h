@@ -1,10 +1,12 @@
 // The metrics between two files, as ibrdf_eval prints them.
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ibrdf/base/status.h"
+#include "ibrdf/light/map_frame.h"
 
 namespace ibrdf {
 
@@ -18,10 +20,23 @@ using NamedMetrics = std::vector<std::pair<std::string, double>>;
 StatusOr<NamedMetrics> EvaluateBrdfFiles(const std::string& estimate,
                                          const std::string& reference);
 
-// Equirectangular .exr or .hdr maps of one size:
-// illumination_relative_log_rmse and the same with _aligned and _unweighted.
-StatusOr<NamedMetrics> EvaluateIlluminationFiles(const std::string& estimate,
-                                                 const std::string& reference);
+// A file of a map and its frame; unset: as ReadStoredMap finds it.
+struct MapToCompare {
+  std::string path;
+  std::optional<MapFrame> frame;
+};
+
+struct IlluminationComparison {
+  // illumination_relative_log_rmse, the same with _aligned and _unweighted.
+  NamedMetrics metrics;
+  MapSize compared_at;
+  std::vector<std::string> warnings;  // of the files: sentences for the user
+};
+
+// Both maps are brought to the frame camera, and the finer one to the size of
+// the coarser by means over solid angles.
+StatusOr<IlluminationComparison> EvaluateIlluminationFiles(
+    const MapToCompare& estimate, const MapToCompare& reference);
 
 // .exr or .hdr images of one size: image_log_rmse, psnr, dssim. `mask`: PNG, or
 // empty for all pixels.

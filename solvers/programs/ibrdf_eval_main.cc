@@ -1,24 +1,121 @@
-// Metrics between two files, as JSON on stdout.
+// Metrics between two files, as JSON on stdout; a picture of a map's frame.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "ibrdf/solvers/programs/common_flags.h"
+#include "ibrdf/solvers/programs/draw_map_file.h"
 #include "ibrdf/solvers/programs/evaluate_files.h"
 
 namespace ibrdf {
 namespace {
 
-void Print(const NamedMetrics& metrics) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+using Json = nlohmann::ordered_json;
+
+Json ToJson(const NamedMetrics& metrics) {
+  Json json = Json::object();
   for (const auto& [name, value] : metrics) {
     // JSON has no infinity: the PSNR of equal images is null.
-    json[name] = std::isfinite(value) ? nlohmann::ordered_json(value)
-                                      : nlohmann::ordered_json();
+    json[name] = std::isfinite(value) ? Json(value) : Json();
   }
-  std::printf("%s\n", json.dump(2).c_str());
+  return json;
+}
+
+// What the command line names.
+struct Arguments {
+  std::string estimate, reference, mask;
+  std::string frame_a = "auto", frame_b = "auto";
+  std::string map, frame = "auto", picture;
+};
+
+StatusOr<std::optional<MapFrame>> ReadFrame(const std::string& option,
+                                            const std::string& word) {
+  if (word == "auto") return std::optional<MapFrame>();
+  const StatusOr<MapFrame> frame =
+      ParseMapFrame("command line: " + option, word);
+  if (!frame.ok()) return frame.status();
+  return std::optional<MapFrame>(*frame);
+}
+
+StatusOr<Json> EvaluateIllumination(const Arguments& arguments) {
+  const auto frame_a = ReadFrame("--frame-a", arguments.frame_a);
+  if (!frame_a.ok()) return frame_a.status();
+  const auto frame_b = ReadFrame("--frame-b", arguments.frame_b);
+  if (!frame_b.ok()) return frame_b.status();
+  const StatusOr<IlluminationComparison> compared = EvaluateIlluminationFiles(
+      {arguments.estimate, *frame_a}, {arguments.reference, *frame_b});
+  if (!compared.ok()) return compared.status();
+  PrintWarnings(compared->warnings);
+  Json json = ToJson(compared->metrics);
+  json["compared_at"] = {compared->compared_at.width,
+                         compared->compared_at.height};
+  return json;
+}
+
+Status DrawFrame(const Arguments& arguments) {
+  const auto frame = ReadFrame("--frame", arguments.frame);
+  if (!frame.ok()) return frame.status();
+  std::vector<std::string> warnings;
+  IBRDF_RETURN_IF_ERROR(
+      DrawMapFile(arguments.map, *frame, arguments.picture, &warnings));
+  PrintWarnings(warnings);
+  return OkStatus();
+}
+
+void PrintJson(const Json& json) { std::printf("%s\n", json.dump(2).c_str()); }
+
+Status PrintMetrics(const StatusOr<NamedMetrics>& metrics) {
+  if (!metrics.ok()) return metrics.status();
+  PrintJson(ToJson(*metrics));
+  return OkStatus();
+}
+
+// Adds a subcommand that compares two files.
+CLI::App* AddComparison(CLI::App* app, const char* name, const char* help,
+                        const std::string& kind, Arguments* arguments) {
+  CLI::App* command = app->add_subcommand(name, help);
+  command->add_option("A", arguments->estimate, "estimate: " + kind)
+      ->required();
+  command->add_option("B", arguments->reference, "reference: " + kind)
+      ->required();
+  return command;
+}
+
+CLI::App* AddIllumination(CLI::App* app, Arguments* arguments) {
+  CLI::App* command = AddComparison(
+      app, "illumination",
+      "log-RMSE weighted by solid angle, divided by B's log range: as is, "
+      "after the best scale per channel (aligned), and with equal weights "
+      "(unweighted). The finer map is averaged to the size of the coarser one",
+      "environment map of floats, such as .exr or .hdr", arguments);
+  command
+      ->add_option("--frame-a", arguments->frame_a,
+                   "frame of A, as illumination.frame of a problem file; "
+                   "auto: what the file says, else camera")
+      ->capture_default_str();
+  command->add_option("--frame-b", arguments->frame_b, "frame of B")
+      ->capture_default_str();
+  return command;
+}
+
+CLI::App* AddFrame(CLI::App* app, Arguments* arguments) {
+  CLI::App* command = app->add_subcommand(
+      "frame",
+      "draws how a map is understood: its directions, and a mirror ball in its "
+      "light as the camera sees it");
+  command->add_option("MAP", arguments->map, "environment map of floats")
+      ->required();
+  command->add_option("PICTURE", arguments->picture, ".png to write")
+      ->required();
+  command
+      ->add_option("--frame", arguments->frame,
+                   "frame of the map; auto: what the file says, else camera")
+      ->capture_default_str();
+  return command;
 }
 
 int Main(int argc, char** argv) {
@@ -30,44 +127,37 @@ int Main(int argc, char** argv) {
   app.require_subcommand(1);
   app.fallthrough();
 
-  std::string estimate, reference, mask;
-  const auto add = [&](const char* name, const char* help, const char* kind) {
-    CLI::App* command = app.add_subcommand(name, help);
-    command->add_option("A", estimate, std::string("estimate: ") + kind)
-        ->required();
-    command->add_option("B", reference, std::string("reference: ") + kind)
-        ->required();
-    return command;
-  };
-  const CLI::App* brdf =
-      add("brdf",
-          "log-RMSE in raw MERL units over bins where B's red is > 0: as is, "
-          "after the best scale per channel (aligned), and with both "
-          "directions within 80 degrees of the normal (below80)",
-          "MERL .binary table");
-  const CLI::App* illumination =
-      add("illumination",
-          "log-RMSE weighted by solid angle, divided by B's log range: as is, "
-          "after the best scale per channel (aligned), and with equal weights "
-          "(unweighted)",
-          "equirectangular map, .exr or .hdr, both of one size");
-  CLI::App* image =
-      add("image",
-          "log-RMSE; PSNR in dB after the best scale; DSSIM of log(1 + x) with "
-          "an 11x11 Gaussian window, sigma 1.5 pixels",
-          "image, .exr or .hdr, both of one size");
-  image->add_option("--mask", mask,
+  Arguments arguments;
+  const CLI::App* brdf = AddComparison(
+      &app, "brdf",
+      "log-RMSE in raw MERL units over bins where B's red is > 0: as is, "
+      "after the best scale per channel (aligned), and with both "
+      "directions within 80 degrees of the normal (below80)",
+      "MERL .binary table", &arguments);
+  const CLI::App* illumination = AddIllumination(&app, &arguments);
+  CLI::App* image = AddComparison(
+      &app, "image",
+      "log-RMSE; PSNR in dB after the best scale; DSSIM of log(1 + x) with "
+      "an 11x11 Gaussian window, sigma 1.5 pixels",
+      "image, .exr or .hdr, both of one size", &arguments);
+  image->add_option("--mask", arguments.mask,
                     "PNG, nonzero = compared; default: all pixels");
+  const CLI::App* frame = AddFrame(&app, &arguments);
 
   return RunProgram(&app, argc, argv, [&]() -> Status {
-    const StatusOr<NamedMetrics> metrics =
-        brdf->parsed() ? EvaluateBrdfFiles(estimate, reference)
-        : illumination->parsed()
-            ? EvaluateIlluminationFiles(estimate, reference)
-            : EvaluateImageFiles(estimate, reference, mask);
-    if (!metrics.ok()) return metrics.status();
-    Print(*metrics);
-    return OkStatus();
+    if (frame->parsed()) return DrawFrame(arguments);
+    if (brdf->parsed()) {
+      return PrintMetrics(
+          EvaluateBrdfFiles(arguments.estimate, arguments.reference));
+    }
+    if (illumination->parsed()) {
+      const StatusOr<Json> json = EvaluateIllumination(arguments);
+      if (!json.ok()) return json.status();
+      PrintJson(*json);
+      return OkStatus();
+    }
+    return PrintMetrics(EvaluateImageFiles(
+        arguments.estimate, arguments.reference, arguments.mask));
   });
 }
 

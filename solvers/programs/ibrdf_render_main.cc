@@ -14,14 +14,15 @@
 
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/file_extension.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/io/problem_file.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/forward/render_scene.h"
 #include "ibrdf/solvers/problem/load_scene.h"
 #include "ibrdf/solvers/programs/common_flags.h"
-#include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
 namespace {
@@ -127,7 +128,9 @@ Status WriteOutputs(const Problem& problem, const RenderedScene& rendered,
     IBRDF_RETURN_IF_ERROR(WriteMask(rendered.mask, out.mask));
   }
   if (!out.illumination.empty()) {
-    IBRDF_RETURN_IF_ERROR(WriteExr(rendered.illumination, out.illumination));
+    IBRDF_RETURN_IF_ERROR(WriteMap(rendered.illumination,
+                                   problem.illumination.output_frame,
+                                   out.illumination));
   }
   if (out.brdf.empty()) return OkStatus();
   const StatusOr<MerlTable> table = LoadKnownReflectance(problem.reflectance);
@@ -190,7 +193,8 @@ int Main(int argc, char** argv) {
   app.add_option("--mask", out.mask,
                  "mask of the object to write, .png; default: none");
   app.add_option("--illumination-out", out.illumination,
-                 "equirectangular map used to write, .exr; default: none");
+                 "map used to write, .exr, in illumination.output_frame; "
+                 "default: none");
   app.add_option("--brdf-out", out.brdf,
                  "BRDF as MERL table to write, .binary; default: none");
   app.add_option("--quality", quality,

@@ -14,7 +14,7 @@ Json Finite(double value) {
 }
 
 Json PixelsJson(const PhotographCheck& check) {
-  const PixelCounts& counts = check.counts;
+  const ObjectPixelCounts& counts = check.counts;
   return {{"object", counts.object},     {"used", counts.used},
           {"clipped", counts.clipped},   {"zero", counts.zero},
           {"negative", counts.negative}, {"not_finite", counts.not_finite},

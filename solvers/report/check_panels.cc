@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/photograph_check/normal_samples.h"
-#include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
 namespace {

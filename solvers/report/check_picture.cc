@@ -4,20 +4,20 @@
 #include <cmath>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/solvers/drawing/picture.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/photograph_check/check_words.h"
 #include "ibrdf/solvers/report/check_panels.h"
-#include "ibrdf/solvers/report/picture.h"
-#include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
 namespace {
 
 constexpr int kWidth = 1560;
-constexpr int kMargin = 24;
-constexpr int kGap = 20;
+constexpr int kPageMargin = 24;
+constexpr int kPanelGap = 20;
 constexpr int kColumns = 4;
 constexpr int kPanel =
-    (kWidth - 2 * kMargin - (kColumns - 1) * kGap) / kColumns;
+    (kWidth - 2 * kPageMargin - (kColumns - 1) * kPanelGap) / kColumns;
 constexpr int kBall = 72;     // diameter of the legend's balls
 constexpr int kCaption = 48;  // below a panel: two lines
 constexpr int kHead = 64;
@@ -177,7 +177,7 @@ class CheckDrawing {
         picture_(kWidth, Height()) {}
 
   Rgb8Image Draw() {
-    picture_.Text(Printable(input_.title), kMargin, 36, kTitleText);
+    picture_.Text(Printable(input_.title), kPageMargin, 36, kTitleText);
     DrawShape(kHead);
     DrawPixels(SecondRow());
     DrawVerdicts(SecondRow());
@@ -186,7 +186,9 @@ class CheckDrawing {
   }
 
  private:
-  static int Column(int column) { return kMargin + column * (kPanel + kGap); }
+  static int Column(int column) {
+    return kPageMargin + column * (kPanel + kPanelGap);
+  }
   // Beside a flat object the verdicts are higher.
   int SecondHeight() const {
     int height = kLine;
@@ -195,12 +197,12 @@ class CheckDrawing {
     }
     return std::max(row_, height - kCaption);
   }
-  int SecondRow() const { return kHead + row_ + kCaption + kGap; }
+  int SecondRow() const { return kHead + row_ + kCaption + kPanelGap; }
   int ThirdRow() const {
-    return SecondRow() + SecondHeight() + kCaption + kGap;
+    return SecondRow() + SecondHeight() + kCaption + kPanelGap;
   }
   static int HypothesisCell() {
-    return (kWidth - 2 * kMargin - (kNumNormalHypotheses - 1) * kGap) /
+    return (kWidth - 2 * kPageMargin - (kNumNormalHypotheses - 1) * kPanelGap) /
            kNumNormalHypotheses;
   }
   int HypothesisHeight() const {
@@ -279,9 +281,7 @@ class CheckDrawing {
   }
 
   void DrawPixels(int top) {
-    Panel(
-        MarkedPixels(input_.look, input_.points, photograph_),
-        0, top, "");
+    Panel(MarkedPixels(input_.look, input_.points, photograph_), 0, top, "");
     double x = Column(0), y = top + row_ + kLine;
     picture_.Text("No part:", x, y, kText);
     x += Picture::TextWidth("No part: ", kText) + 8;
@@ -308,7 +308,8 @@ class CheckDrawing {
   // What is said of the look, in lines that fit beside a mirror ball.
   std::vector<Verdict> Verdicts() const {
     const int columns = input_.mirror_ball.empty() ? 2 : 1;
-    const int width = columns * (kPanel + kGap) - kGap - kVerdictIndent;
+    const int width =
+        columns * (kPanel + kPanelGap) - kPanelGap - kVerdictIndent;
     std::vector<Verdict> verdicts;
     for (const std::string& line : CheckLines(check_)) {
       constexpr size_t kName = 14;  // of CheckLines
@@ -343,13 +344,14 @@ class CheckDrawing {
         "What the normals may be: each as it would look under the lamp, the "
         "most plausible first (framed). Numbers: disagreement with a surface "
         "and its outline, 0 to 1.",
-        kMargin, top + 12, kText);
+        kPageMargin, top + 12, kText);
     const int cell = HypothesisCell();
     const double y = top + kLine + 8;
     const double least = check_.normals.front().disagreement;
     for (size_t k = 0; k < check_.normals.size(); ++k) {
       const NormalScore& score = check_.normals[k];
-      const double x = kMargin + static_cast<double>(k) * (cell + kGap);
+      const double x =
+          kPageMargin + static_cast<double>(k) * (cell + kPanelGap);
       const Place place = FitInto(crop_, x, y, cell, cell);
       const Image normals =
           UnderHypothesis(input_.look.normal_map, score.hypothesis);
@@ -365,8 +367,8 @@ class CheckDrawing {
       const double below = y + place.height + kLine + 2;
       picture_.Text(NameOf(score.hypothesis), middle, below, kText,
                     Picture::Align::kCentre, best ? kGreenInk : kBlackInk);
-      picture_.Text(Format("%.3f", score.disagreement), middle,
-                    below + kLine, kText, Picture::Align::kCentre,
+      picture_.Text(Format("%.3f", score.disagreement), middle, below + kLine,
+                    kText, Picture::Align::kCentre,
                     best ? kGreenInk : kGreyInk);
     }
   }

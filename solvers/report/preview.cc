@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/report/readable_numbers.h"
-#include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
 namespace {
@@ -216,7 +216,7 @@ void DrawColourBar(cv::Mat* canvas, int left, int top, int height,
 
 // Columns where the map looks along an axis; +y is the top, -y the bottom.
 void DrawMapAxes(cv::Mat* canvas, int left, int top, int width) {
-  const char* const names[] = {"+z", "+x", "-z", "-x", "+z"};
+  const char* const names[] = {"+z", "-x", "-z", "+x", "+z"};
   for (int i = 0; i < 5; ++i) {
     const int x = left + i * (width - 1) / 4;
     cv::line(*canvas, {x, top}, {x, top + 6}, kFaintInk);

@@ -12,7 +12,7 @@ struct PreviewPanel {
   enum class Kind {
     kRadiance,        // image times exposure, as sRGB
     kSignedResidual,  // mean of the channels, in DivergingColour
-    kMap,             // as kRadiance, with the axes below
+    kMap,             // as kRadiance, in the frame camera, with the axes below
   };
   std::string label;  // printable ASCII, wrapped to the picture's width
   Image image;

@@ -2,9 +2,10 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/io/png.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/report/html.h"
 #include "ibrdf/solvers/report/preview.h"
-#include "ibrdf/solvers/report/tone_map.h"
+#include "ibrdf/solvers/report/result_images.h"
 
 namespace ibrdf {
 namespace {
@@ -33,7 +34,7 @@ ReportFigure DeviationFigure(const Image& map_std) {
                 std::to_string(map_std.width) + "x" +
                 std::to_string(map_std.height) +
                 " texels). 0.1 is about 10 %, 0.7 a factor of two.";
-  panel.image = map_std;
+  panel.image = MapForPicture(map_std);
   panel.kind = PreviewPanel::Kind::kSignedResidual;
   ReportFigure figure = Figure(panel);
   figure.bar = ReportFigure::Bar::kPositive;
@@ -84,7 +85,7 @@ StatusOr<std::string> FigureMarkup(const ReportFigure& figure) {
          std::to_string(figure.pixels.height) + "\" alt=\"" +
          EscapeHtml(figure.caption) + "\" src=\"" + PngDataUri(*png) +
          "\" />\n";
-  if (figure.map) out += Labels({"+z", "+x", "-z", "-x", "+z"});
+  if (figure.map) out += Labels({"+z", "-x", "-z", "+x", "+z"});
   out += ColourBar(figure);
   return out + HtmlElement("figcaption", figure.caption) + "\n</figure>\n";
 }
@@ -95,11 +96,13 @@ constexpr char kImageNote[] =
     "Grey pixels took no part.";
 
 constexpr char kMapNote[] =
-    "Equirectangular maps of the light that arrives at the object, in the "
-    "world frame. The columns look along the axes named below a map, the top "
-    "row looks up (+y). The orthographic camera looks along -z: the middle is "
-    "behind the object, the edges are behind the camera, and what is on the "
-    "camera's right (+x) is left of the middle.";
+    "Equirectangular maps of the light that arrives at the object, seen from "
+    "the object, in the world frame. The columns look along the axes named "
+    "below a map, the top row looks up (+y). The orthographic camera looks "
+    "along -z: the middle is what it looks at, behind the object, the edges "
+    "are behind the camera, and right in the map is right in the picture. "
+    "These pictures are in the frame camera; result.json says under "
+    "illumination_frame which frame the .exr files have.";
 
 constexpr char kDeviationNote[] =
     " The standard deviation is that of the light given the reflectance. Where "

@@ -134,6 +134,8 @@ std::string EffectsNote(const SolvedProblem& solved) {
 
 std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
   std::vector<std::string> warnings = solved.inverse.warnings;
+  warnings.insert(warnings.end(), solved.truth.warnings.begin(),
+                  solved.truth.warnings.end());
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
         MisfitWarning(solved), PixelWarning(solved),

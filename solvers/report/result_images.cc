@@ -1,8 +1,11 @@
 #include "ibrdf/solvers/report/result_images.h"
 
+#include <glog/logging.h>
+
 #include <cmath>
 
 #include "ibrdf/image/radiance_interval.h"
+#include "ibrdf/light/convert_map.h"
 
 namespace ibrdf {
 namespace {
@@ -59,6 +62,21 @@ Image LogResidual(const InverseProblem& inverse, const Solution& solution) {
                            std::log(observed.rgb[k] + solution.epsilon));
   }
   return residual;
+}
+
+Image MapForPicture(const Image& map) {
+  StatusOr<Image> out = FromLibraryFrame("map", map, MapFrame::kCamera);
+  CHECK(out.ok()) << out.status().message();
+  return *std::move(out);
+}
+
+std::string MiddleOfMapPicture(const Camera& camera) {
+  constexpr double kLeastCosine = 0.985;  // 10 degrees
+  const bool ahead =
+      camera.type == CameraType::kOrthographic ||
+      ((camera.from - camera.to).normalized().z() > kLeastCosine &&
+       camera.up.normalized().y() > kLeastCosine);
+  return ahead ? "what the camera looks at" : "-z";
 }
 
 }  // namespace ibrdf

@@ -1,5 +1,8 @@
 // Images that follow from a problem and its solution.
 #pragma once
+#include <string>
+
+#include "ibrdf/geometry/camera.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/problem/inverse_problem.h"
@@ -22,5 +25,12 @@ Image NearestObserved(const InverseProblem& inverse, const Solution& solution);
 // outside the object and where the pixel took no part, because other programs
 // sum over the file.
 Image LogResidual(const InverseProblem& inverse, const Solution& solution);
+
+// A map of the library as pictures show it: in the frame camera.
+Image MapForPicture(const Image& map);
+
+// What is in the middle of such a picture: "what the camera looks at", or "-z"
+// where that is more than some degrees off.
+std::string MiddleOfMapPicture(const Camera& camera);
 
 }  // namespace ibrdf

@@ -180,6 +180,8 @@ std::string ResultJson(const SolvedProblem& solved) {
                {"effects", Describe(inverse.effects)},
                {"effects_plan", EffectsJson(inverse)},
                {"gauge", GaugeWords(inverse)},
+               {"illumination_frame",
+                MapFrameName(solved.problem.illumination.output_frame)},
                {"start", solution.start},
                {"posterior", PosteriorJson(inverse, solution)},
                {"curves", CurvesJson(solution.curves)},

@@ -8,10 +8,10 @@
 #include "ibrdf/base/format.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/report/brdf_sphere.h"
 #include "ibrdf/solvers/report/preview.h"
 #include "ibrdf/solvers/report/result_images.h"
-#include "ibrdf/solvers/report/tone_map.h"
 
 namespace ibrdf {
 namespace {
@@ -100,23 +100,27 @@ constexpr char kScaleFootnote[] =
 Row MapPanels(const ResultPreviewInput& input) {
   if (input.illumination.empty()) return {};
   const auto kind = PreviewPanel::Kind::kMap;
+  const std::string seen =
+      "seen from the object: the middle is " + input.middle_of_map;
   if (input.illumination_known || input.reference_illumination.empty()) {
     const double exposure = ExposureOf(input.illumination, Mask(), kMapWhite);
-    return {Picture(
-        std::string(input.illumination_known ? "Known" : "Estimated") +
-            " illumination (" + White(exposure) + ", its 97th percentile)",
-        input.illumination, Mask(), exposure, kind)};
+    return {
+        Picture(std::string(input.illumination_known ? "Known" : "Estimated") +
+                    " illumination (" + White(exposure) +
+                    ", its 97th percentile), " + seen,
+                MapForPicture(input.illumination), Mask(), exposure, kind)};
   }
   const Image reference =
       ResizeMap(input.reference_illumination, input.illumination.height,
                 input.illumination.width);
   const double exposure = ExposureOf(reference, Mask(), kMapWhite);
   const double scale = MapScale(input.illumination, reference);
-  return {Picture("Estimated illumination" + Times(scale), input.illumination,
-                  Mask(), scale * exposure, kind),
+  return {Picture("Estimated illumination" + Times(scale) + ", " + seen,
+                  MapForPicture(input.illumination), Mask(), scale * exposure,
+                  kind),
           Picture("Reference illumination (" + White(exposure) +
-                      ", its 97th percentile)",
-                  reference, Mask(), exposure, kind)};
+                      ", its 97th percentile), " + seen,
+                  MapForPicture(reference), Mask(), exposure, kind)};
 }
 
 struct Spheres {
@@ -214,6 +218,7 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   input.illumination = solved.solution.map;
   input.illumination_known = solved.inverse.known_map.has_value();
   input.reference_illumination = solved.truth.illumination;
+  input.middle_of_map = MiddleOfMapPicture(solved.problem.camera);
   input.brdf = solved.solution.brdf;
   input.reference_brdf = solved.truth.brdf;
   input.metrics = MetricLines(solved.metrics);

@@ -20,9 +20,10 @@ struct ResultPreviewInput {
   Image render;  // of the input's size
   // log(render / input) where the pixel took part, else 0, of their size.
   Image residual;
-  Image illumination;
+  Image illumination;               // in the library's frame
   bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;
+  std::string middle_of_map = "-z";  // of the pictures of maps, in words
   MerlTable brdf;
   MerlTable reference_brdf;
   std::vector<std::string> metrics;  // one line each, printable ASCII

@@ -2,6 +2,7 @@
 
 #include "ibrdf/io/atomic_file.h"
 #include "ibrdf/io/exr.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/solvers/report/report_figures.h"
@@ -38,15 +39,18 @@ Status WriteReflectance(const SolvedProblem& solved,
   return WriteFileAtomically(folder + "/brdf.json", BrdfJson(solved));
 }
 
-Status WriteRadiance(const InverseProblem& inverse, const Solution& solution,
-                     const std::string& folder) {
-  IBRDF_RETURN_IF_ERROR(WriteExr(solution.map, folder + "/illumination.exr"));
+Status WriteRadiance(const SolvedProblem& solved, const std::string& folder) {
+  const Solution& solution = solved.solution;
+  const MapFrame frame = solved.problem.illumination.output_frame;
+  IBRDF_RETURN_IF_ERROR(
+      WriteMap(solution.map, frame, folder + "/illumination.exr"));
   if (!solution.map_std.rgb.empty()) {
-    IBRDF_RETURN_IF_ERROR(
-        WriteExr(solution.map_std, folder + "/illumination_log_std.exr"));
+    IBRDF_RETURN_IF_ERROR(WriteMap(solution.map_std, frame,
+                                   folder + "/illumination_log_std.exr"));
   }
   IBRDF_RETURN_IF_ERROR(WriteExr(solution.render, folder + "/render.exr"));
-  return WriteExr(LogResidual(inverse, solution), folder + "/residual.exr");
+  return WriteExr(LogResidual(solved.inverse, solution),
+                  folder + "/residual.exr");
 }
 
 }  // namespace
@@ -76,7 +80,7 @@ Status WriteResults(const SolvedProblem& solved, const std::string& folder) {
   IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
   RemoveEarlier(solved.problem, folder, EarlierNames(solved.solution));
   IBRDF_RETURN_IF_ERROR(WriteReflectance(solved, folder));
-  IBRDF_RETURN_IF_ERROR(WriteRadiance(solved.inverse, solved.solution, folder));
+  IBRDF_RETURN_IF_ERROR(WriteRadiance(solved, folder));
   const ResultPreviewInput preview = PreviewInput(solved);
   const StatusOr<ResultPanels> panels = MakeResultPanels(preview);
   if (!panels.ok()) return panels.status();

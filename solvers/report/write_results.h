@@ -20,8 +20,9 @@ std::vector<std::string> ResultPaths(const Problem& problem,
 // Writes brdf.binary, brdf.json, illumination.exr, illumination_log_std.exr
 // (where a search found it), render.exr, residual.exr, the PNG previews,
 // result.json and, last, report.html into `folder`, making it; each file whole
-// or absent. result.json and report.html of an earlier run go first: where one
-// is, all else is of its run.
+// or absent. The .exr maps are in the problem's output frame, those of pictures
+// in the frame camera. result.json and report.html of an earlier run go first:
+// where one is, all else is of its run.
 Status WriteResults(const SolvedProblem& solved, const std::string& folder);
 
 }  // namespace ibrdf

@@ -23,7 +23,8 @@ class JointSweepTest : public testing::SweepTest {
     Image estimate =
         ResizeMap(testing::SmoothMap(8, 16), kSweepMapHeight, kSweepMapWidth);
     for (float& v : estimate.rgb) v *= 3.0f;
-    CHECK(WriteExr(estimate, dir_.File("estimate.exr")).ok());
+    CHECK(
+        WriteMap(estimate, MapFrame::kCamera, dir_.File("estimate.exr")).ok());
   }
   Status Run() const { return SweepTest::Run(options_, JointSweep(options_)); }
   std::vector<ResultsRow> Rows() const {

@@ -58,7 +58,8 @@ TEST_F(KnownSweepsTest, KnownBrdfComparesPriorsAndSpheres) {
   Image estimate =
       ResizeMap(testing::SmoothMap(8, 16), kSweepMapHeight, kSweepMapWidth);
   for (float& v : estimate.rgb) v *= 3.0f;
-  ASSERT_TRUE(WriteExr(estimate, dir_.File("estimate.exr")).ok());
+  ASSERT_TRUE(
+      WriteMap(estimate, MapFrame::kCamera, dir_.File("estimate.exr")).ok());
   KnownBrdfSweepOptions options;
   Apply(&options);
   options.map_names = {"a"};

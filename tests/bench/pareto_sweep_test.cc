@@ -18,7 +18,7 @@ class ParetoSweepTest : public testing::SweepTest {
     options_.map_names = {"a"};
     Image map =
         ResizeMap(testing::SmoothMap(8, 16), kSweepMapHeight, kSweepMapWidth);
-    CHECK(WriteExr(map, dir_.File("estimate.exr")).ok());
+    CHECK(WriteMap(map, MapFrame::kCamera, dir_.File("estimate.exr")).ok());
     Solve(0.25, 2);
   }
   // The stand-in comes to this misfit of joined pixels after `seconds`, and
@@ -168,8 +168,9 @@ TEST_F(ParetoSweepTest, WritesRowsResumesAndComparesTimes) {
 
 TEST_F(ParetoSweepTest, SmallMapsAreComparedAtTheOthersSize) {
   // The true map itself, which the sweep has to bring to 128x64.
-  ASSERT_TRUE(
-      WriteExr(testing::SmoothMap(8, 16), dir_.File("estimate.exr")).ok());
+  ASSERT_TRUE(WriteMap(testing::SmoothMap(8, 16), MapFrame::kCamera,
+                       dir_.File("estimate.exr"))
+                  .ok());
   options_.settings = {"map-64x32"};
   ASSERT_TRUE(Run().ok());
   const ResultsRow row = Rows(ParetoColumns()).at(0);

@@ -11,6 +11,7 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/io/exr.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/solvers/bench/solver_sweep.h"
 #include "tests/support/render_testing.h"

@@ -44,6 +44,9 @@ void WriteExrs(const std::string& folder) {
   CHECK(WriteExr(Gradient(3, 2), folder + "/float.exr").ok());
   CHECK(
       WriteExr(Gradient(3, 2), folder + "/half.exr", ExrPixelType::kHalf).ok());
+  CHECK(WriteExr(Gradient(4, 2), folder + "/map.exr", ExrPixelType::kFloat,
+                 {ExrEnvmap::kLatLong, "camera"})
+            .ok());
   const Image image = Gradient(17, 9);
   for (int c = 0; c < Imf::NUM_COMPRESSION_METHODS; ++c) {
     Imf::Header header(image.width, image.height);

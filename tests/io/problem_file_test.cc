@@ -67,11 +67,11 @@ image: {file: in.exr, mask: sub/../mask.png}
 camera: {type: perspective, fov_degrees: 40, from: [0, 1, 5], to: [0, 0, 1], up: [1, 0, 0]}
 geometry: {mesh: /abs/bunny.obj, fit: none}
 reflectance: {model: m.ibrdf, lobes: 3, prior_sigma: 0.25}
-illumination: {known: env.hdr, unet_channels: 16}
+illumination: {known: env.hdr, unet_channels: 16, frame: blender, output_frame: openexr}
 likelihood: {scale: 0.02, epsilon: 1e-5}
 effects: [visibility, reflectance_map]
 solver: {method: lbfgs, quadrature: fine, seconds: 5, tolerance: 0, max_iterations: 7, seed: 9}
-truth: {brdf: gt.binary, illumination: gt.exr}
+truth: {brdf: gt.binary, illumination: gt.exr, frame: cube_cross}
 )");
   ASSERT_TRUE(read.ok()) << read.status().message();
   const Problem& p = *read;
@@ -84,6 +84,9 @@ truth: {brdf: gt.binary, illumination: gt.exr}
   EXPECT_EQ(dir_.File("m.ibrdf"), p.reflectance.model);
   EXPECT_EQ(3, p.reflectance.lobes);
   EXPECT_EQ(dir_.File("env.hdr"), p.illumination.known_file);
+  EXPECT_EQ(MapFrame::kBlender, p.illumination.frame);
+  EXPECT_EQ(MapFrame::kOpenExr, p.illumination.output_frame);
+  EXPECT_EQ(MapFrame::kCubeCross, p.truth.frame);
   EXPECT_FALSE(p.illumination.sized);
   EXPECT_EQ(16, p.illumination.unet_channels);
   EXPECT_EQ(0.02, *p.likelihood.scale);
@@ -96,6 +99,27 @@ truth: {brdf: gt.binary, illumination: gt.exr}
   EXPECT_EQ(9, *p.solver.seed);
   EXPECT_EQ(dir_.File("gt.exr"), p.truth.illumination);
   EXPECT_TRUE(CheckSolvable(p).ok());
+}
+
+TEST_F(ProblemFile, FramesOfMapsHaveTheLibrarysWords) {
+  const std::string least = kLeast;
+  const Problem none = *Read(least);
+  EXPECT_FALSE(none.illumination.frame.has_value());
+  EXPECT_FALSE(none.truth.frame.has_value());
+  EXPECT_EQ(MapFrame::kCamera, none.illumination.output_frame);
+  for (const MapFrame frame : kMapFrames) {
+    const std::string word = MapFrameName(frame);
+    const StatusOr<Problem> read =
+        Read(least + "illumination: {known: a.exr, frame: " + word +
+             ", output_frame: " + word + "}\ntruth: {illumination: b.exr, " +
+             "frame: " + word + "}");
+    ASSERT_TRUE(read.ok()) << read.status().message();
+    EXPECT_EQ(frame, read->illumination.frame);
+    EXPECT_EQ(frame, read->illumination.output_frame);
+    EXPECT_EQ(frame, read->truth.frame);
+  }
+  EXPECT_FALSE(Read(least + "illumination: {known: a.exr, frame: auto}")
+                   ->illumination.frame.has_value());
 }
 
 TEST_F(ProblemFile, GaugesAreOfJointProblems) {
@@ -178,6 +202,16 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {least + "camera: {type: perspective, from: [0, 0]}",
        "camera.from: expected a list of three"},
       {least + "illumination: {width: 63}", "expected an even number"},
+      {least + "illumination: {frame: camera}",
+       "illumination.frame: expected with illumination.known only"},
+      {least + "illumination: {known: {sky: {}}, frame: camera}",
+       "illumination.frame: expected with the file of a known map only"},
+      {least + "illumination: {known: a.exr, frame: maya}",
+       "illumination.frame: expected auto, camera, openexr, mitsuba, "},
+      {least + "illumination: {output_frame: auto}",
+       "illumination.output_frame: expected camera, openexr, "},
+      {least + "truth: {frame: camera}",
+       "truth.frame: expected with truth.illumination only"},
       {least + "illumination: {unet_channels: 0}",
        "illumination.unet_channels: expected a whole number in [1, 128], "
        "found '0'"},

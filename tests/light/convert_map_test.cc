@@ -357,6 +357,26 @@ TEST(ConvertMap, TakesTheSmallestMaps) {
   }
 }
 
+TEST(ConvertMap, TheLibrarysFrameIsTheCamerasMirrored) {
+  const Image map = RoughMap(MapGrid(kLibraryMapFrame, {16, 8}));
+  const Image file = FromLibraryFrame("m", map, MapFrame::kCamera).value();
+  ASSERT_EQ(16, file.width);
+  for (int r = 0; r < 8; ++r) {
+    for (int c = 0; c < 16; ++c) {
+      EXPECT_EQ(
+          0, std::memcmp(map.At(15 - c, r), file.At(c, r), 3 * sizeof(float)));
+    }
+  }
+  EXPECT_EQ(map.rgb, ToLibraryFrame("m", file, MapFrame::kCamera)->rgb);
+  EXPECT_EQ(map.rgb, ToLibraryFrame("m", map, MapFrame::kIbrdf01)->rgb);
+  EXPECT_FALSE(ToLibraryFrame("m", map, MapFrame::kCubeCross).ok());
+  // As fine as a cross of faces of 4, and of a probe.
+  const Image cross = RoughMap(MapGrid(MapFrame::kCubeCross, {12, 16}));
+  EXPECT_EQ(16, ToLibraryFrame("m", cross, MapFrame::kCubeCross)->width);
+  const Image probe = RoughMap(MapGrid(MapFrame::kDebevecProbe, {7, 7}));
+  EXPECT_EQ(8, ToLibraryFrame("m", probe, MapFrame::kDebevecProbe)->width);
+}
+
 TEST(ConvertMap, RefusesSizesOfOtherFrames) {
   const Image square(8, 8);
   EXPECT_EQ(

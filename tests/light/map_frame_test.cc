@@ -432,6 +432,17 @@ TEST(MapFrame, SizesForRowsAreMaps) {
       EXPECT_TRUE(CheckMapSize("f", frame, SizeForRows(frame, rows)).ok());
     }
   }
+  for (const MapFrame frame : kMapFrames) {
+    for (const int rows : {1, 2, 7, 64, 1000}) {
+      // Faces of a cube have whole texels.
+      const int even =
+          frame == MapFrame::kCubeCross ? (rows + 1) / 2 * 2 : rows;
+      EXPECT_EQ(even, RowsForSize(frame, SizeForRows(frame, rows)));
+    }
+  }
+  EXPECT_EQ(10, RowsForSize(MapFrame::kOpenExr, {5, 30}));
+  EXPECT_EQ(10, RowsForSize(MapFrame::kCubeCross, {20, 15}));
+  EXPECT_EQ(4, RowsForSize(MapFrame::kDebevecProbe, {7, 7}));
   EXPECT_EQ((MapSize{128, 64}), SizeForRows(MapFrame::kCamera, 64));
   EXPECT_EQ((MapSize{128, 128}), SizeForRows(MapFrame::kDebevecProbe, 64));
   EXPECT_EQ((MapSize{96, 128}), SizeForRows(MapFrame::kCubeCross, 64));

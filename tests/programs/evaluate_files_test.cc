@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/png.h"
+#include "ibrdf/solvers/programs/draw_map_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -50,7 +52,10 @@ TEST(EvaluateFiles, IlluminationAndImage) {
   image.At(3, 1)[0] = 77.0f;
   ASSERT_TRUE(WriteExr(image, dir.File("a.exr")).ok());
   const NamedMetrics illumination =
-      EvaluateIlluminationFiles(dir.File("a.exr"), dir.File("b.exr")).value();
+      EvaluateIlluminationFiles({dir.File("a.exr"), std::nullopt},
+                                {dir.File("b.exr"), std::nullopt})
+          .value()
+          .metrics;
   EXPECT_EQ(
       (std::vector<std::string>{"illumination_relative_log_rmse",
                                 "illumination_relative_log_rmse_aligned",
@@ -79,6 +84,81 @@ TEST(EvaluateFiles, IlluminationAndImage) {
                                dir.File("small.png"))
                 .status()
                 .message());
+}
+
+// Stripes of `width` over 16 texels, by the texel of the finest map.
+Image Stripes(int width, int height) {
+  Image map(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        map.At(x, y)[c] = 1.0f + static_cast<float>(8 * x / width);
+      }
+    }
+  }
+  return map;
+}
+
+TEST(EvaluateFiles, MapsOfTwoSizesAreComparedAtTheCoarserOne) {
+  const TempDir dir;
+  ASSERT_TRUE(WriteExr(Stripes(8, 4), dir.File("coarse.exr")).ok());
+  ASSERT_TRUE(WriteExr(Stripes(32, 16), dir.File("fine.exr")).ok());
+  for (const auto& [a, b] : {std::pair("coarse.exr", "fine.exr"),
+                             std::pair("fine.exr", "coarse.exr")}) {
+    const StatusOr<IlluminationComparison> compared = EvaluateIlluminationFiles(
+        {dir.File(a), std::nullopt}, {dir.File(b), std::nullopt});
+    ASSERT_TRUE(compared.ok()) << compared.status().message();
+    EXPECT_EQ((MapSize{8, 4}), compared->compared_at);
+    // The stripes are as wide as the coarser texels.
+    EXPECT_NEAR(0.0, compared->metrics[0].second, 1e-6);
+    EXPECT_TRUE(compared->warnings.empty());
+  }
+}
+
+TEST(EvaluateFiles, MapsOfTwoFramesAreTheSameLight) {
+  const TempDir dir;
+  const Image map = Stripes(32, 16);
+  ASSERT_TRUE(WriteExr(map, dir.File("a.exr")).ok());
+  Image mirrored = map;
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      std::copy_n(map.At(31 - x, y), 3, mirrored.At(x, y));
+    }
+  }
+  ASSERT_TRUE(WriteExr(mirrored, dir.File("b.exr")).ok());
+  const auto error = [&](std::optional<MapFrame> a, std::optional<MapFrame> b) {
+    return EvaluateIlluminationFiles({dir.File("a.exr"), a},
+                                     {dir.File("b.exr"), b})
+        .value()
+        .metrics[0]
+        .second;
+  };
+  EXPECT_EQ(0.0, error(std::nullopt, MapFrame::kIbrdf01));
+  EXPECT_EQ(0.0, error(MapFrame::kIbrdf01, MapFrame::kCamera));
+  EXPECT_LT(0.2, error(std::nullopt, std::nullopt));
+  const Status refused =
+      EvaluateIlluminationFiles({dir.File("a.exr"), MapFrame::kDebevecProbe},
+                                {dir.File("b.exr"), std::nullopt})
+          .status();
+  EXPECT_EQ(0u, refused.message().find(dir.File("a.exr") +
+                                       ": frame debevec_probe expects"))
+      << refused.message();
+}
+
+TEST(EvaluateFiles, MapsAreDrawn) {
+  const TempDir dir;
+  ASSERT_TRUE(WriteExr(Stripes(8, 4), dir.File("a.exr")).ok());
+  std::vector<std::string> warnings;
+  EXPECT_TRUE(
+      DrawMapFile(dir.File("a.exr"), std::nullopt, dir.File("a.png"), &warnings)
+          .ok());
+  EXPECT_TRUE(ReadMask(dir.File("a.png")).ok());
+  EXPECT_FALSE(
+      DrawMapFile(dir.File("a.exr"), std::nullopt, dir.File("a.jpg"), &warnings)
+          .ok());
+  EXPECT_FALSE(DrawMapFile(dir.File("a.exr"), MapFrame::kCubeCross,
+                           dir.File("b.png"), &warnings)
+                   .ok());
 }
 
 TEST(EvaluateFiles, MissingFilesAreNamed) {

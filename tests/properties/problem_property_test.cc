@@ -98,6 +98,12 @@ SkyOptions AnySky() {
   return sky;
 }
 
+// Or none.
+std::optional<MapFrame> AnyFrame() {
+  if (*rc::gen::arbitrary<bool>()) return std::nullopt;
+  return AnyOf<MapFrame>(kMapFrames.size());
+}
+
 // To be solved or, without an image, rendered; what does not apply is as by
 // default.
 Problem AnyProblem() {
@@ -128,7 +134,10 @@ Problem AnyProblem() {
     p.solver.tolerance = AnyNumber(0.0, 1.0 - 1e-16);
     p.solver.max_iterations = *rc::gen::inRange(0, 100000001);
     if (*rc::gen::arbitrary<bool>()) p.truth.brdf = AnyPath();
-    if (*rc::gen::arbitrary<bool>()) p.truth.illumination = AnyPath();
+    if (*rc::gen::arbitrary<bool>()) {
+      p.truth.illumination = AnyPath();
+      p.truth.frame = AnyFrame();
+    }
   }
   if (*rc::gen::arbitrary<bool>()) {
     p.solver.seed =
@@ -161,8 +170,10 @@ Problem AnyProblem() {
     p.illumination.width = 2 * *rc::gen::inRange(4, 4097);
     p.illumination.height = *rc::gen::inRange(4, 8193);
   }
+  p.illumination.output_frame = AnyOf<MapFrame>(kMapFrames.size());
   if (map_file) {
     p.illumination.known_file = AnyPath();
+    p.illumination.frame = AnyFrame();
   } else if (rendered || p.kind == ProblemKind::kReflectance) {
     p.illumination.sky = AnySky();
   } else {
@@ -250,6 +261,9 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
   if (p.illumination.sky.has_value()) {
     AssertSame(*p.illumination.sky, *q.illumination.sky);
   }
+  RC_ASSERT(p.illumination.frame == q.illumination.frame);
+  RC_ASSERT(p.illumination.output_frame == q.illumination.output_frame);
+  RC_ASSERT(p.truth.frame == q.truth.frame);
   RC_ASSERT(p.likelihood.scale == q.likelihood.scale);
   RC_ASSERT(p.likelihood.epsilon == q.likelihood.epsilon);
   RC_ASSERT(p.effects.mode == q.effects.mode);

@@ -10,8 +10,8 @@
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/io/radiance_hdr.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/report/preview.h"
-#include "ibrdf/solvers/report/tone_map.h"
 #include "tests/properties/generators.h"
 #include "tests/support/temp_dir.h"
 

@@ -16,6 +16,7 @@ namespace {
 ObjectLook LookAt(const Image& image, const Image& normals,
                   const std::vector<ShadingPoint>& points) {
   ObjectLook look;
+  look.radiance = image;
   look.normal_map = normals;
   look.silhouette = Mask(image.width, image.height, 0);
   for (const ShadingPoint& point : points) {
@@ -61,7 +62,7 @@ TEST(CheckPanels, MarksStandWhereThePixelsAre) {
   const std::vector<ShadingPoint> points = PointsOf(normals);
   const ObjectLook look = LookAt(image, normals, points);
   const Image marked =
-      MarkedPixels(image, look, points, ExposedPhotograph(image, look.mask));
+      MarkedPixels(look, points, ExposedPhotograph(image, look.mask));
   float zero[3], no_number[3];
   ColourOf(Mark::kZero, zero);
   ColourOf(Mark::kNotFinite, no_number);

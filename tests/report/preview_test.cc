@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ibrdf/solvers/report/tone_map.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 
 namespace ibrdf {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/report/brdf_sphere.h"
+#include "ibrdf/solvers/report/result_images.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -45,6 +46,41 @@ TEST(ResultPreview, ReferencesAddPanels) {
   const Rgb8Image alone = MakeOverview(input);
   input.reference_illumination = ProceduralSky(16, 32);  // of another size
   EXPECT_GT(MakeOverview(input).width, alone.width);
+}
+
+TEST(ResultPreview, MapsAreShownAsSeenFromTheObject) {
+  ResultPreviewInput input = SmallInput();
+  input.illumination = ProceduralSky(8, 16);
+  input.middle_of_map = "what the camera looks at";
+  const ResultPanels panels = *MakeResultPanels(input);
+  const Image& map = input.illumination;
+  const Image& shown = panels.maps.at(0).image;
+  ASSERT_EQ(map.width, shown.width);
+  EXPECT_NE(map.rgb, shown.rgb);
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_EQ(map.At(map.width - 1 - x, y)[c], shown.At(x, y)[c]);
+      }
+    }
+  }
+  EXPECT_NE(std::string::npos,
+            panels.maps[0].label.find(
+                "seen from the object: the middle is what the camera looks at"))
+      << panels.maps[0].label;
+}
+
+TEST(ResultPreview, TheMiddleOfAMapIsAheadOfCamerasThatLookAlongMinusZ) {
+  Camera camera;
+  EXPECT_EQ("what the camera looks at", MiddleOfMapPicture(camera));
+  camera.type = CameraType::kPerspective;
+  camera.from = {0.0, 0.4, 4.0};
+  EXPECT_EQ("what the camera looks at", MiddleOfMapPicture(camera));
+  camera.from = {4.0, 0.0, 0.5};
+  EXPECT_EQ("-z", MiddleOfMapPicture(camera));
+  camera.from = {0.0, 0.0, 4.0};
+  camera.up = {1.0, 0.0, 0.0};
+  EXPECT_EQ("-z", MiddleOfMapPicture(camera));
 }
 
 TEST(ResultPreview, AKnownMapIsNoEstimate) {

@@ -9,11 +9,13 @@
 #include "ibrdf/image/rgb8_image.h"
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/image_file.h"
+#include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/model_file.h"
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/io/problem_file.h"
+#include "ibrdf/light/convert_map.h"
 #include "ibrdf/solvers/problem/load_problem.h"
 #include "ibrdf/solvers/report/write_results.h"
 #include "ibrdf/solvers/solve/solve.h"
@@ -281,6 +283,69 @@ TEST_F(SolveProblemTest, ResultsAreWholeAndReadBack) {
   }
 }
 
+TEST_F(SolveProblemTest, MapsAreWrittenInTheOutputFrameAndReadBack) {
+  for (const MapFrame frame : kMapFrames) {
+    const std::string word = MapFrameName(frame);
+    const StatusOr<InverseProblem> p =
+        Load({"problem=illumination", "reflectance={known: {lambertian: 0.5}}",
+              "solver.max_iterations=0", "illumination.output_frame=" + word});
+    ASSERT_TRUE(p.ok()) << p.status().message();
+    StatusOr<Solution> e = SolveInverseRendering(*p, nullptr, nullptr);
+    ASSERT_TRUE(e.ok()) << e.status().message();
+    e->map = SmoothMap(8, 16);
+    e->map_std = SmoothMap(4, 8);
+    const std::string out = dir_.File("out_" + word);
+    const Status written = Write(*p, *e, out);
+    ASSERT_TRUE(written.ok()) << written.message();
+    const nlohmann::json result =
+        nlohmann::json::parse(ReadBytes(out + "/result.json"));
+    EXPECT_EQ(word, result["illumination_frame"]);
+    for (const auto& [file, map] :
+         {std::pair("/illumination.exr", e->map),
+          std::pair("/illumination_log_std.exr", e->map_std)}) {
+      const StatusOr<StoredMap> stored =
+          ReadStoredMap(out + file, std::nullopt);
+      ASSERT_TRUE(stored.ok()) << stored.status().message();
+      EXPECT_EQ(frame, stored->frame);
+      EXPECT_EQ(FromLibraryFrame("map", map, frame)->rgb, stored->image.rgb)
+          << word << file;
+    }
+  }
+}
+
+// The estimated map of a solve, known to the next: the same light.
+TEST_F(SolveProblemTest, AnEstimatedMapIsTheSameLightWhenItIsKnown) {
+  const StatusOr<InverseProblem> p =
+      Load({"problem=illumination", "reflectance={known: {lambertian: 0.5}}"});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  const StatusOr<Solution> e = SolveInverseRendering(*p, nullptr, nullptr);
+  ASSERT_TRUE(e.ok()) << e.status().message();
+  const std::string out = dir_.File("out");
+  ASSERT_TRUE(Write(*p, *e, out).ok());
+  const StatusOr<InverseProblem> q =
+      Load({"problem=reflectance",
+            "illumination={known: out/illumination.exr, width: 16}"});
+  ASSERT_TRUE(q.ok()) << q.status().message();
+  EXPECT_EQ(p->warnings, q->warnings);
+  EXPECT_EQ(e->map.rgb, q->known_map->rgb);
+}
+
+TEST_F(SolveProblemTest, TruthIsReadInItsFrame) {
+  const Image map = SmoothMap(8, 16);
+  ASSERT_TRUE(WriteMap(map, MapFrame::kCamera, dir_.File("mine.exr")).ok());
+  TruthSpec truth;
+  truth.illumination = dir_.File("mine.exr");
+  EXPECT_EQ(map.rgb, LoadTruth(truth, 16, 8)->illumination.rgb);
+  EXPECT_TRUE(LoadTruth(truth, 16, 8)->warnings.empty());
+  truth.frame = MapFrame::kMitsuba;
+  const StatusOr<Truth> turned = LoadTruth(truth, 16, 8);
+  ASSERT_TRUE(turned.ok()) << turned.status().message();
+  EXPECT_NE(map.rgb, turned->illumination.rgb);
+  ASSERT_EQ(size_t{1}, turned->warnings.size());
+  EXPECT_NE(std::string::npos,
+            turned->warnings[0].find("ibrdf:frame says camera"));
+}
+
 TEST_F(SolveProblemTest, PosteriorSaysHowWellItIsConditioned) {
   const StatusOr<InverseProblem> p = Load({});
   ASSERT_TRUE(p.ok()) << p.status().message();
@@ -381,14 +446,14 @@ TEST_F(SolveProblemTest, TruthThatCannotServeIsRefused) {
     EXPECT_NE(std::string::npos, s.message().find(word)) << s.message();
   };
   EXPECT_TRUE(LoadTruth({}, 16, 8).ok());
-  expect_refused({dir_.File("gone.binary"), ""}, "gone.binary");
-  expect_refused({"", dir_.File("gone.exr")}, "gone.exr");
+  expect_refused({dir_.File("gone.binary"), "", {}}, "gone.binary");
+  expect_refused({"", dir_.File("gone.exr"), {}}, "gone.exr");
   MerlTable nothing;
   nothing.raw.assign(size_t{3} * kMerlBins, -1.0);
   ASSERT_TRUE(WriteMerl(nothing, dir_.File("nothing.binary")).ok());
-  expect_refused({dir_.File("nothing.binary"), ""}, "nothing.binary");
+  expect_refused({dir_.File("nothing.binary"), "", {}}, "nothing.binary");
   ASSERT_TRUE(WriteExr(ConstantMap(8, 16, 2.0f), dir_.File("even.exr")).ok());
-  expect_refused({"", dir_.File("even.exr")}, "even.exr");
+  expect_refused({"", dir_.File("even.exr"), {}}, "even.exr");
 }
 
 TEST_F(SolveProblemTest, FolderIsPreparedOrNamed) {

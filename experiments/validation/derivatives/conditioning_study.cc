@@ -57,8 +57,8 @@ void StudyMarginalHessian(const NeuralBrdfModel& model,
   resolution.map_width = 16;
   resolution.map_height = 8;
   const MarginalReflectance reflectance(
-      FlowLobes::Factory(model, prior.num_lobes(), 1), points, radiance,
-      LightProcess(), resolution, 0);
+      FlowLobes::Factory(model, prior.num_lobes(), 1), points,
+      MakeObservations(radiance), LightProcess(), resolution, 0);
   const Eigen::VectorXd noise =
       Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.0025);
   LightMode mode;

@@ -147,8 +147,8 @@ class MarginalStudy {
     transport.Render(lobes.Grid(truth.data()),
                      testing::SmoothMap(8, 16).rgb.data(), radiance.data());
     const MarginalReflectance reflectance(FlowLobes::Factory(model_, 2, 1),
-                                          points_, radiance, LightProcess(),
-                                          resolution_, 0);
+                                          points_, MakeObservations(radiance),
+                                          LightProcess(), resolution_, 0);
     const Eigen::Index cells = reflectance.bins().num_bins();
     const Eigen::VectorXd noise = Eigen::VectorXd::Constant(3 * cells, 0.0025);
 

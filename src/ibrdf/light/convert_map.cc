@@ -127,6 +127,26 @@ StatusOr<Image> ConvertMap(const std::string& where, const Image& map,
   return ResampleSphere(map, source, target, num_threads);
 }
 
+StatusOr<Image> ToLibraryFrame(const std::string& where, const Image& map,
+                               MapFrame from, int num_threads) {
+  const MapSize size = {map.width, map.height};
+  IBRDF_RETURN_IF_ERROR(CheckMapSize(where, from, size));
+  return ConvertMap(where, map, from, kLibraryMapFrame,
+                    SizeForRows(kLibraryMapFrame, RowsForSize(from, size)),
+                    num_threads);
+}
+
+StatusOr<Image> FromLibraryFrame(const std::string& where, const Image& map,
+                                 MapFrame to, int num_threads) {
+  const int rows = std::max(map.height, (map.width + 1) / 2);
+  const MapSize size = SizeForRows(to, rows);
+  if (map.width == 2 * map.height) {
+    return ConvertMap(where, map, kLibraryMapFrame, to, size, num_threads);
+  }
+  return ConvertMap(where, ResizeMap(map, rows, 2 * rows), kLibraryMapFrame, to,
+                    size, num_threads);
+}
+
 Eigen::Array3d TotalRadiance(const Image& map, const MapGrid& grid) {
   CHECK(map.width == grid.size().width && map.height == grid.size().height);
   const std::vector<double> angles = grid.SolidAngles();

@@ -37,6 +37,17 @@ StatusOr<Image> ConvertMap(const std::string& where, const Image& map,
                            MapFrame from, MapFrame to, MapSize size,
                            int num_threads = 0);
 
+// A map of a file's frame as the library has it, about as fine (RowsForSize).
+// Refuses sizes that CheckMapSize refuses.
+StatusOr<Image> ToLibraryFrame(const std::string& where, const Image& map,
+                               MapFrame from, int num_threads = 0);
+
+// A map of the library as a file of the frame `to` has it, of SizeForRows. A
+// map that is not twice as wide as high is refined until it is, so that what is
+// written can be read.
+StatusOr<Image> FromLibraryFrame(const std::string& where, const Image& map,
+                                 MapFrame to, int num_threads = 0);
+
 // Integral of radiance over the sphere, W/m^2 per channel, texels constant.
 Eigen::Array3d TotalRadiance(const Image& map, const MapGrid& grid);
 

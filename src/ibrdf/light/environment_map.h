@@ -11,6 +11,12 @@ namespace ibrdf {
 // An equirectangular map is an Image of height H, width W (y up): row r is
 // theta = pi (r + 1/2) / H from +y, column c is phi = 2 pi (c + 1/2) / W, and
 // the direction is (sin theta sin phi, cos theta, sin theta cos phi).
+//
+// This is the frame ibrdf_0_1 of map_frame.h, kLibraryMapFrame: every map in
+// memory has it, whatever its file has. Maps of files have other frames, camera
+// by default, which is this one mirrored left to right. They are exchanged
+// where files are read and written, in io/map_file.h, and nowhere else; the
+// exchange with camera moves whole columns and keeps every bit.
 
 // The size of a map, texels.
 struct MapSize {

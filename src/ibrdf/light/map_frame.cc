@@ -169,6 +169,15 @@ MapSize SizeForRows(MapFrame frame, int rows) {
   }
 }
 
+int RowsForSize(MapFrame frame, MapSize size) {
+  const Status status = CheckMapSize("map", frame, size);
+  CHECK(status.ok()) << status.message();
+  if (const std::optional<CubeLayout> cube = CubeOf(frame, size)) {
+    return 2 * size.width / CellsOf(*cube).across;  // pi / 2 over a face
+  }
+  return frame == MapFrame::kDebevecProbe ? (size.height + 1) / 2 : size.height;
+}
+
 MapGrid::MapGrid(MapFrame frame, MapSize size) : frame_(frame), size_(size) {
   const Status status = CheckMapSize("map", frame, size);
   CHECK(status.ok()) << status.message();

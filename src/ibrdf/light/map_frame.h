@@ -90,6 +90,9 @@ constexpr std::array<MapFrame, 8> kMapFrames = {
     MapFrame::kBlender,   MapFrame::kPolyHavenYUp, MapFrame::kDebevecProbe,
     MapFrame::kCubeCross, MapFrame::kIbrdf01};
 
+// The frame of all maps in memory (environment_map.h).
+constexpr MapFrame kLibraryMapFrame = MapFrame::kIbrdf01;
+
 // The word of problem files: camera, openexr, mitsuba, blender, polyhaven_y_up,
 // debevec_probe, cube_cross, ibrdf_0_1.
 const char* MapFrameName(MapFrame frame);
@@ -110,6 +113,10 @@ Status CheckMapSize(const std::string& where, MapFrame frame, MapSize size);
 // The size of a map of this frame whose texels are about as fine as those of a
 // latlong map of `rows` rows. A cube is a vertical cross.
 MapSize SizeForRows(MapFrame frame, int rows);
+
+// The rows of a latlong map whose texels are about as fine as those of a map
+// of this frame and size, which CheckMapSize accepts. It is >= 1.
+int RowsForSize(MapFrame frame, MapSize size);
 
 // A point of an image, in texels from its top left corner; the centre of texel
 // (r, c) is (c + 1/2, r + 1/2).

@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/report/tone_map.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 
 #include <glog/logging.h>
 

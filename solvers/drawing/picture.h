@@ -16,6 +16,7 @@ using Ink = std::array<uint8_t, 3>;
 inline constexpr Ink kBlackInk = {25, 25, 25};
 inline constexpr Ink kGreyInk = {110, 110, 110};
 inline constexpr Ink kFaintInk = {200, 200, 200};
+inline constexpr Ink kGroundInk = {250, 250, 250};
 
 // Positions in pixels from the upper left corner; what lies outside is cut.
 class Picture {
@@ -48,6 +49,9 @@ class Picture {
   // A rectangle's outline, `thickness` pixels inwards.
   void Frame(double x, double y, double width, double height, int thickness,
              const Ink& ink);
+
+  // Pixel by pixel; (left, top) is where its upper left corner goes.
+  void Place(const Rgb8Image& image, int left, int top);
 
   Rgb8Image ToImage() const;
 

@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/report/picture.h"
+#include "ibrdf/solvers/drawing/picture.h"
 
 #include <glog/logging.h>
 
@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "ibrdf/solvers/report/tone_map.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 
 namespace ibrdf {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kCapitals = 21.0;  // height of capitals at scale 1, pixels
 constexpr int kShift = 4;           // fractional bits of positions
-const cv::Scalar kGround(250, 250, 250);
+const cv::Scalar kGround(kGroundInk[0], kGroundInk[1], kGroundInk[2]);
 
 cv::Scalar Colour(const Ink& ink) {
   return {ink[0] * 1.0, ink[1] * 1.0, ink[2] * 1.0};
@@ -130,6 +130,19 @@ void Picture::Photo(const Image& image, double x, double y, int width,
         canvas_->pixels.at<cv::Vec3b>(top + v, left + u)[c] =
             EncodeSrgb(resized.at<cv::Vec3f>(v, u)[c]);
       }
+    }
+  }
+}
+
+void Picture::Place(const Rgb8Image& image, int left, int top) {
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const int px = left + x, py = top + y;
+      if (px < 0 || py < 0 || px >= canvas_->pixels.cols ||
+          py >= canvas_->pixels.rows) {
+        continue;
+      }
+      std::copy_n(image.At(x, y), 3, canvas_->pixels.at<cv::Vec3b>(py, px).val);
     }
   }
 }
