@@ -244,15 +244,52 @@ void ConfigReader::Text(const std::string& key, std::string* out) {
   if (text != nullptr) *out = *text;
 }
 
+std::string ConfigReader::Resolved(const std::string& name) const {
+  const std::filesystem::path path(name);
+  if (path.is_absolute() || context_->folder.empty()) return path.string();
+  return (std::filesystem::path(context_->folder) / path)
+      .lexically_normal()
+      .string();
+}
+
 void ConfigReader::Path(const std::string& key, std::string* out) {
   const std::string* name = FindText(key, "the name of a file");
-  if (name == nullptr) return;
-  const std::filesystem::path path(*name);
-  *out = path.is_absolute() || context_->folder.empty()
-             ? path.string()
-             : (std::filesystem::path(context_->folder) / path)
-                   .lexically_normal()
-                   .string();
+  if (name != nullptr) *out = Resolved(*name);
+}
+
+void ConfigReader::PathList(const std::string& key,
+                            std::vector<std::string>* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  std::vector<std::string> paths;
+  bool ok = node->kind == Kind::kList && !node->items.empty();
+  for (size_t i = 0; ok && i < node->items.size(); ++i) {
+    ok = node->items[i].kind == Kind::kScalar && !node->items[i].scalar.empty();
+    if (ok) paths.push_back(Resolved(node->items[i].scalar));
+  }
+  if (!ok) {
+    FailExpected(key, "a list of files' names");
+    return;
+  }
+  *out = std::move(paths);
+}
+
+void ConfigReader::NumberList(const std::string& key, const Range& range,
+                              std::vector<double>* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  std::vector<double> values;
+  bool ok = node->kind == Kind::kList && !node->items.empty();
+  for (size_t i = 0; ok && i < node->items.size(); ++i) {
+    values.push_back(0.0);
+    ok = ParseNumber(node->items[i], &values.back()) &&
+         Inside(values.back(), range);
+  }
+  if (!ok) {
+    FailExpected(key, "a list, each " + RangeText(range));
+    return;
+  }
+  *out = std::move(values);
 }
 
 void ConfigReader::Triple(const std::string& key, const Range& range,

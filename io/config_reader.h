@@ -54,6 +54,10 @@ class ConfigReader {
   void Text(const std::string& key, std::string* out);
   // A file's name, resolved against the folder.
   void Path(const std::string& key, std::string* out);
+  // A list of files' names, each as Path; of numbers.
+  void PathList(const std::string& key, std::vector<std::string>* out);
+  void NumberList(const std::string& key, const Range& range,
+                  std::vector<double>* out);
   // Three numbers; with `one_for_all` one number stands for three.
   void Triple(const std::string& key, const Range& range, bool one_for_all,
               Eigen::Vector3d* out);
@@ -63,6 +67,8 @@ class ConfigReader {
   void FailExpected(const std::string& key, const std::string& expected);
 
  private:
+  // A file's name against the folder.
+  std::string Resolved(const std::string& name) const;
   // Null when absent, and, reported as not what is expected, when it is no
   // text or empty.
   const std::string* FindText(const std::string& key,

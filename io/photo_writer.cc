@@ -50,8 +50,8 @@ std::string EncodeCodesAsPng(const CodeImage& codes) {
   CheckCodes(codes);
   const int depth = codes.bits > 8 ? 16 : 8;
   std::string bytes;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr,
-                                            FailPng, nullptr);
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, FailPng, nullptr);
   CHECK(png != nullptr);
   png_infop info = png_create_info_struct(png);
   CHECK(info != nullptr);

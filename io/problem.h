@@ -52,7 +52,10 @@ struct ImageSpec {
   // `black` they are 0. Unset: the largest code, and 0.
   std::optional<double> white, black;
   double exposure = 1.0;  // values are the curve of exposure times radiance
-  int width = 0;          // pixels, of an image to be rendered; 0 with a file
+  // Further files of the same view, each of its own exposure.
+  std::vector<std::string> brackets;
+  std::vector<double> bracket_exposures;
+  int width = 0;  // pixels, of an image to be rendered; 0 with a file
   int height = 0;
 };
 

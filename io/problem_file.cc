@@ -25,6 +25,8 @@ void ReadImageSpec(ProblemReader reader, ImageSpec* image) {
   reader.Read("white", &image->white);
   reader.Read("black", &image->black);
   reader.Read("exposure", &image->exposure);
+  reader.Read("brackets", &image->brackets);
+  reader.Read("bracket_exposures", &image->bracket_exposures);
   reader.Read("width", &image->width);
   reader.Read("height", &image->height);
   if (reader.Has("file") == (reader.Has("width") || reader.Has("height"))) {
@@ -342,6 +344,9 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
       {"illumination.known", problem.illumination.known_file},
       {"truth.brdf", problem.truth.brdf},
       {"truth.illumination", problem.truth.illumination}};
+  for (const std::string& bracket : problem.image.brackets) {
+    files.push_back({"image.brackets", bracket});
+  }
   files.erase(std::remove_if(files.begin(), files.end(),
                              [](const NamedFile& f) { return f.path.empty(); }),
               files.end());
@@ -354,6 +359,12 @@ Status CheckSolvable(const Problem& problem) {
   };
   if (problem.image.file.empty()) {
     return fail("image.file", "expected the image to be explained");
+  }
+  if (problem.image.brackets.size() != problem.image.bracket_exposures.size()) {
+    return fail("image.bracket_exposures",
+                "expected one for each of image.brackets, " +
+                    std::to_string(problem.image.brackets.size()) + ", found " +
+                    std::to_string(problem.image.bracket_exposures.size()));
   }
   for (const Effect approximation : {Effect::kHarmonics, Effect::kGaussians}) {
     if (problem.effects.Lists(approximation)) {

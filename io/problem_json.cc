@@ -34,6 +34,10 @@ json ImageJson(const ImageSpec& image) {
   out["white"] = or_auto(image.white);
   out["black"] = or_auto(image.black);
   out["exposure"] = image.exposure;
+  if (!image.brackets.empty()) out["brackets"] = image.brackets;
+  if (!image.bracket_exposures.empty()) {
+    out["bracket_exposures"] = image.bracket_exposures;
+  }
   return out;
 }
 

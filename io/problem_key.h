@@ -14,6 +14,8 @@ enum class ValueType {
   kInteger,       // in [least, most]
   kTriple,        // a list of three numbers, each in `range`
   kOneOrTriple,   // the same, or one number for all three
+  kNumberList,    // a list of numbers, each in `range`
+  kPathList,      // a list of names of files
   kChoice,        // one of `words`
   kWordOrList,    // one of `words`, or a list of some of `list_words`
   kPath,          // the name of a file, or the default's word

@@ -62,6 +62,16 @@ void ProblemReader::Read(const std::string& name, std::string* path) {
   if (!by_default) reader_.Path(name, path);
 }
 
+void ProblemReader::Read(const std::string& name,
+                         std::vector<std::string>* paths) {
+  Typed(name, ValueType::kPathList);
+  reader_.PathList(name, paths);
+}
+
+void ProblemReader::Read(const std::string& name, std::vector<double>* out) {
+  reader_.NumberList(name, Typed(name, ValueType::kNumberList).range, out);
+}
+
 void ProblemReader::Read(const std::string& name, Eigen::Vector3d* out) {
   reader_.Triple(name, Typed(name, ValueType::kTriple).range,
                  /*one_for_all=*/false, out);

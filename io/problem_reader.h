@@ -30,6 +30,8 @@ class ProblemReader {
   void Read(const std::string& name, double* out);
   void Read(const std::string& name, int* out);
   void Read(const std::string& name, std::string* path);
+  void Read(const std::string& name, std::vector<std::string>* paths);
+  void Read(const std::string& name, std::vector<double>* out);
   void Read(const std::string& name, Eigen::Vector3d* out);
   void Read(const std::string& name, Eigen::Array3d* out);
   // The word auto leaves it unset.

@@ -125,6 +125,10 @@ std::string RangeText(const ProblemKey& key) {
       return "three numbers" + (interval.empty() ? "" : " " + interval);
     case ValueType::kOneOrTriple:
       return interval + ", one number or three";
+    case ValueType::kNumberList:
+      return "a list of numbers" + (interval.empty() ? "" : " " + interval);
+    case ValueType::kPathList:
+      return "a list of " + key.files;
     case ValueType::kChoice:
       return "a word, below";
     case ValueType::kWordOrList:

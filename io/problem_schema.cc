@@ -65,6 +65,14 @@ class Row {
     key_.range = range;
     return Type(ValueType::kOneOrTriple, default_value);
   }
+  Row& NumberList(const Range& range) {
+    key_.range = range;
+    return Type(ValueType::kNumberList, "");
+  }
+  Row& PathList(const std::string& files) {
+    key_.files = files;
+    return Type(ValueType::kPathList, "");
+  }
   Row& Choice(const std::string& default_value, Words words) {
     key_.words = std::move(words);
     return Type(ValueType::kChoice, default_value);
@@ -212,15 +220,28 @@ Keys ImageKeys() {
           .AutoOrNumber(kPositive)
           .UsedBy(kUsedBySolve),
       Row("image.white",
-          "Codes from here on are clipped: their pixels take no part. `auto`: "
+          "Codes from here on are clipped: of their radiance the least is "
+          "known alone. `auto`: "
           "the file's largest code.")
           .AutoOrNumber(kPositive)
           .UsedBy(kUsedBySolve),
       Row("image.black", "The code of no light. `auto`: 0.")
           .AutoOrNumber(kNotNegative)
           .UsedBy(kUsedBySolve),
-      Row("image.exposure", "Radiance is divided by it.")
+      Row("image.exposure",
+          "Radiance is divided by it: seconds, say, where `image.brackets` has "
+          "other exposures.")
           .Number(kPositive, "1")
+          .UsedBy(kUsedBySolve),
+      Row("image.brackets",
+          "Further pictures of the same view at other exposures, of one size "
+          "and curve. A value's radiance is what all pictures allow.")
+          .PathList(".png, .jpg, .tif")
+          .Without("none")
+          .UsedBy(kUsedBySolve),
+      Row("image.bracket_exposures", "The exposure of each of them.")
+          .NumberList(kPositive)
+          .Without("needed by `image.brackets`")
           .UsedBy(kUsedBySolve),
       Row("image.mask",
           "White pixels are the object. Without a mask, all pixels whose "

@@ -18,6 +18,10 @@ namespace {
 constexpr double kSaturatedShare = 0.01;
 // Above it the values are alike, as of an even grey, and nothing is cut off.
 constexpr double kAlikeShare = 0.9;
+// Of the radiance of brackets: in log, above noise; of their values, before it
+// is said.
+constexpr double kContradiction = 0.1;
+constexpr double kContradictedShare = 0.02;
 // Values that say whether floats are multiples of 1/255.
 constexpr size_t kFewestValues = 100;
 
@@ -146,6 +150,74 @@ Status Linearise(const ImageSpec& spec, const ResponseCurve& curve,
   return OkStatus();
 }
 
+// Narrows what is known of a value's radiance to what another file allows. The
+// log by which they contradict each other; 0: they agree.
+double Narrow(const DecodedCodes& other, size_t value, Photograph* photograph) {
+  RadianceBounds& bounds = *photograph->bounds;
+  const BracketedInterval both = IntersectBrackets(
+      {{bounds.low.rgb[value], bounds.high.rgb[value]},
+       {other.bounds.low.rgb[value], other.bounds.high.rgb[value]}});
+  const RadianceInterval& all = both.interval;
+  bounds.low.rgb[value] = static_cast<float>(all.low);
+  bounds.high.rgb[value] = static_cast<float>(all.high);
+  if (!all.IsMissing()) {
+    photograph->radiance.rgb[value] =
+        static_cast<float>(!all.HasHigh()  ? all.low
+                           : !all.HasLow() ? all.high
+                                           : std::sqrt(all.low * all.high));
+  }
+  return both.contradiction;
+}
+
+// Adds the further files of the same view.
+Status AddBrackets(const ImageSpec& spec, const ResponseCurve& curve,
+                   Photograph* photograph) {
+  if (spec.brackets.empty()) return OkStatus();
+  if (!photograph->bounds || photograph->unknown_curve) {
+    return InvalidInput(spec.file + ": image.brackets",
+                        "expected whole numbers and a known response; floats "
+                        "are radiance already");
+  }
+  size_t contradicted = 0;
+  for (size_t k = 0; k < spec.brackets.size(); ++k) {
+    ImageSpec one = spec;
+    one.file = spec.brackets[k];
+    one.exposure = spec.bracket_exposures[k];
+    PhotoOptions options;
+    options.layer = spec.layer;
+    const StatusOr<Photo> photo = ReadPhoto(one.file, options);
+    if (!photo.ok()) return photo.status();
+    if (photo->bits == 0) {
+      return InvalidInput(one.file, "image.brackets: found floats");
+    }
+    const Image& codes = photo->image;
+    if (codes.width != photograph->radiance.width ||
+        codes.height != photograph->radiance.height) {
+      return InvalidInput(
+          one.file, "image.brackets: expected the size of " + spec.file + ", " +
+                        SizeName(photograph->radiance.width,
+                                 photograph->radiance.height) +
+                        ", found " + SizeName(codes.width, codes.height));
+    }
+    const StatusOr<CodeLevels> levels = LevelsOf(one, *photo);
+    if (!levels.ok()) return levels.status();
+    const DecodedCodes decoded = DecodeCodes(curve, *levels, codes);
+    for (size_t i = 0; i < codes.rgb.size(); ++i) {
+      contradicted += Narrow(decoded, i, photograph) > kContradiction;
+    }
+  }
+  const double share = static_cast<double>(contradicted) /
+                       static_cast<double>(photograph->radiance.rgb.size());
+  if (share > kContradictedShare) {
+    photograph->warnings.push_back(
+        spec.file + ": the brackets contradict each other at " +
+        Percent(share) +
+        " of the values: did something move, or are the exposures or the "
+        "response others (image.bracket_exposures)?");
+  }
+  return OkStatus();
+}
+
 StatusOr<Mask> LoadMask(const std::string& path, const Image& image) {
   StatusOr<Mask> mask = ReadMask(path);
   if (!mask.ok()) return mask.status();
@@ -251,6 +323,7 @@ StatusOr<Photograph> LoadPhotograph(const ImageSpec& spec) {
   photograph.curve = CurveInWords(spec, *photo, *curve);
   photograph.radiance = std::move(photo->image);
   IBRDF_RETURN_IF_ERROR(Linearise(spec, *curve, *photo, &photograph));
+  IBRDF_RETURN_IF_ERROR(AddBrackets(spec, *curve, &photograph));
   if (!spec.mask.empty()) {
     StatusOr<Mask> mask = LoadMask(spec.mask, photograph.radiance);
     if (!mask.ok()) return mask.status();

@@ -87,7 +87,11 @@ StatusOr<Solution> SolveInverseRendering(const InverseProblem& problem,
     return SolveDeveloped(problem, &context);
   }
   StatusOr<std::vector<CurveEstimate>> curves = FindCurves(problem, &context);
-  if (!curves.ok()) return curves.status();
+  if (!curves.ok()) {
+    // The first guess fails as well, or says how little there is to see.
+    LOG(INFO) << curves.status().message();
+    return SolveDeveloped(problem, &context);
+  }
   StatusOr<Solution> solution =
       SolveDeveloped(WithCurve(problem, curves->front().curve), &context);
   if (solution.ok()) solution->curves = *std::move(curves);

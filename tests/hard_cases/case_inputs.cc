@@ -17,6 +17,7 @@
 #include "ibrdf/io/png.h"
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/solvers/forward/render_scene.h"
+#include "tests/hard_cases/case_photographs.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/tiny_model.h"
 
@@ -314,6 +315,7 @@ Status MakeInput(const YAML::Node& recipe, const std::string& folder,
   for (const YAML::Node& edit : recipe["edit"]) {
     IBRDF_RETURN_IF_ERROR(Edit(edit, &image));
   }
+  if (recipe["codes"]) return MakePhotograph(recipe["codes"], image, path);
   return WriteExr(image, path);
 }
 

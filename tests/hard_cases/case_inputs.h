@@ -25,6 +25,9 @@ namespace ibrdf {
 //                                codes; log_colour: of all, or [r, g, b]
 //   sphere_mesh: 12              .obj of so many rings; see MakeSphereMesh
 //
+// An image with `codes: {...}` becomes a photograph (case_photographs.h), a
+// .png, .jpg or .tif.
+//
 // Images and maps take `edit`, a list of changes in order:
 //   {set: v}                     v: a number, nan, inf, -inf or denormal
 //   {scale: v}  {clip: v}        clip: at this radiance

@@ -77,7 +77,10 @@ std::string OtherValue(const ProblemKey& key) {
     case ValueType::kInteger:
       return std::to_string(key.most);
     case ValueType::kTriple:
+    case ValueType::kNumberList:
       return "[0.25, 0.5, 1]";
+    case ValueType::kPathList:
+      return "[one.file, other.file]";
     case ValueType::kChoice:
       return key.words.front().word == key.default_value
                  ? key.words.back().word

@@ -136,6 +136,61 @@ TEST_F(LoadPhotographTest, FloatsThroughACurve) {
   EXPECT_NE(std::string::npos, refused.message().find("image.response"));
 }
 
+TEST_F(LoadPhotographTest, BracketsNarrowWhatIsKnown) {
+  // sRGB codes of radiance 0.02, 0.3 and 6 at exposures 1, 0.1 and 10.
+  const std::vector<double> truth = {0.02, 0.3, 6.0};
+  ResponseDefinition srgb;
+  srgb.kind = ResponseKind::kSrgb;
+  const auto codes = [&](double exposure) {
+    std::vector<int> out;
+    for (const double x : truth) {
+      out.push_back(static_cast<int>(std::lround(
+          255.0 * std::min(ResponseCurve(srgb).Encode(exposure * x), 1.0))));
+    }
+    return out;
+  };
+  ImageSpec spec = Spec("a.png", GreyPng(codes(1.0), 8));
+  const StatusOr<Photograph> alone = LoadPhotograph(spec);
+  for (const auto& [name, exposure] :
+       {std::pair("b.png", 0.1), {"c.png", 10.0}}) {
+    spec.brackets.push_back(Spec(name, GreyPng(codes(exposure), 8)).file);
+    spec.bracket_exposures.push_back(exposure);
+  }
+  const StatusOr<Photograph> found = LoadPhotograph(spec);
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  EXPECT_TRUE(std::isinf(*alone->bounds->high.At(2, 0)));
+  for (int x = 0; x < 3; ++x) {
+    const double low = *found->bounds->low.At(x, 0);
+    const double high = *found->bounds->high.At(x, 0);
+    EXPECT_LE(low, truth[x]);
+    EXPECT_GE(high, truth[x]);
+    EXPECT_LT(high / low, 1.1);
+    EXPECT_LE(high, *alone->bounds->high.At(x, 0));
+    EXPECT_GE(low, *alone->bounds->low.At(x, 0));
+    EXPECT_NEAR(std::sqrt(low * high), *found->radiance.At(x, 0), 1e-6 * high);
+  }
+  EXPECT_FALSE(AnySays(found->warnings, "contradict"));
+  // Another exposure than it was.
+  spec.bracket_exposures[0] = 0.2;
+  EXPECT_TRUE(AnySays(LoadPhotograph(spec)->warnings, "contradict"));
+}
+
+TEST_F(LoadPhotographTest, BracketsOfOtherSizesOrKindsAreRefused) {
+  ImageSpec spec = Spec("a.png", GreyPng({0, 100, 255}, 8));
+  spec.bracket_exposures = {4.0};
+  spec.brackets = {Spec("b.png", GreyPng({0, 100}, 8)).file};
+  Status refused = LoadPhotograph(spec).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, refused.code());
+  EXPECT_NE(std::string::npos, refused.message().find("b.png"));
+  spec.brackets = {Spec(Image(3, 1)).file};
+  EXPECT_EQ(StatusCode::kInvalidInput, LoadPhotograph(spec).status().code());
+  ImageSpec floats = Spec(Image(3, 1));
+  floats.bracket_exposures = {4.0};
+  floats.brackets = {Spec("c.png", GreyPng({0, 100, 255}, 8)).file};
+  refused = LoadPhotograph(floats).status();
+  EXPECT_NE(std::string::npos, refused.message().find("image.brackets"));
+}
+
 TEST_F(LoadPhotographTest, AnUnknownCurveKeepsTheCodes) {
   ImageSpec spec = Spec("a.png", GreyPng({0, 100, 255}, 8));
   spec.response = ResponseChoice::kUnknownAces;
