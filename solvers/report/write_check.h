@@ -12,8 +12,9 @@ namespace ibrdf {
 // What WriteCheck may write.
 std::vector<std::string> CheckPaths(const std::string& folder);
 
-// Writes check.json and check.png into `folder`, which exists; each whole or
-// absent.
+// Writes check.json and check.png into `folder`, which exists, and
+// check_light.png where the light is known: which directions its map stands
+// for. Each whole or absent. Fails where that map cannot be read.
 Status WriteCheck(const Problem& problem, const PhotographedObject& object,
                   const std::string& folder);
 
