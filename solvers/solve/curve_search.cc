@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/solvers/costs/laplace_interval.h"
 #include "ibrdf/solvers/estimation/marginal_search.h"
 #include "ibrdf/solvers/estimation/reflectance_given_light.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
@@ -24,34 +25,46 @@ constexpr int kPoints = 5;
 constexpr int kRefinements = 2;
 // Of the time that remains, at most.
 constexpr double kTimeShare = 0.6;
-// Of a search under known light, for one curve.
-constexpr int kKnownLightIterations = 6;
+// Under known light: outer iterations of a search, for one curve; scales of the
+// noise in log radiance; radiance that counts as no less.
+constexpr int kKnownLightIterations = 30;
+constexpr double kLeastScale = 2e-3, kMostScale = 0.5;
+constexpr int kScalePoints = 12, kScaleRefinements = 3;
+constexpr double kDarkest = 1e-100;
 
-// -log of the widths of the codes' intervals in log radiance, of the values
-// whose ends are both known, and their number.
-struct CodeWidths {
+// -log of the probability of the codes, their noise Laplacian in log radiance
+// of scale b.
+double CodesCost(const std::vector<double>& L_o, const Observations& observed,
+                 double b) {
   double cost = 0.0;
-  int count = 0;
-};
-CodeWidths WidthsOf(const Observations& observed) {
-  CodeWidths widths;
-  for (size_t i = 0; i < observed.radiance.size(); ++i) {
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    if (!observed.valid[i / 3]) continue;
     const RadianceInterval interval = observed.Interval(i);
-    if (!observed.valid[i / 3] || interval.IsOneSided()) continue;
-    widths.cost -= std::log(std::log(interval.high / interval.low));
-    ++widths.count;
+    cost += LaplaceIntervalCost(std::log(interval.low), std::log(interval.high),
+                                std::log(std::max(L_o[i], kDarkest)), b);
   }
-  return widths;
+  return cost;
 }
 
-// Under known light: the Laplacian's density in log radiance times the widths.
+// Under known light: the codes' cost at the most probable scale, which is not
+// that of the robust likelihood, in which codes that hold cost nothing.
 double KnownLightCost(const SolveSetup& setup, SolveContext* context) {
   const Estimate estimate = EstimateReflectanceGivenLight(setup, context);
-  const TraceEntry end = Evaluate("curve", setup, *context, estimate.iterate,
-                                  estimate.pixels.get());
-  const CodeWidths widths = WidthsOf(estimate.pixels->observed());
-  return end.cost + widths.count * std::log(2.0 * estimate.iterate.scale) +
-         widths.cost;
+  const Iterate& iterate = estimate.iterate;
+  const PosteriorObjective on =
+      ObjectiveOn(estimate.pixels.get(), setup, iterate.light,
+                  iterate.light.priors, iterate.scale);
+  const JointCost cost = on.objective->Evaluate(iterate.state);
+  const TraceEntry end = MakeEntry("curve", setup, *context, 0, iterate.scale,
+                                   iterate.state, cost);
+  const LineMinimum codes = MinimiseOnLine(
+      [&](double log_b) {
+        return CodesCost(on.objective->radiance(), estimate.pixels->observed(),
+                         std::exp(log_b));
+      },
+      std::log(kLeastScale), std::log(kMostScale), kScalePoints,
+      kScaleRefinements);
+  return codes.value + end.reflectance_prior;
 }
 
 double CostOf(const InverseProblem& problem, SolveContext* context) {
