@@ -14,6 +14,7 @@
 #include "ibrdf/solvers/report/report_style.h"
 #include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/report/svg_plot.h"
+#include "ibrdf/solvers/report/verdict.h"
 
 namespace ibrdf {
 namespace {
@@ -43,6 +44,20 @@ std::string Summary(const SolvedProblem& solved) {
          " pixels. The misfit is the mean absolute log error of the render: "
          "the mean of |log L_o - log I| over pixels and channels, with the "
          "rendered radiance L_o and the image I.";
+}
+
+std::string VerdictSection(const SolvedProblem& solved) {
+  const Verdict verdict = MakeVerdict(solved);
+  const TrustRatings& r = verdict.ratings;
+  std::string text;
+  for (const std::string& sentence : verdict.Sentences()) {
+    text += HtmlElement("p", sentence) + "\n";
+  }
+  return "<section class=\"verdict\">\n" + text +
+         HtmlTable({"light's directions", "hue", "gloss", "brightness"},
+                   {{NameOf(r.light), NameOf(r.hue), NameOf(r.gloss),
+                     NameOf(r.level)}}) +
+         "</section>\n";
 }
 
 std::string WarningList(const SolvedProblem& solved) {
@@ -146,7 +161,7 @@ StatusOr<std::string> ReportPage(const SolvedProblem& solved,
   const std::string name =
       std::filesystem::path(solved.problem.path).filename().string();
   const ProblemKind kind = solved.problem.kind;
-  std::string body = HtmlElement("h1", name) + "\n" +
+  std::string body = HtmlElement("h1", name) + "\n" + VerdictSection(solved) +
                      HtmlElement("p", Summary(solved), "class=\"summary\"") +
                      "\n" + WarningList(solved);
   for (const ReportGroup& group : groups) {

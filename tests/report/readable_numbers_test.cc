@@ -21,6 +21,18 @@ TEST(ShortNumber, HasFourDigitsAndNoExponentWhereAvoidable) {
   EXPECT_EQ("-", ShortNumber(std::nan("")));
 }
 
+TEST(ErrorInWords, RoundsForPeople) {
+  EXPECT_EQ("less than 1 %", ErrorInWords(5.739e-8));
+  EXPECT_EQ("some 7 %", ErrorInWords(0.0712));
+  EXPECT_EQ("some 15 %", ErrorInWords(-0.157));
+  EXPECT_EQ("some 30 %", ErrorInWords(0.32));
+  EXPECT_EQ("a factor of 1.5", ErrorInWords(0.43));
+  EXPECT_EQ("a factor of 2.5", ErrorInWords(0.88));
+  EXPECT_EQ("a factor of 5", ErrorInWords(kLargestKnownError));
+  EXPECT_EQ("not determined", ErrorInWords(std::log(58.87)));
+  EXPECT_EQ("not determined", ErrorInWords(std::nan("")));
+}
+
 TEST(RoundUp, IsTheNextOfOneTwoAndFive) {
   EXPECT_DOUBLE_EQ(0.2, RoundUp(0.11));
   EXPECT_DOUBLE_EQ(0.2, RoundUp(0.2));
