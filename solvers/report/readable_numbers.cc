@@ -13,6 +13,14 @@ std::string ShortNumber(double value) {
   return Format(whole ? "%.0f" : "%.4g", value);
 }
 
+std::string RoundNumber(double value) {
+  const double size = std::fabs(value);
+  if (size > 0.0 && size < 1e-3) return "below 0.001";
+  if (size == 0.0 || !std::isfinite(value)) return ShortNumber(value);
+  const double digit = std::pow(10.0, std::floor(std::log10(size)) - 1.0);
+  return ShortNumber(digit * std::round(value / digit));
+}
+
 std::string ErrorInWords(double log_error) {
   constexpr double kMostPercent = 0.4;
   const double size = std::fabs(log_error);

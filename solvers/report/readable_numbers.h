@@ -8,6 +8,9 @@ namespace ibrdf {
 // decimals and in full; "-" for what is not finite.
 std::string ShortNumber(double value);
 
+// Two digits without an exponent where ShortNumber has none; "below 0.001".
+std::string RoundNumber(double value);
+
 // Errors (natural logarithm) beyond it, a factor of 5, say nothing.
 inline constexpr double kLargestKnownError = 1.6;
 

@@ -1,7 +1,9 @@
 #include "ibrdf/solvers/report/report_page.h"
 
+#include <cmath>
 #include <filesystem>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/base/version.h"
 #include "ibrdf/io/problem_json.h"
 #include "ibrdf/solvers/effects/describe_plan.h"
@@ -37,10 +39,13 @@ std::string KindInWords(ProblemKind kind) {
 }
 
 std::string Summary(const SolvedProblem& solved) {
-  return KindInWords(solved.problem.kind) + " Misfit " +
-         ShortNumber(solved.metrics.misfit) + " after " +
-         ShortNumber(solved.metrics.seconds) + " s, from " +
-         ShortNumber(static_cast<double>(solved.solution.pixels_used)) +
+  const ResultMetrics& metrics = solved.metrics;
+  const std::string misfit =
+      std::isfinite(metrics.misfit) ? Format("%.2g", metrics.misfit) : "-";
+  const std::string seconds =
+      std::isfinite(metrics.seconds) ? Format("%.0f", metrics.seconds) : "-";
+  return KindInWords(solved.problem.kind) + " Misfit " + misfit + " after " +
+         seconds + " s, from " + std::to_string(solved.solution.pixels_used) +
          " pixels. The misfit is the mean absolute log error of the render: "
          "the mean of |log L_o - log I| over pixels and channels, with the "
          "rendered radiance L_o and the image I.";

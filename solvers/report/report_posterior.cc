@@ -18,9 +18,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // A lobe's colour with one standard deviation of its logarithm. A colour that
 // could be five times as much is none.
 std::string ColourInWords(double colour, double log_std) {
-  if (!std::isfinite(log_std)) return Format("%.3g", colour);
+  if (!std::isfinite(log_std)) return RoundNumber(colour);
   if (std::fabs(log_std) > kLargestKnownError) return "not determined";
-  return Format("%.3g", colour) + ", within " + ErrorInWords(log_std);
+  return RoundNumber(colour) + ", within " + ErrorInWords(log_std);
 }
 
 double Norm(const std::vector<double>& v) {

@@ -22,6 +22,8 @@ constexpr double kFairError = kUncertain;
 constexpr double kGoodHue = 0.1, kFairHue = 0.3;
 // A misfit that is hardly an explanation at all.
 constexpr double kHugeMisfit = 0.3;
+// A misfit that is worth a word where its reason is known.
+constexpr double kMisfitWord = 0.05;
 // A floor explains a misfit from this share of it on.
 constexpr double kFloorShare = 0.5;
 // Clipped shares of the object: worth a word, and a loss of trust in what
@@ -71,12 +73,13 @@ TrustRatings RatingsOf(const VerdictNumbers& n) {
   if (!TellsNothing(n)) {
     const int lost = LevelsLost(n);
     const int clipped = ClippedShare(n) > kClippedDoubt ? 1 : 0;
-    const int painted = n.several_materials ? 1 : 0;
+    // Paint comes out as mirrored light.
+    const int painted = n.several_materials ? 2 : 0;
     const int rival = n.rival_difference > kRivalDifference ? 1 : 0;
     ratings.light = Lower(Rate(n.light_error, kGoodError, kFairError),
                           lost + clipped + painted);
     ratings.gloss = Lower(Rate(n.reflectance_error, kGoodError, kFairError),
-                          lost + clipped + rival);
+                          lost + clipped + painted + rival);
     ratings.hue = Lower(Rate(n.hue_error, kGoodHue, kFairHue), lost + painted);
     ratings.level = Lower(Rate(n.level_error, kGoodError, kFairError), lost);
     if (n.kind == ProblemKind::kJoint) {
@@ -184,7 +187,9 @@ std::vector<std::string> ReasonsForNothing(const VerdictNumbers& n) {
 std::vector<std::string> Reasons(const VerdictNumbers& n) {
   if (TellsNothing(n)) return ReasonsForNothing(n);
   std::vector<std::string> reasons;
-  if (n.misfit > kLargeMisfit) reasons.push_back(MisfitReason(n));
+  if (n.misfit > kLargeMisfit || (n.misfit > kMisfitWord && FloorExplains(n))) {
+    reasons.push_back(MisfitReason(n));
+  }
   if (n.several_materials) {
     reasons.emplace_back(
         "the object looks painted or of several materials, and paint is taken "
@@ -302,29 +307,35 @@ void FindColourErrors(const SolvedProblem& solved, VerdictNumbers* n) {
   n->hue_error = ExpectError(std::sqrt(hue)).median;
 }
 
-// The deviation that half of the sphere stays below, mean of the channels.
-double MedianOverSphere(const Image& deviation) {
+// The deviation (mean of the channels, at a resolution of its own) that half of
+// the map's light stays below; NaN where there is none.
+double MedianOverLight(const Image& map, const Image& deviation) {
+  if (map.empty() || deviation.empty()) return VerdictNumbers::kNone;
   struct Texel {
-    double value, weight;
+    double deviation, light;
   };
   std::vector<Texel> texels;
   double all = 0.0;
-  for (int y = 0; y < deviation.height; ++y) {
-    const double weight = TexelSolidAngle(y, deviation.height, deviation.width);
-    for (int x = 0; x < deviation.width; ++x) {
-      const float* rgb = deviation.At(x, y);
-      const double value = (double{rgb[0]} + rgb[1] + rgb[2]) / 3.0;
-      if (!std::isfinite(value)) continue;
-      texels.push_back({value, weight});
-      all += weight;
+  for (int y = 0; y < map.height; ++y) {
+    const double solid_angle = TexelSolidAngle(y, map.height, map.width);
+    for (int x = 0; x < map.width; ++x) {
+      const float* L = map.At(x, y);
+      const float* d = deviation.At(x * deviation.width / map.width,
+                                    y * deviation.height / map.height);
+      const double light = solid_angle * (double{L[0]} + L[1] + L[2]);
+      const double value = (double{d[0]} + d[1] + d[2]) / 3.0;
+      if (!std::isfinite(value) || !std::isfinite(light)) continue;
+      texels.push_back({value, light});
+      all += light;
     }
   }
-  std::sort(texels.begin(), texels.end(),
-            [](const Texel& a, const Texel& b) { return a.value < b.value; });
+  std::sort(texels.begin(), texels.end(), [](const Texel& a, const Texel& b) {
+    return a.deviation < b.deviation;
+  });
   double below = 0.0;
   for (const Texel& texel : texels) {
-    below += texel.weight;
-    if (2.0 * below >= all) return texel.value;
+    below += texel.light;
+    if (2.0 * below >= all) return texel.deviation;
   }
   return VerdictNumbers::kNone;
 }
@@ -378,7 +389,7 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
           std::max(n.rival_difference, other.brdf_log_difference);
     }
   }
-  n.light_error = MedianOverSphere(solution.map_std);
+  n.light_error = MedianOverLight(solution.map, solution.map_std);
   return n;
 }
 

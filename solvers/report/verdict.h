@@ -51,7 +51,7 @@ struct VerdictNumbers {
   // Of another reflectance with a like evidence: its difference from the
   // estimate; 0: there is none.
   double rival_difference = 0.0;
-  // Standard deviation of log radiance that half of the sphere stays below.
+  // Standard deviation of log radiance that half of the light stays below.
   double light_error = kNone;
 };
 

@@ -33,6 +33,16 @@ TEST(ErrorInWords, RoundsForPeople) {
   EXPECT_EQ("not determined", ErrorInWords(std::nan("")));
 }
 
+TEST(RoundNumber, HasTwoDigits) {
+  EXPECT_EQ("17000", RoundNumber(17137.0));
+  EXPECT_EQ("3.1", RoundNumber(3.13));
+  EXPECT_EQ("0.032", RoundNumber(0.0318));
+  EXPECT_EQ("-100", RoundNumber(-99.7));
+  EXPECT_EQ("below 0.001", RoundNumber(5.739e-8));
+  EXPECT_EQ("0", RoundNumber(0.0));
+  EXPECT_EQ("-", RoundNumber(std::nan("")));
+}
+
 TEST(RoundUp, IsTheNextOfOneTwoAndFive) {
   EXPECT_DOUBLE_EQ(0.2, RoundUp(0.11));
   EXPECT_DOUBLE_EQ(0.2, RoundUp(0.2));

@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "ibrdf/solvers/report/report_limits.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
+#include "tests/support/tiny_model.h"
 
 namespace ibrdf {
 namespace {
@@ -83,8 +87,21 @@ TEST(Verdict, PaintIsTheReasonOfAMisfit) {
       "0.11, as pixels of like normals differ by that much"))
       << v.doubt;
   EXPECT_TRUE(Contains(v.next, "mask one material")) << v.next;
-  EXPECT_EQ(Trust::kFair, v.ratings.gloss);  // was good
-  EXPECT_EQ(Trust::kPoor, v.ratings.light);  // paint is taken for light
+  // Paint is taken for light that a glossy surface mirrors.
+  EXPECT_EQ("Nothing that was estimated can be trusted.", v.trust);
+  n.misfit = 0.04;
+  EXPECT_EQ(Trust::kPoor, MakeVerdict(n).ratings.gloss);
+  EXPECT_EQ(Trust::kPoor, MakeVerdict(n).ratings.light);
+}
+
+TEST(Verdict, AKnownReasonIsSaidOfASmallMisfitToo) {
+  VerdictNumbers n = Good();
+  n.misfit = 0.07;
+  n.floor = 0.06;
+  EXPECT_TRUE(Contains(MakeVerdict(n).doubt, "0.06 of the misfit of 0.07"));
+  EXPECT_EQ(Trust::kGood, MakeVerdict(n).ratings.gloss);
+  n.floor = 0.01;
+  EXPECT_FALSE(Contains(MakeVerdict(n).doubt, "misfit"));
 }
 
 TEST(Verdict, AMisfitWithoutThatReasonIsSaidToo) {
@@ -174,6 +191,45 @@ TEST(Verdict, NumbersThatWereNotFoundAreFairAtBest) {
   const Verdict v = MakeVerdict(n);
   EXPECT_EQ(Trust::kFair, v.ratings.gloss);
   EXPECT_FALSE(Contains(v.trust, "off by")) << v.trust;
+}
+
+// Half of the light, not of the sphere, and the summed colours of the lobes.
+TEST(VerdictNumbers, AreThoseOfWhatIsSeen) {
+  Problem problem;
+  InverseProblem inverse;
+  inverse.model = std::make_shared<const NeuralBrdfModel>(TinyModel(1));
+  inverse.points.resize(50);
+  const Truth truth;
+  Solution solution;
+  solution.pixels_used = 40;
+  solution.map = Image(8, 4);
+  solution.map_std = Image(4, 2);
+  std::fill(solution.map.rgb.begin(), solution.map.rgb.end(), 0.01f);
+  std::fill(solution.map_std.rgb.begin(), solution.map_std.rgb.end(), 2.0f);
+  for (int c = 0; c < 3; ++c) {
+    solution.map.At(3, 1)[c] = 10.0f;  // the lamp
+    solution.map_std.At(1, 0)[c] = 0.125f;
+  }
+  // Two lobes of codes of four entries: the first is black but in red, where
+  // its deviation counts alone.
+  const double high = 10.0, low = -20.0;
+  solution.lobe_parameters = {0, 0, 0, 0, high, low, low,
+                              0, 0, 0, 0, low,  0.0, 0.0};
+  solution.lobe_covariance.assign(14 * 14, 0.0);
+  const auto variance = [&](int i) -> double& {
+    return solution.lobe_covariance[static_cast<size_t>(15) * i];
+  };
+  variance(4) = 0.09;
+  variance(5) = variance(6) = variance(11) = 30.0;
+  const ResultMetrics metrics;
+  const VerdictNumbers n =
+      NumbersForVerdict({problem, inverse, truth, solution, metrics});
+  EXPECT_NEAR(0.125, n.light_error, 1e-6);
+  EXPECT_NEAR(ExpectError(std::sqrt(0.09 / 9)).median, n.level_error, 1e-3);
+  EXPECT_NEAR(ExpectError(std::sqrt(2 * 0.09 / 3)).median, n.hue_error, 1e-3);
+  EXPECT_EQ(50, n.object_pixels);
+  EXPECT_EQ(40, n.used_pixels);
+  EXPECT_TRUE(std::isnan(n.misfit));
 }
 
 }  // namespace
