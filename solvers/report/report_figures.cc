@@ -119,9 +119,10 @@ constexpr char kRelitNote[] =
     "picture has its own exposure.";
 
 constexpr char kOthersNote[] =
-    "Spheres of the local optima that differ from the estimate and have at "
-    "least a thousandth of its evidence, under the directional lights. Where "
-    "they look different, this image does not tell which one is right.";
+    "Spheres of the local optima that differ from the estimate, the most "
+    "probable first, under the directional lights. Where the evidence is "
+    "within "
+    "a factor of twenty, this image does not tell which one is right.";
 
 // Explains the factor in an estimate's caption.
 constexpr char kScaleNote[] =
@@ -156,7 +157,7 @@ std::vector<ReportGroup> MakeReportGroups(const ResultPanels& panels,
         Group("The object in other light", kRelitNote, panels.relit));
   }
   if (!panels.alternatives.empty()) {
-    groups.push_back(Group("Other reflectances that may be", kOthersNote,
+    groups.push_back(Group("Other reflectances that were found", kOthersNote,
                            panels.alternatives));
   }
   return groups;

@@ -230,27 +230,33 @@ Row AlternativePanels(const ResultPreviewInput& input,
   return row;
 }
 
-// Reflectances that differ from the estimate and are not ruled out, at most
-// three.
+// How probable an alternative is, and how far off.
+std::string AlternativeLabel(const Alternative& other) {
+  constexpr double kLeast = 1e-3;
+  const double evidence = std::exp(-other.cost);
+  return "Found from " + other.start + ": " +
+         (evidence < kLeast ? Format("below %g", kLeast)
+                            : Format("%.2g", evidence)) +
+         " of the evidence, log differs by " +
+         Format("%.2g", other.brdf_log_difference);
+}
+
+// The most probable reflectances that differ from the estimate, at most three.
 std::vector<std::pair<std::string, BrdfGrid>> DrawnAlternatives(
     const SolvedProblem& solved) {
   constexpr size_t kMost = 3;
-  constexpr double kRuledOut = 7.0;  // nats: a thousandth of the evidence
+  const InverseProblem& inverse = solved.inverse;
   std::vector<std::pair<std::string, BrdfGrid>> drawn;
   for (const Alternative& other : solved.solution.alternatives) {
-    if (drawn.size() == kMost || !(other.cost < kRuledOut)) break;
+    if (drawn.size() == kMost) break;
     if (!(other.brdf_log_difference > kRivalDifference) ||
-        other.lobe_parameters.empty()) {
+        !std::isfinite(other.cost) || other.lobe_parameters.empty()) {
       continue;
     }
-    const InverseProblem& inverse = solved.inverse;
     const FlowLobes lobes(*inverse.model, inverse.lobes, BrdfGridShape(),
                           inverse.num_threads);
-    drawn.emplace_back(
-        "Found from " + other.start + ": " +
-            Format("%.2g of the evidence, differs by %.2g",
-                   std::exp(-other.cost), other.brdf_log_difference),
-        lobes.Grid(other.lobe_parameters.data()));
+    drawn.emplace_back(AlternativeLabel(other),
+                       lobes.Grid(other.lobe_parameters.data()));
   }
   return drawn;
 }

@@ -155,6 +155,10 @@ std::string TrustSentence(const VerdictNumbers& n,
 }
 
 std::string FewPixels(const VerdictNumbers& n) {
+  if (n.used_pixels == n.object_pixels) {
+    return "the object has only " + std::to_string(n.object_pixels) +
+           (n.object_pixels == 1 ? " pixel" : " pixels");
+  }
   return "only " + std::to_string(n.used_pixels) + " of the object's " +
          std::to_string(n.object_pixels) + " pixels can be used";
 }

@@ -16,7 +16,7 @@ namespace ibrdf {
 namespace {
 
 // Previews of reflectance and map, the table; and what grows with the image.
-constexpr double kWriteSeconds = 0.75;
+constexpr double kWriteSeconds = 1.5;
 constexpr double kWriteSecondsPerMegapixel = 2.0;
 
 // Left by an earlier run, the first would speak for what a run that is cut off

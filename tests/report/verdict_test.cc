@@ -172,6 +172,8 @@ TEST(Verdict, FewPixelsTellNothing) {
   EXPECT_TRUE(
       Contains(v.doubt, "only 1 of the object's 861 pixels can be used"))
       << v.doubt;
+  n.object_pixels = 1;
+  EXPECT_TRUE(Contains(MakeVerdict(n).doubt, "the object has only 1 pixel."));
   EXPECT_TRUE(TooFewPixels(19, 19));
   EXPECT_FALSE(TooFewPixels(20, 1000));
   EXPECT_TRUE(TooFewPixels(199, 10000));
