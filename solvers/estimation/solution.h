@@ -31,7 +31,8 @@ struct TraceEntry {
 struct Alternative {
   std::string start;  // training material
   double cost = 0.0;  // -log posterior, nats, above the best one's
-  double brdf_log_difference = 0.0;  // as ibrdf_eval's aligned log-RMSE
+  double brdf_log_difference = 0.0;          // as ibrdf_eval's aligned log-RMSE
+  std::vector<double> lobe_parameters = {};  // as LobeModel
 };
 
 // A response curve that explains the image's codes.

@@ -23,6 +23,7 @@
 #include "ibrdf/solvers/programs/common_flags.h"
 #include "ibrdf/solvers/programs/problem_from_flags.h"
 #include "ibrdf/solvers/report/report_warnings.h"
+#include "ibrdf/solvers/report/verdict.h"
 #include "ibrdf/solvers/report/write_check.h"
 #include "ibrdf/solvers/report/write_results.h"
 #include "ibrdf/solvers/solve/curve_search.h"
@@ -157,6 +158,9 @@ Status SolveAndWrite(const Problem& problem, const Truth& truth,
     for (const std::string& line : MetricLines(*metrics)) {
       std::printf("  %s\n", line.c_str());
     }
+    for (const std::string& sentence : MakeVerdict(solved).Sentences()) {
+      std::printf("%s\n", sentence.c_str());
+    }
     std::printf("results in %s; look at %s/report.html\n", folder.c_str(),
                 folder.c_str());
   }
@@ -250,6 +254,10 @@ int Main(int argc, char** argv) {
   flags.problem.command = ShellCommand({argv, argv + argc});
   AddProblemFlags(&app, &flags);
   AddCommonFlags(&app, &flags.common);
+  app.get_option("--seed")->description(
+      "seed of random numbers. In a solve they are the samples behind the "
+      "expected error, and the first weights of a network's map (prior: unet): "
+      "another seed mostly changes nothing and is no test of robustness");
   bool verbose = false;
   app.add_flag("--verbose", verbose,
                "log steps and the conditioning of their normal equations, on "

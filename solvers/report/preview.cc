@@ -11,7 +11,6 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/solvers/drawing/tone_map.h"
-#include "ibrdf/solvers/report/readable_numbers.h"
 
 namespace ibrdf {
 namespace {
@@ -23,7 +22,8 @@ constexpr int kMargin = 32;
 constexpr int kGap = 28;
 constexpr int kBarGap = 10;
 constexpr int kBarWidth = 18;
-constexpr int kBarTotal = 84;  // gap, bar and its numbers
+constexpr int kBarTotal = 84;    // gap, bar and its numbers
+constexpr int kAxesHeight = 25;  // ticks and names below a map
 constexpr int kLabelFont = cv::FONT_HERSHEY_SIMPLEX;
 
 const cv::Scalar kPageColour(250, 250, 250);
@@ -90,7 +90,7 @@ double ResidualRange(const PreviewPanel& panel) {
   }
   constexpr double kSmallest = 1e-3;  // a finer scale shows rounding
   if (magnitudes.empty()) return kSmallest;
-  return RoundUp(std::max(Percentile(std::move(magnitudes), 99.0), kSmallest));
+  return std::max(Percentile(std::move(magnitudes), 98.0), kSmallest);
 }
 
 // Linear display colours in [0, 1], one per pixel of the image.
@@ -120,6 +120,17 @@ cv::Mat DisplayColours(const PreviewPanel& panel, double range) {
     }
   }
   return colours;
+}
+
+// The same, by `samples` in each direction one of the picture.
+cv::Mat SampledColours(const PreviewPanel& panel, double range) {
+  cv::Mat colours = DisplayColours(panel, range);
+  if (panel.samples == 1) return colours;
+  cv::Mat reduced;
+  cv::resize(colours, reduced,
+             {colours.cols / panel.samples, colours.rows / panel.samples}, 0, 0,
+             cv::INTER_AREA);
+  return reduced;
 }
 
 // CV_8UC3, red first.
@@ -152,48 +163,66 @@ void CheckPanel(const PreviewPanel& panel) {
   CHECK(!panel.image.empty()) << panel.label;
   CHECK(panel.mask.empty() ||
         panel.mask.inside.size() == panel.image.num_pixels());
+  CHECK(panel.samples >= 1 && panel.image.width >= panel.samples &&
+        panel.image.height >= panel.samples);
 }
 
 // A panel ready to be placed.
 struct Placed {
   cv::Mat pixels;  // CV_8UC3, red first
-  std::vector<std::string> label;
-  std::string caption;
+  std::vector<std::string> label, caption;
   PreviewPanel::Kind kind;
   double range = 0.0;
-  int width() const {
-    return pixels.cols +
-           (kind == PreviewPanel::Kind::kSignedResidual ? kBarTotal : 0);
-  }
+  int width = 0;  // with its colour bar and its text
 };
 
-Placed Place(const PreviewPanel& panel, int max_width) {
-  const Image& image = panel.image;
+int Widest(const std::vector<std::string>& lines, const TextStyle& style) {
+  int width = 0;
+  for (const std::string& line : lines) {
+    width = std::max(width, TextWidth(line, style));
+  }
+  return width;
+}
+
+// A panel's colours at the size that fits, with what was done in words.
+cv::Mat FitColours(const cv::Mat& colours, double fit, std::string* words) {
+  // From here on squares are less of a distraction than blur.
+  constexpr double kSquares = 3.0;
+  cv::Mat fitted;
+  const cv::Size size(Reduced(colours.cols, fit), Reduced(colours.rows, fit));
+  const std::string from = Format("%d x %d px, ", colours.cols, colours.rows);
+  if (fit >= kSquares) {
+    const int factor = static_cast<int>(fit);
+    cv::resize(colours, fitted, {}, factor, factor, cv::INTER_NEAREST);
+    *words = from + Format("shown x%d (nearest)", factor);
+    return fitted;
+  }
+  cv::resize(colours, fitted, size, 0, 0,
+             fit > 1.0 ? cv::INTER_LINEAR : cv::INTER_AREA);
+  *words = from + Format("shown at %d x %d", size.width, size.height);
+  if (size == colours.size())
+    *words = Format("%d x %d px", size.width, size.height);
+  return fitted;
+}
+
+Placed MakePlaced(const PreviewPanel& panel, int max_width) {
   CheckPanel(panel);
   Placed placed;
   placed.kind = panel.kind;
-  if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
-    placed.range = ResidualRange(panel);
-  }
-  const cv::Mat colours = DisplayColours(panel, placed.range);
-  const double fit =
-      std::min(static_cast<double>(max_width) / image.width,
-               static_cast<double>(kMaxPanelHeight) / image.height);
-  cv::Mat resized;
-  if (fit >= 1.0) {
-    const int factor = static_cast<int>(fit);
-    cv::resize(colours, resized, {}, factor, factor, cv::INTER_NEAREST);
-    placed.caption = Format("%d x %d px, shown x%d (nearest)", image.width,
-                            image.height, factor);
-  } else {
-    const cv::Size size(Reduced(image.width, fit), Reduced(image.height, fit));
-    cv::resize(colours, resized, size, 0, 0, cv::INTER_AREA);
-    placed.caption = Format("%d x %d px, shown at %d x %d", image.width,
-                            image.height, size.width, size.height);
-  }
-  placed.pixels = EncodeColours(resized);
-  placed.label =
-      Wrap(panel.label, std::max(placed.width(), max_width / 2), kLabelStyle);
+  const bool bar = panel.kind == PreviewPanel::Kind::kSignedResidual;
+  if (bar) placed.range = ResidualRange(panel);
+  const cv::Mat colours = SampledColours(panel, placed.range);
+  double fit = std::min(static_cast<double>(max_width) / colours.cols,
+                        static_cast<double>(kMaxPanelHeight) / colours.rows);
+  if (panel.samples > 1) fit = std::min(fit, 1.0);
+  std::string caption;
+  placed.pixels = EncodeColours(FitColours(colours, fit, &caption));
+  placed.width = placed.pixels.cols + (bar ? kBarTotal : 0);
+  const int text_width = std::max(placed.width, max_width / 2);
+  placed.label = Wrap(panel.label, text_width, kLabelStyle);
+  placed.caption = Wrap(caption, text_width, kCaptionStyle);
+  placed.width = std::max({placed.width, Widest(placed.label, kLabelStyle),
+                           Widest(placed.caption, kCaptionStyle)});
   return placed;
 }
 
@@ -208,9 +237,9 @@ void DrawColourBar(cv::Mat* canvas, int left, int top, int height,
   cv::rectangle(*canvas, {left, top, kBarWidth, height}, kFaintInk);
   const int x = left + kBarWidth + 6;
   const int half_line = kCaptionStyle.line_height / 2;
-  DrawText(canvas, Format("+%g", range), x, top, kCaptionStyle);
+  DrawText(canvas, Format("+%.2g", range), x, top, kCaptionStyle);
   DrawText(canvas, "0", x, top + height / 2 - half_line, kCaptionStyle);
-  DrawText(canvas, Format("-%g", range), x,
+  DrawText(canvas, Format("-%.2g", range), x,
            top + height - kCaptionStyle.line_height, kCaptionStyle);
 }
 
@@ -230,7 +259,7 @@ struct RowLayout {
   std::vector<Placed> panels;
   int label_height = 0;
   int picture_height = 0;
-  int caption_height = kCaptionStyle.line_height;
+  int caption_height = 0;
   int width = 0;
   int height() const { return label_height + picture_height + caption_height; }
 };
@@ -247,14 +276,16 @@ RowLayout LayOut(const std::vector<PreviewPanel>& row) {
   RowLayout layout;
   size_t lines = 0;
   for (const PreviewPanel& panel : row) {
-    layout.panels.push_back(Place(panel, std::max(1, free_width / count)));
+    layout.panels.push_back(MakePlaced(panel, std::max(1, free_width / count)));
     const Placed& placed = layout.panels.back();
     lines = std::max(lines, placed.label.size());
     layout.picture_height = std::max(layout.picture_height, placed.pixels.rows);
-    layout.width += placed.width() + (layout.panels.size() > 1 ? kGap : 0);
-    if (placed.kind == PreviewPanel::Kind::kMap) {
-      layout.caption_height = 2 * kCaptionStyle.line_height + 6;
-    }
+    layout.width += placed.width + (layout.panels.size() > 1 ? kGap : 0);
+    const int axes = placed.kind == PreviewPanel::Kind::kMap ? kAxesHeight : 0;
+    layout.caption_height = std::max(
+        layout.caption_height, axes + 2 +
+                                   static_cast<int>(placed.caption.size()) *
+                                       kCaptionStyle.line_height);
   }
   layout.label_height =
       static_cast<int>(lines) * kLabelStyle.line_height + (lines > 0 ? 4 : 0);
@@ -289,32 +320,11 @@ void DrawRow(cv::Mat* canvas, const RowLayout& row, int top) {
                     panel.range);
     } else if (panel.kind == PreviewPanel::Kind::kMap) {
       DrawMapAxes(canvas, left, below, area.width);
-      below += 6 + kCaptionStyle.line_height;
+      below += kAxesHeight;
     }
-    DrawText(canvas, panel.caption, left, below + 2, kCaptionStyle);
-    left += panel.width() + kGap;
+    DrawLines(canvas, panel.caption, left, below + 2, kCaptionStyle);
+    left += panel.width + kGap;
   }
-}
-
-// Width of the row with its text: a label may be wider than its picture.
-int WidthWithText(const RowLayout& row) {
-  int left = 0, width = row.width;
-  for (const Placed& panel : row.panels) {
-    for (const std::string& line : panel.label) {
-      width = std::max(width, left + TextWidth(line, kLabelStyle));
-    }
-    width = std::max(width, left + TextWidth(panel.caption, kCaptionStyle));
-    left += panel.width() + kGap;
-  }
-  return width;
-}
-
-int Widest(const std::vector<std::string>& lines, const TextStyle& style) {
-  int width = 0;
-  for (const std::string& line : lines) {
-    width = std::max(width, TextWidth(line, style));
-  }
-  return width;
 }
 
 struct PageLayout {
@@ -337,7 +347,7 @@ PageLayout LayOutPage(const std::vector<std::vector<PreviewPanel>>& rows,
   PageLayout page;
   for (const std::vector<PreviewPanel>& row : rows) {
     page.rows.push_back(LayOut(row));
-    page.width = std::max(page.width, WidthWithText(page.rows.back()));
+    page.width = std::max(page.width, page.rows.back().width);
   }
   const int text_width = std::max(page.width, kMaxWidth / 2);
   page.title = Wrap(title, text_width, kTitleStyle);
@@ -360,7 +370,7 @@ PanelPicture DrawPanel(const PreviewPanel& panel, int max_side) {
   if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
     picture.range = ResidualRange(panel);
   }
-  cv::Mat colours = DisplayColours(panel, picture.range);
+  cv::Mat colours = SampledColours(panel, picture.range);
   const double fit =
       static_cast<double>(max_side) / std::max(colours.cols, colours.rows);
   if (fit < 1.0) {

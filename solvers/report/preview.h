@@ -14,14 +14,17 @@ struct PreviewPanel {
     kSignedResidual,  // mean of the channels, in DivergingColour
     kMap,             // as kRadiance, in the frame camera, with the axes below
   };
-  std::string label;  // printable ASCII, wrapped to the picture's width
+  std::string label;  // printable ASCII, wrapped
   Image image;
   Kind kind = Kind::kRadiance;
   // Pixels outside are neutral grey, as are pixels that are NaN; empty: none.
   Mask mask;
   double exposure = 1.0;
-  // kSignedResidual: value at the ends of the colour bar; 0: the 99th
-  // percentile of the magnitude, rounded up to 1, 2 or 5 times a power of ten.
+  // Columns and rows of the image that make one pixel of its picture, by their
+  // mean in linear light: > 1 smooths outlines. Then it is not enlarged.
+  int samples = 1;
+  // kSignedResidual: value at the ends of the colour bar; 0: the 98th
+  // percentile of the magnitude over the mask's pixels.
   double range = 0.0;
 };
 
@@ -36,9 +39,11 @@ struct PanelPicture {
 PanelPicture DrawPanel(const PreviewPanel& panel, int max_side);
 
 // Rows of panels on a light ground, the title above and the notes below, at
-// most 1440 pixels wide. Small images are enlarged by the largest whole factor
-// that fits, pixels staying squares; large ones are reduced by area in linear
-// light; the size and factor stand below each. Panels have pixels, rows panels.
+// most 1440 pixels wide where words allow. Small images are enlarged by the
+// largest whole factor that fits, pixels staying squares; where that is below
+// 3, to what fits, linear between pixels. Large ones are reduced by area in
+// linear light. The size and factor stand below each. No text overlaps another.
+// Panels have pixels, rows panels.
 Rgb8Image ComposePanels(const std::vector<std::vector<PreviewPanel>>& rows,
                         const std::string& title,
                         const std::vector<std::string>& notes = {});

@@ -13,6 +13,28 @@ std::string ShortNumber(double value) {
   return Format(whole ? "%.0f" : "%.4g", value);
 }
 
+std::string RoundNumber(double value) {
+  const double size = std::fabs(value);
+  if (size > 0.0 && size < 1e-3) return "below 0.001";
+  if (size == 0.0 || !std::isfinite(value)) return ShortNumber(value);
+  const double digit = std::pow(10.0, std::floor(std::log10(size)) - 1.0);
+  return ShortNumber(digit * std::round(value / digit));
+}
+
+std::string ErrorInWords(double log_error) {
+  constexpr double kMostPercent = 0.4;
+  const double size = std::fabs(log_error);
+  if (!(size <= kLargestKnownError)) return "not determined";
+  if (size < 0.01) return "less than 1 %";
+  if (size < kMostPercent) {
+    const double percent = 100.0 * size;
+    const double step = percent < 10.0 ? 1.0 : percent < 20.0 ? 5.0 : 10.0;
+    return Format("some %.0f %%", step * std::round(percent / step));
+  }
+  // Halves are fine enough.
+  return Format("a factor of %.3g", std::round(2.0 * std::exp(size)) / 2.0);
+}
+
 double RoundUp(double x) {
   const double power = std::pow(10.0, std::floor(std::log10(x)));
   for (const double factor : {1.0, 2.0, 5.0}) {

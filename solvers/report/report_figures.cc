@@ -21,6 +21,7 @@ ReportFigure Figure(const PreviewPanel& panel) {
   figure.caption = panel.label;
   figure.pixels = std::move(picture.pixels);
   figure.range = picture.range;
+  figure.smooth = panel.samples > 1 || figure.pixels.width >= kSmoothWidth;
   figure.map = panel.kind == PreviewPanel::Kind::kMap;
   if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
     figure.bar = ReportFigure::Bar::kSigned;
@@ -66,8 +67,8 @@ std::string Labels(const std::vector<std::string>& labels) {
 std::string ColourBar(const ReportFigure& figure) {
   if (figure.bar == ReportFigure::Bar::kNone) return "";
   const bool is_signed = figure.bar == ReportFigure::Bar::kSigned;
-  const std::string high = Format(is_signed ? "+%g" : "%g", figure.range);
-  const std::string low = Format("-%g", figure.range);
+  const std::string high = Format(is_signed ? "+%.2g" : "%.2g", figure.range);
+  const std::string low = Format("-%.2g", figure.range);
   std::string colours = CssColour(0.0) + "," + CssColour(1.0);
   if (is_signed) colours = CssColour(-1.0) + "," + colours;
   return "<div class=\"bar\" style=\"background:linear-gradient(to right," +
@@ -79,8 +80,7 @@ StatusOr<std::string> FigureMarkup(const ReportFigure& figure) {
   const StatusOr<std::string> png = EncodePng(figure.pixels);
   if (!png.ok()) return png.status();
   std::string out = figure.map ? "<figure class=\"wide\">\n" : "<figure>\n";
-  out += std::string("<img ") +
-         (figure.pixels.width < kSmoothWidth ? "class=\"pixels\" " : "") +
+  out += std::string("<img ") + (figure.smooth ? "" : "class=\"pixels\" ") +
          "width=\"" + std::to_string(figure.pixels.width) + "\" height=\"" +
          std::to_string(figure.pixels.height) + "\" alt=\"" +
          EscapeHtml(figure.caption) + "\" src=\"" + PngDataUri(*png) +
@@ -93,7 +93,8 @@ StatusOr<std::string> FigureMarkup(const ReportFigure& figure) {
 constexpr char kImageNote[] =
     "The residual should look like noise: red is rendered too bright, blue too "
     "dark. Where it has structure, the estimate does not explain the image. "
-    "Grey pixels took no part.";
+    "Grey pixels took no part. The colours end at the 98th percentile of the "
+    "residual's magnitude over the pixels that took part.";
 
 constexpr char kMapNote[] =
     "Equirectangular maps of the light that arrives at the object, seen from "
@@ -112,6 +113,17 @@ constexpr char kSphereNote[] =
     "Spheres of the material under three directional lights and under an "
     "artificial sky.";
 
+constexpr char kRelitNote[] =
+    "The estimated material on this shape, in the light of the spheres above. "
+    "The light goes with the camera. Shadows and bounces are left out. Each "
+    "picture has its own exposure.";
+
+constexpr char kOthersNote[] =
+    "Spheres of the local optima that differ from the estimate, the most "
+    "probable first, under the directional lights. Where the evidence is "
+    "within "
+    "a factor of twenty, this image does not tell which one is right.";
+
 // Explains the factor in an estimate's caption.
 constexpr char kScaleNote[] =
     " An estimate beside its reference is shown times the factor in its "
@@ -121,13 +133,14 @@ constexpr char kScaleNote[] =
 }  // namespace
 
 std::vector<ReportGroup> MakeReportGroups(const ResultPanels& panels,
-                                          const Image& map_std) {
+                                          const Image& map_std,
+                                          const std::string& material) {
   std::vector<ReportGroup> groups;
   if (!panels.images.empty()) {
     groups.push_back(Group("Image", kImageNote, panels.images));
   }
   if (!panels.maps.empty()) {
-    groups.push_back(Group("Illumination", kMapNote, panels.maps));
+    groups.push_back(Group("Light", kMapNote, panels.maps));
     if (panels.maps.size() > 1) groups.back().text += kScaleNote;
     if (!map_std.empty()) {
       groups.back().text += kDeviationNote;
@@ -137,6 +150,15 @@ std::vector<ReportGroup> MakeReportGroups(const ResultPanels& panels,
   if (!panels.spheres.empty()) {
     groups.push_back(Group("Reflectance", kSphereNote, panels.spheres));
     if (panels.spheres.size() > 2) groups.back().text += kScaleNote;
+    if (!material.empty()) groups.back().text += " " + material;
+  }
+  if (!panels.relit.empty()) {
+    groups.push_back(
+        Group("The object in other light", kRelitNote, panels.relit));
+  }
+  if (!panels.alternatives.empty()) {
+    groups.push_back(Group("Other reflectances that were found", kOthersNote,
+                           panels.alternatives));
   }
   return groups;
 }

@@ -20,7 +20,8 @@ struct ReportFigure {
   Rgb8Image pixels;
   Bar bar = Bar::kNone;
   double range = 0.0;
-  bool map = false;  // equirectangular: directions are named below it
+  bool smooth = false;  // may be blurred to be enlarged, as by a browser
+  bool map = false;     // equirectangular: directions are named below it
 };
 
 // Pictures that belong together, and what to look for.
@@ -30,9 +31,11 @@ struct ReportGroup {
 };
 
 // Image, illumination with the standard deviation of its logarithm (empty:
-// none), reflectance. Pictures have at most 1024 pixels a side.
+// none), reflectance with `material` in words (may be empty), the object relit,
+// other reflectances. Pictures have at most 1024 pixels a side.
 std::vector<ReportGroup> MakeReportGroups(const ResultPanels& panels,
-                                          const Image& map_std);
+                                          const Image& map_std,
+                                          const std::string& material = "");
 
 // The group as a <section>. Fails on a picture that no PNG can hold.
 StatusOr<std::string> GroupSection(const ReportGroup& group);

@@ -1,7 +1,9 @@
 #include "ibrdf/solvers/report/report_page.h"
 
+#include <cmath>
 #include <filesystem>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/base/version.h"
 #include "ibrdf/io/problem_json.h"
 #include "ibrdf/solvers/effects/describe_plan.h"
@@ -14,6 +16,7 @@
 #include "ibrdf/solvers/report/report_style.h"
 #include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/report/svg_plot.h"
+#include "ibrdf/solvers/report/verdict.h"
 
 namespace ibrdf {
 namespace {
@@ -36,13 +39,30 @@ std::string KindInWords(ProblemKind kind) {
 }
 
 std::string Summary(const SolvedProblem& solved) {
-  return KindInWords(solved.problem.kind) + " Misfit " +
-         ShortNumber(solved.metrics.misfit) + " after " +
-         ShortNumber(solved.metrics.seconds) + " s, from " +
-         ShortNumber(static_cast<double>(solved.solution.pixels_used)) +
+  const ResultMetrics& metrics = solved.metrics;
+  const std::string misfit =
+      std::isfinite(metrics.misfit) ? Format("%.2g", metrics.misfit) : "-";
+  const std::string seconds =
+      std::isfinite(metrics.seconds) ? Format("%.0f", metrics.seconds) : "-";
+  return KindInWords(solved.problem.kind) + " Misfit " + misfit + " after " +
+         seconds + " s, from " + std::to_string(solved.solution.pixels_used) +
          " pixels. The misfit is the mean absolute log error of the render: "
          "the mean of |log L_o - log I| over pixels and channels, with the "
          "rendered radiance L_o and the image I.";
+}
+
+std::string VerdictSection(const SolvedProblem& solved) {
+  const Verdict verdict = MakeVerdict(solved);
+  const TrustRatings& r = verdict.ratings;
+  std::string text;
+  for (const std::string& sentence : verdict.Sentences()) {
+    text += HtmlElement("p", sentence) + "\n";
+  }
+  return "<section class=\"verdict\">\n" + text +
+         HtmlTable({"light's directions", "hue", "gloss", "brightness"},
+                   {{NameOf(r.light), NameOf(r.hue), NameOf(r.gloss),
+                     NameOf(r.level)}}) +
+         "</section>\n";
 }
 
 std::string WarningList(const SolvedProblem& solved) {
@@ -146,7 +166,7 @@ StatusOr<std::string> ReportPage(const SolvedProblem& solved,
   const std::string name =
       std::filesystem::path(solved.problem.path).filename().string();
   const ProblemKind kind = solved.problem.kind;
-  std::string body = HtmlElement("h1", name) + "\n" +
+  std::string body = HtmlElement("h1", name) + "\n" + VerdictSection(solved) +
                      HtmlElement("p", Summary(solved), "class=\"summary\"") +
                      "\n" + WarningList(solved);
   for (const ReportGroup& group : groups) {

@@ -1,8 +1,10 @@
 #include "ibrdf/solvers/report/report_posterior.h"
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/solvers/report/html.h"
 #include "ibrdf/solvers/report/lobe_summary.h"
 #include "ibrdf/solvers/report/readable_numbers.h"
@@ -11,11 +13,14 @@
 namespace ibrdf {
 namespace {
 
-// A standard deviation of a logarithm in words.
-std::string Uncertainty(double log_std) {
-  if (!std::isfinite(log_std)) return "";
-  if (log_std < 0.4) return " \xC2\xB1 " + ShortNumber(100 * log_std) + " %";
-  return ", within a factor of " + ShortNumber(std::exp(log_std));
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// A lobe's colour with one standard deviation of its logarithm. A colour that
+// could be five times as much is none.
+std::string ColourInWords(double colour, double log_std) {
+  if (!std::isfinite(log_std)) return RoundNumber(colour);
+  if (std::fabs(log_std) > kLargestKnownError) return "not determined";
+  return RoundNumber(colour) + ", within " + ErrorInWords(log_std);
 }
 
 double Norm(const std::vector<double>& v) {
@@ -30,8 +35,8 @@ std::string LobeTable(const std::vector<LobeSummary>& lobes) {
     const auto& deviation = lobes[k].deviation;
     std::vector<std::string> row = {"lobe\xC2\xA0" + std::to_string(k + 1)};
     for (size_t c = 0; c < 3; ++c) {
-      row.push_back(ShortNumber(lobes[k].colour[c]) +
-                    (deviation ? Uncertainty(deviation->log_colour[c]) : ""));
+      row.push_back(ColourInWords(lobes[k].colour[c],
+                                  deviation ? deviation->log_colour[c] : kNan));
     }
     row.push_back(ShortNumber(Norm(lobes[k].code)));
     row.push_back(deviation
@@ -76,21 +81,22 @@ std::string ExpectedErrorInWords(double spread) {
              "p",
              "How far off to expect it: reflectances sampled from this "
              "posterior differ from the estimate by " +
-                 ShortNumber(spread) +
+                 Format("%.2g", spread) +
                  " in the logarithm (root mean square over all angles, after "
-                 "the best scale). Such posteriors are too sure: of images "
+                 "the best scale). Such posteriors are too sure. Of images "
                  "whose truth is known, half were off by more than " +
-                 ShortNumber(error.median) + " at such a spread (a factor of " +
-                 ShortNumber(std::exp(error.median)) +
-                 "), one in ten by more than " + ShortNumber(error.most) +
-                 ".") +
+                 Format("%.2g", error.median) + " at such a spread (" +
+                 ErrorInWords(error.median) + "), one in ten by more than " +
+                 Format("%.2g", error.most) + " (" + ErrorInWords(error.most) +
+                 ").") +
          "\n";
 }
 
 // What is smaller than `least` is not told apart from it.
 std::string AtLeast(double least, double value) {
+  if (!std::isfinite(value)) return "-";
   return value >= 0.0 && value < least ? "below " + ShortNumber(least)
-                                       : ShortNumber(value);
+                                       : Format("%.2g", value);
 }
 
 std::string AlternativesInWords(const std::vector<Alternative>& alternatives) {
@@ -99,8 +105,8 @@ std::string AlternativesInWords(const std::vector<Alternative>& alternatives) {
   }
   std::vector<std::vector<std::string>> rows;
   for (const Alternative& other : alternatives) {
-    rows.push_back({other.start, ShortNumber(other.cost),
-                    AtLeast(1e-6, std::exp(-other.cost)),
+    rows.push_back({other.start, AtLeast(0.1, other.cost),
+                    AtLeast(1e-3, std::exp(-other.cost)),
                     AtLeast(1e-3, other.brdf_log_difference)});
   }
   return HtmlElement("h3", "Other explanations") + "\n" +

@@ -30,6 +30,7 @@ h2 {
 h3 { font-size: 1em; margin: 1.2em 0 0.3em; }
 p { margin: 0.5em 0; max-width: 75ch; }
 .summary, figcaption, footer { color: var(--faint); }
+.verdict { margin-top: 0.8em; font-size: 1.08em; }
 .warnings {
   margin-top: 1.2em; padding: 0.6em 1em; background: var(--warn-ground);
   border-left: 4px solid var(--warn-line);

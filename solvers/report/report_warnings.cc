@@ -3,25 +3,14 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/report/readable_numbers.h"
+#include "ibrdf/solvers/report/report_limits.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
 namespace {
-
-// A misfit above this is more than noise and the lobes' limits explain
-// (experiments/joint_grid).
-constexpr double kLargeMisfit = 0.1;
-// Share of the time limit from which on the last stage was cut short.
-constexpr double kTimeShare = 0.8;
-// Another reflectance counts as an explanation of its own within a factor of
-// 20 of the evidence and beyond a tenth in the logarithm.
-constexpr double kRivalCost = 3.0;
-constexpr double kRivalDifference = 0.1;
-// Expected error: of joint_grid's cases above it three quarters are off by more
-// than 0.6, a quarter of the others.
-constexpr double kUncertain = 0.84;
 
 std::string StatusWarning(const Status& status) {
   switch (status.code()) {
@@ -55,7 +44,7 @@ std::string MisfitWarning(const SolvedProblem& solved) {
   if (misfit <= kLargeMisfit) return "";
   return "The estimate does not explain the image: its misfit, the mean "
          "absolute log error, is " +
-         ShortNumber(misfit) + ", far above usual noise. " +
+         Format("%.2g", misfit) + ", far above usual noise. " +
          (IsOutOfTime(solved) ? "If more time does not help, check" : "Check") +
          " the shape, the mask, the camera, and that the image is linear "
          "radiance.";
@@ -70,18 +59,30 @@ std::string PixelWarning(const SolvedProblem& solved) {
          "channels.";
 }
 
+std::string FewPixelsWarning(const SolvedProblem& solved) {
+  const int64_t used = solved.solution.pixels_used;
+  const auto all = static_cast<int64_t>(solved.inverse.points.size());
+  if (!TooFewPixels(used, all)) return "";
+  return "The estimate tells nothing: it was made from " +
+         std::to_string(used) + " of the object's " + std::to_string(all) +
+         " pixels.";
+}
+
 std::string UncertainWarning(const Solution& solution) {
   if (!std::isfinite(solution.spread)) return "";
   const double expected = ExpectError(solution.spread).median;
   if (!(expected > kUncertain)) return "";
-  return "This image does not tell the reflectance well. The logarithm of the "
-         "estimate is expected to be off by " +
-         ShortNumber(expected) + ", a factor of " +
-         ShortNumber(std::exp(expected)) +
-         " (root mean square over all angles, after the best scale).";
+  if (expected > kLargestKnownError) {
+    return "This image does not determine the reflectance.";
+  }
+  return "This image does not tell the reflectance well. It is expected to be "
+         "off by " +
+         ErrorInWords(expected) +
+         " (root mean square of its logarithm over all angles, after the best "
+         "scale).";
 }
 
-// A curve in words: aces, gamma 0.52 within a factor of 1.1.
+// A curve in words: aces, gamma 0.52 (known to some 10 %).
 std::string CurveWords(const CurveEstimate& estimate) {
   const ResponseDefinition& curve = estimate.curve;
   std::string words = NameOf(curve.kind);
@@ -89,8 +90,7 @@ std::string CurveWords(const CurveEstimate& estimate) {
   words += std::string(", ") + ParameterOf(curve.kind)->name + " " +
            ShortNumber(*curve.parameter);
   if (std::isfinite(estimate.log_parameter_std)) {
-    words += " within a factor of " +
-             ShortNumber(std::exp(estimate.log_parameter_std));
+    words += " (known to " + ErrorInWords(estimate.log_parameter_std) + ")";
   }
   return words;
 }
@@ -113,10 +113,10 @@ std::string RivalWarning(const std::vector<Alternative>& alternatives) {
     if (!(other.cost < kRivalCost && difference > kRivalDifference)) continue;
     return "Another reflectance explains the image nearly as well. It is the "
            "local optimum found from " +
-           other.start + ": it has " + ShortNumber(std::exp(-other.cost)) +
+           other.start + ": it has " + Format("%.2g", std::exp(-other.cost)) +
            " of the best one's evidence, and its logarithm differs from the "
            "estimate's by " +
-           ShortNumber(difference) + " (root mean square).";
+           Format("%.2g", difference) + " (root mean square).";
   }
   return "";
 }
@@ -138,7 +138,7 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
                   solved.truth.warnings.end());
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
-        MisfitWarning(solved), PixelWarning(solved),
+        MisfitWarning(solved), PixelWarning(solved), FewPixelsWarning(solved),
         CurveWarning(solved.solution.curves), UncertainWarning(solved.solution),
         RivalWarning(solved.solution.alternatives)}) {
     if (!warning.empty()) warnings.push_back(std::move(warning));

@@ -13,6 +13,7 @@
 #include "ibrdf/solvers/report/gauge_words.h"
 #include "ibrdf/solvers/report/lobe_summary.h"
 #include "ibrdf/solvers/report/report_warnings.h"
+#include "ibrdf/solvers/report/verdict.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
@@ -35,6 +36,18 @@ const char* StatusName(const Status& status) {
     default:
       return "error";
   }
+}
+
+Json VerdictJson(const Verdict& verdict) {
+  const TrustRatings& ratings = verdict.ratings;
+  return {{"trust", verdict.trust},
+          {"doubt", verdict.doubt},
+          {"next", verdict.next},
+          {"ratings",
+           {{"light_directions", NameOf(ratings.light)},
+            {"hue", NameOf(ratings.hue)},
+            {"gloss", NameOf(ratings.gloss)},
+            {"level", NameOf(ratings.level)}}}};
 }
 
 Json VisibilityJson(const InverseProblem& inverse) {
@@ -134,6 +147,17 @@ Json AlternativesJson(const std::vector<Alternative>& alternatives) {
   return out;
 }
 
+Json MaterialJson(const MaterialSummary& material) {
+  Json nearest = Json::array();
+  for (const NearMaterial& near : material.nearest) {
+    nearest.push_back({{"name", near.name},
+                       {"brdf_log_difference", near.brdf_log_difference}});
+  }
+  return {{"nearest", nearest},
+          {"diffuse_share", Finite(material.shares.diffuse)},
+          {"specular_share", Finite(material.shares.specular)}};
+}
+
 // Condition number of the posterior's correlations.
 double CovarianceCondition(const Solution& solution) {
   const auto side = static_cast<Eigen::Index>(solution.lobe_parameters.size());
@@ -168,12 +192,14 @@ std::string Text(const Json& document) {
 
 }  // namespace
 
-std::string ResultJson(const SolvedProblem& solved) {
+std::string ResultJson(const SolvedProblem& solved,
+                       const MaterialSummary& material) {
   const InverseProblem& inverse = solved.inverse;
   const Solution& solution = solved.solution;
   const ObjectLook* const look = inverse.look.get();
   return Text({{"ibrdf_version", kVersion},
                {"status", StatusName(solution.status)},
+               {"verdict", VerdictJson(MakeVerdict(solved))},
                {"warnings", ResultWarnings(solved)},
                {"check", look == nullptr ? Json() : CheckToJson(look->check)},
                {"problem", ProblemToJson(solved.problem)},
@@ -183,6 +209,7 @@ std::string ResultJson(const SolvedProblem& solved) {
                {"illumination_frame",
                 MapFrameName(solved.problem.illumination.output_frame)},
                {"start", solution.start},
+               {"material", MaterialJson(material)},
                {"posterior", PosteriorJson(inverse, solution)},
                {"curves", CurvesJson(solution.curves)},
                {"seed", inverse.seed},

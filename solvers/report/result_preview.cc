@@ -6,12 +6,16 @@
 #include <utility>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/drawing/crop.h"
 #include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/report/brdf_sphere.h"
 #include "ibrdf/solvers/report/preview.h"
+#include "ibrdf/solvers/report/report_limits.h"
 #include "ibrdf/solvers/report/result_images.h"
+#include "ibrdf/solvers/report/sphere_lookup.h"
 
 namespace ibrdf {
 namespace {
@@ -19,7 +23,11 @@ namespace {
 // Percentile of the reference that is shown as white.
 constexpr double kImageWhite = 99.0;
 constexpr double kMapWhite = 97.0;  // bright lights and the sun may burn out
-constexpr int kSphereSize = 96;
+// A sphere is drawn from kSphereSamples^2 values a pixel, so that its outline
+// is smooth. In the sky it is rendered smaller, which takes most of the time,
+// and looked up.
+constexpr int kSphereSize = 288, kSphereSamples = 2;
+constexpr int kSkySphereSize = 128;
 constexpr int kSkyHeight = 64;
 
 using Row = std::vector<PreviewPanel>;
@@ -42,15 +50,22 @@ PreviewPanel Picture(std::string label, const Image& image, const Mask& mask,
 
 Row ImagePanels(const ResultPreviewInput& input) {
   const double exposure = ExposureOf(input.input, input.mask, kImageWhite);
+  const PixelBox box =
+      BoxAround(input.mask, input.input.width, input.input.height);
+  const Mask mask = Crop(input.mask, box);
   Row row = {Picture("Input (" + White(exposure) + ", its 99th percentile)",
-                     input.input, input.mask, exposure)};
+                     Crop(input.input, box), mask, exposure)};
   if (input.render.empty()) return row;
-  row.push_back(Picture("Render of the estimate (same exposure)", input.render,
-                        input.mask, exposure));
+  row.push_back(Picture("Render of the estimate (same exposure)",
+                        Crop(input.render, box), mask, exposure));
   if (input.residual.empty()) return row;
-  row.push_back(Picture("Residual log(render / input), mean of R, G, B",
-                        input.residual, input.mask, 1.0,
-                        PreviewPanel::Kind::kSignedResidual));
+  const Mask& used =
+      input.residual_mask.empty() ? input.mask : input.residual_mask;
+  row.push_back(
+      Picture("Residual log(render / input), mean of R, G, B; the colours end "
+              "at the 98th percentile of its magnitude",
+              Crop(input.residual, box), Crop(used, box), 1.0,
+              PreviewPanel::Kind::kSignedResidual));
   return row;
 }
 
@@ -104,43 +119,61 @@ Row MapPanels(const ResultPreviewInput& input) {
       "seen from the object: the middle is " + input.middle_of_map;
   if (input.illumination_known || input.reference_illumination.empty()) {
     const double exposure = ExposureOf(input.illumination, Mask(), kMapWhite);
-    return {
-        Picture(std::string(input.illumination_known ? "Known" : "Estimated") +
-                    " illumination (" + White(exposure) +
-                    ", its 97th percentile), " + seen,
-                MapForPicture(input.illumination), Mask(), exposure, kind)};
+    return {Picture(
+        std::string(input.illumination_known ? "Known" : "Estimated") +
+            " light (" + White(exposure) + ", its 97th percentile), " + seen,
+        MapForPicture(input.illumination), Mask(), exposure, kind)};
   }
   const Image reference =
       ResizeMap(input.reference_illumination, input.illumination.height,
                 input.illumination.width);
   const double exposure = ExposureOf(reference, Mask(), kMapWhite);
   const double scale = MapScale(input.illumination, reference);
-  return {Picture("Estimated illumination" + Times(scale) + ", " + seen,
+  return {Picture("Estimated light" + Times(scale) + ", " + seen,
                   MapForPicture(input.illumination), Mask(), scale * exposure,
                   kind),
-          Picture("Reference illumination (" + White(exposure) +
+          Picture("Reference light (" + White(exposure) +
                       ", its 97th percentile), " + seen,
                   MapForPicture(reference), Mask(), exposure, kind)};
 }
 
+// Pictures of a sphere, kSphereSamples values a pixel; the one in the sky as it
+// was rendered, too.
 struct Spheres {
-  Image directional, sky;
+  Image directional, sky, small_sky;
 };
 
-Spheres RenderSpheres(const MerlTable& table, int num_threads) {
-  const BrdfFunction brdf = [&table](double theta_h, double theta_d,
-                                     double phi_d) {
-    return InterpolateMerl(table, theta_h, theta_d, phi_d);
-  };
-  return {RenderBrdfSphere(brdf, StudioLights(), kSphereSize),
-          RenderBrdfSphere(table, ProceduralSky(kSkyHeight, 2 * kSkyHeight),
-                           kSphereSize, num_threads)};
+Image DirectionalSphere(const BrdfFunction& brdf) {
+  return RenderBrdfSphere(brdf, StudioLights(), kSphereSamples * kSphereSize,
+                          1);
 }
 
-Row BrdfPanels(const ResultPreviewInput& input) {
-  if (input.brdf.raw.empty()) return {};
-  const Mask mask = BrdfSphereMask(kSphereSize);
-  const Spheres estimate = RenderSpheres(input.brdf, input.num_threads);
+Spheres RenderSpheres(const MerlTable& table, int num_threads) {
+  Spheres spheres;
+  spheres.directional =
+      DirectionalSphere([&table](double theta_h, double theta_d, double phi_d) {
+        return InterpolateMerl(table, theta_h, theta_d, phi_d);
+      });
+  spheres.small_sky =
+      RenderBrdfSphere(table, ProceduralSky(kSkyHeight, 2 * kSkyHeight),
+                       kSkySphereSize, num_threads);
+  spheres.sky = ResizeSphere(spheres.small_sky, kSphereSamples * kSphereSize);
+  return spheres;
+}
+
+PreviewPanel SpherePanel(std::string label, const Image& sphere,
+                         double exposure) {
+  PreviewPanel panel =
+      Picture(std::move(label), sphere, BrdfSphereMask(sphere.width), exposure);
+  panel.samples = kSphereSamples;
+  return panel;
+}
+
+double SphereExposure(const Image& sphere) {
+  return ExposureOf(sphere, BrdfSphereMask(sphere.width), kImageWhite);
+}
+
+Row SpherePanels(const ResultPreviewInput& input, const Spheres& estimate) {
   const bool compare = !input.reference_brdf.raw.empty();
   const Spheres reference =
       compare ? RenderSpheres(input.reference_brdf, input.num_threads)
@@ -152,16 +185,80 @@ Row BrdfPanels(const ResultPreviewInput& input) {
   Row row;
   const auto add = [&](const Image& estimated, const Image& known,
                        const std::string& light) {
-    const double exposure = ExposureOf(known, mask, kImageWhite);
+    const double exposure = SphereExposure(known);
     row.push_back(
-        Picture(name + ", " + light, estimated, mask, scale * exposure));
+        SpherePanel(name + ", " + light, estimated, scale * exposure));
     if (compare) {
-      row.push_back(Picture("BRDF reference, " + light, known, mask, exposure));
+      row.push_back(SpherePanel("BRDF reference, " + light, known, exposure));
     }
   };
   add(estimate.directional, reference.directional, "directional lights");
   add(estimate.sky, reference.sky, "sky");
   return row;
+}
+
+Row RelitPanels(const ResultPreviewInput& input, const Spheres& estimate) {
+  if (input.points == nullptr || input.points->empty()) return {};
+  const int width = input.input.width, height = input.input.height;
+  const PixelBox box = BoxAround(input.mask, width, height);
+  const Mask mask = Crop(input.mask, box);
+  Row row;
+  const auto add = [&](const Image& sphere, const std::string& light) {
+    const Image relit =
+        Crop(RelitObject(sphere, *input.points, width, height), box);
+    row.push_back(Picture("The object relit: " + light + ", without shadows",
+                          relit, mask, ExposureOf(relit, mask, kImageWhite)));
+  };
+  add(estimate.directional, "directional lights");
+  add(estimate.small_sky, "sky");
+  return row;
+}
+
+Row AlternativePanels(const ResultPreviewInput& input,
+                      const Spheres& estimate) {
+  if (input.alternatives.empty()) return {};
+  Row row = {SpherePanel("The estimate", estimate.directional,
+                         SphereExposure(estimate.directional))};
+  for (const auto& [label, brdf] : input.alternatives) {
+    const BrdfGrid& grid = brdf;
+    const Image sphere = DirectionalSphere(
+        [&grid](double theta_h, double theta_d, double phi_d) {
+          return grid.Evaluate(theta_h, theta_d, phi_d);
+        });
+    row.push_back(SpherePanel(label, sphere, SphereExposure(sphere)));
+  }
+  return row;
+}
+
+// How probable an alternative is, and how far off.
+std::string AlternativeLabel(const Alternative& other) {
+  constexpr double kLeast = 1e-3;
+  const double evidence = std::exp(-other.cost);
+  return "Found from " + other.start + ": " +
+         (evidence < kLeast ? Format("below %g", kLeast)
+                            : Format("%.2g", evidence)) +
+         " of the evidence, log differs by " +
+         Format("%.2g", other.brdf_log_difference);
+}
+
+// The most probable reflectances that differ from the estimate, at most three.
+std::vector<std::pair<std::string, BrdfGrid>> DrawnAlternatives(
+    const SolvedProblem& solved) {
+  constexpr size_t kMost = 3;
+  const InverseProblem& inverse = solved.inverse;
+  std::vector<std::pair<std::string, BrdfGrid>> drawn;
+  for (const Alternative& other : solved.solution.alternatives) {
+    if (drawn.size() == kMost) break;
+    if (!(other.brdf_log_difference > kRivalDifference) ||
+        !std::isfinite(other.cost) || other.lobe_parameters.empty()) {
+      continue;
+    }
+    const FlowLobes lobes(*inverse.model, inverse.lobes, BrdfGridShape(),
+                          inverse.num_threads);
+    drawn.emplace_back(AlternativeLabel(other),
+                       lobes.Grid(other.lobe_parameters.data()));
+  }
+  return drawn;
 }
 
 Status CheckInput(const ResultPreviewInput& input) {
@@ -180,6 +277,11 @@ Status CheckInput(const ResultPreviewInput& input) {
       differs(input.residual.width, input.residual.height)) {
     return InvalidInput("preview: residual", "expected the size of the input");
   }
+  if (!input.residual_mask.empty() &&
+      differs(input.residual_mask.width, input.residual_mask.height)) {
+    return InvalidInput("preview: residual mask",
+                        "expected the size of the input");
+  }
   const size_t entries = size_t{3} * kMerlBins;
   for (const MerlTable* table : {&input.brdf, &input.reference_brdf}) {
     if (!table->raw.empty() && table->raw.size() != entries) {
@@ -190,14 +292,30 @@ Status CheckInput(const ResultPreviewInput& input) {
 }
 
 ResultPanels MakeRows(const ResultPreviewInput& input) {
-  return {ImagePanels(input), MapPanels(input), BrdfPanels(input)};
+  ResultPanels panels;
+  panels.images = ImagePanels(input);
+  panels.maps = MapPanels(input);
+  if (input.brdf.raw.empty()) return panels;
+  const Spheres estimate = RenderSpheres(input.brdf, input.num_threads);
+  panels.spheres = SpherePanels(input, estimate);
+  panels.relit = RelitPanels(input, estimate);
+  panels.alternatives = AlternativePanels(input, estimate);
+  return panels;
 }
 
 Rgb8Image ComposeOverview(const ResultPanels& rows,
                           const ResultPreviewInput& input) {
   std::vector<Row> shown;
-  for (const Row* row : {&rows.images, &rows.maps, &rows.spheres}) {
+  for (const Row* row :
+       {&rows.images, &rows.maps, &rows.spheres, &rows.alternatives}) {
     if (!row->empty()) shown.push_back(*row);
+  }
+  // Two spheres leave room for the object in their lights.
+  if (rows.spheres.size() == 2) {
+    Row& spheres = shown[rows.maps.empty() ? 1 : 2];
+    spheres.insert(spheres.end(), rows.relit.begin(), rows.relit.end());
+  } else if (!rows.relit.empty()) {
+    shown.push_back(rows.relit);
   }
   std::vector<std::string> notes = input.metrics;
   if (rows.maps.size() > 1 || rows.spheres.size() > 2) {
@@ -210,17 +328,24 @@ Rgb8Image ComposeOverview(const ResultPanels& rows,
 
 ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   ResultPreviewInput input;
-  input.title = std::filesystem::path(solved.problem.path).filename().string();
+  const auto name_of = [](const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+  };
+  input.title =
+      name_of(solved.problem.path) + ": " + name_of(solved.problem.image.file);
   input.input = solved.inverse.image;
   input.mask = ObjectMask(solved.inverse);
   input.render = solved.solution.render;
   input.residual = LogResidual(solved.inverse, solved.solution);
+  input.residual_mask = UsedMask(solved.inverse);
   input.illumination = solved.solution.map;
   input.illumination_known = solved.inverse.known_map.has_value();
   input.reference_illumination = solved.truth.illumination;
   input.middle_of_map = MiddleOfMapPicture(solved.problem.camera);
   input.brdf = solved.solution.brdf;
   input.reference_brdf = solved.truth.brdf;
+  input.alternatives = DrawnAlternatives(solved);
+  input.points = &solved.inverse.points;
   input.metrics = MetricLines(solved.metrics);
   input.num_threads = solved.inverse.num_threads;
   return input;

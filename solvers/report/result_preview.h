@@ -1,12 +1,15 @@
 // The pictures of a result.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ibrdf/base/status.h"
+#include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
+#include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/report/preview.h"
 #include "ibrdf/solvers/report/solved_problem.h"
 
@@ -18,25 +21,34 @@ struct ResultPreviewInput {
   Image input;
   Mask mask;     // of the object, of the input's size; empty: all pixels
   Image render;  // of the input's size
-  // log(render / input) where the pixel took part, else 0, of their size.
+  // log(render / input) where the pixel took part, else 0, of their size; and
+  // which did (empty: as `mask`).
   Image residual;
+  Mask residual_mask;
   Image illumination;               // in the library's frame
   bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;
   std::string middle_of_map = "-z";  // of the pictures of maps, in words
   MerlTable brdf;
   MerlTable reference_brdf;
+  // Other reflectances that explain the image too, each with its label.
+  std::vector<std::pair<std::string, BrdfGrid>> alternatives;
+  // Of the object, to relight it with `brdf`; null: not drawn.
+  const std::vector<ShadingPoint>* points = nullptr;
   std::vector<std::string> metrics;  // one line each, printable ASCII
   int num_threads = 0;               // <= 0: all
 };
 
+// Borrows the solved problem's points.
 ResultPreviewInput PreviewInput(const SolvedProblem& solved);
 
-// The overview: input, render and residual; the maps; the BRDFs on spheres
-// under the lights of report/brdf_sphere.h, the estimate's beside the
-// reference's. Input and render share an exposure, and so do each estimate and
-// its reference; an estimate with a reference is first brought to the
-// reference's scale by one factor for all channels, which its label states.
+// The overview: input, render and residual, cropped to the object; the maps;
+// the BRDFs on spheres under the lights of report/brdf_sphere.h, the estimate's
+// beside the reference's; the object relit under the same two lights, and
+// spheres of other reflectances beside the estimate's. Input and render share
+// an exposure, and so do each estimate and its reference; an estimate with a
+// reference is first brought to the reference's scale by one factor for all
+// channels, which its label states.
 Rgb8Image MakeOverview(const ResultPreviewInput& input);
 
 // The overview's rows of panels; empty where there is nothing to show.
@@ -44,6 +56,8 @@ struct ResultPanels {
   std::vector<PreviewPanel> images;   // input, render, residual
   std::vector<PreviewPanel> maps;     // estimate, reference; or known
   std::vector<PreviewPanel> spheres;  // of each light, estimate and reference
+  std::vector<PreviewPanel> relit;    // the object, under each light
+  std::vector<PreviewPanel> alternatives;  // estimate, then the others
 };
 
 // Refuses an empty input and sizes that disagree.

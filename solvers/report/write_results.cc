@@ -5,6 +5,7 @@
 #include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/output_paths.h"
+#include "ibrdf/solvers/report/material_summary.h"
 #include "ibrdf/solvers/report/report_figures.h"
 #include "ibrdf/solvers/report/report_page.h"
 #include "ibrdf/solvers/report/result_images.h"
@@ -15,7 +16,7 @@ namespace ibrdf {
 namespace {
 
 // Previews of reflectance and map, the table; and what grows with the image.
-constexpr double kWriteSeconds = 0.75;
+constexpr double kWriteSeconds = 1.5;
 constexpr double kWriteSecondsPerMegapixel = 2.0;
 
 // Left by an earlier run, the first would speak for what a run that is cut off
@@ -85,10 +86,13 @@ Status WriteResults(const SolvedProblem& solved, const std::string& folder) {
   const StatusOr<ResultPanels> panels = MakeResultPanels(preview);
   if (!panels.ok()) return panels.status();
   IBRDF_RETURN_IF_ERROR(WriteResultPreviews(*panels, preview, folder));
-  IBRDF_RETURN_IF_ERROR(
-      WriteFileAtomically(folder + "/result.json", ResultJson(solved)));
+  const MaterialSummary material =
+      SummariseMaterial(solved.inverse, solved.solution);
+  IBRDF_RETURN_IF_ERROR(WriteFileAtomically(folder + "/result.json",
+                                            ResultJson(solved, material)));
   const StatusOr<std::string> page =
-      ReportPage(solved, MakeReportGroups(*panels, solved.solution.map_std));
+      ReportPage(solved, MakeReportGroups(*panels, solved.solution.map_std,
+                                          MaterialWords(material)));
   if (!page.ok()) return page.status();
   return WriteFileAtomically(folder + "/report.html", *page);
 }

@@ -15,7 +15,6 @@
 namespace ibrdf {
 namespace {
 
-constexpr BrdfGridShape kGrid = {36, 16, 24};
 constexpr double kFloor = 1e-6;  // raw units, as of CompareBrdfs
 // Errors over spreads: the median and the 90th percentile.
 constexpr double kMedianRatio = 2.1;
@@ -23,13 +22,13 @@ constexpr double kMostRatio = 3.8;
 
 }  // namespace
 
-LobeDistance::LobeDistance(const LobeFactory& lobes)
-    : lobes_(lobes(kGrid)), weights_(kGrid.num_nodes()) {
+LobeDistance::LobeDistance(const LobeFactory& lobes, const BrdfGridShape& grid)
+    : lobes_(lobes(grid)), weights_(grid.num_nodes()) {
   // Bins are spaced evenly in sqrt(theta_h), nodes between 0 and the bound of
   // it. Nodes at an end stand for half as much.
   double sum = 0.0;
-  for (int node = 0; node < kGrid.num_nodes(); ++node) {
-    const Eigen::Vector3d x = kGrid.NodePoint(node);
+  for (int node = 0; node < grid.num_nodes(); ++node) {
+    const Eigen::Vector3d x = grid.NodePoint(node);
     const double bound = ThetaHBound(kPi / 2 * x[1], kPi * x[2]);
     double w = std::sqrt(std::max(bound, 0.0));
     for (const double end : {x[0], x[1]}) {

@@ -12,7 +12,11 @@ namespace ibrdf {
 // Immutable.
 class LobeDistance {
  public:
-  explicit LobeDistance(const LobeFactory& lobes);
+  static constexpr BrdfGridShape kMetricGrid = {36, 16, 24};
+
+  // A coarser grid is quicker and less exact.
+  explicit LobeDistance(const LobeFactory& lobes,
+                        const BrdfGridShape& grid = kMetricGrid);
 
   const LobeModel& lobes() const { return *lobes_; }
   // Log of raw values plus the metric's floor, [3][nodes].

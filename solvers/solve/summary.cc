@@ -106,6 +106,7 @@ std::vector<Alternative> AlternativesOf(
   for (const MaterialCandidate& candidate : candidates) {
     Alternative a;
     a.start = candidate.name;
+    a.lobe_parameters = candidate.parameters;
     a.cost = candidate.cost - candidates.front().cost;
     a.brdf_log_difference =
         distance.Aligned(distance.LogValues(candidate.parameters), found);

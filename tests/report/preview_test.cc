@@ -135,6 +135,58 @@ TEST(Preview, LargeImagesAreReducedToFitTheWidth) {
             10 * 150 * 400);
 }
 
+// Labels wider than their pictures stand beside each other all the same.
+TEST(Preview, LabelsDoNotOverlap) {
+  PreviewPanel panel = Panel(Constant(4, 400, 1.0f));
+  panel.label = "Incomprehensibilities";
+  const Rgb8Image picture = ComposePanels({{panel, panel, panel, panel}}, "");
+  // Groups of columns with ink in the rows of the labels.
+  int groups = 0, since_ink = 1000;
+  for (int x = 0; x < picture.width; ++x) {
+    bool ink = false;
+    for (int y = 20; y < 46; ++y) ink |= picture.At(x, y)[0] < 120;
+    groups += ink && since_ink > 20;
+    since_ink = ink ? 0 : since_ink + 1;
+  }
+  EXPECT_EQ(4, groups);
+}
+
+TEST(Preview, AFewPixelsDoNotSetTheResidualsScale) {
+  Image residual = Constant(100, 100, 0.1f);
+  Mask mask(100, 100, 1);
+  for (int k = 0; k < 150; ++k) {
+    residual.rgb[3 * k] = residual.rgb[3 * k + 1] = residual.rgb[3 * k + 2] =
+        20.0f;
+  }
+  for (int y = 50; y < 100; ++y) {
+    for (int x = 0; x < 50; ++x) {  // took no part
+      mask.inside[100 * y + x] = 0;
+      residual.At(x, y)[0] = 1e6f;
+    }
+  }
+  PreviewPanel panel = Panel(residual, PreviewPanel::Kind::kSignedResidual);
+  panel.mask = mask;
+  // 150 of 7500 are 2 %.
+  EXPECT_NEAR(20.0, DrawPanel(panel, 100).range, 1e-5);
+  panel.image.rgb[0] = panel.image.rgb[1] = panel.image.rgb[2] = 0.1f;
+  EXPECT_NEAR(0.1, DrawPanel(panel, 100).range, 1e-5);
+}
+
+TEST(Preview, SamplesMakeAPixelTogether) {
+  Image image(8, 8);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      for (int c = 0; c < 3; ++c) image.At(x, y)[c] = (x + y) % 2 ? 1.0f : 0.0f;
+    }
+  }
+  PreviewPanel panel = Panel(image);
+  panel.samples = 2;
+  const Rgb8Image picture = DrawPanel(panel, 100).pixels;
+  EXPECT_EQ(4, picture.width);
+  EXPECT_EQ(
+      16, Count(picture, {EncodeSrgb(0.5), EncodeSrgb(0.5), EncodeSrgb(0.5)}));
+}
+
 TEST(Preview, TextIsDrawnInItsPlace) {
   const std::vector<std::vector<PreviewPanel>> rows = {
       {Panel(Constant(16, 16, 1.0f))}};

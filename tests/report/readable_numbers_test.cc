@@ -21,6 +21,28 @@ TEST(ShortNumber, HasFourDigitsAndNoExponentWhereAvoidable) {
   EXPECT_EQ("-", ShortNumber(std::nan("")));
 }
 
+TEST(ErrorInWords, RoundsForPeople) {
+  EXPECT_EQ("less than 1 %", ErrorInWords(5.739e-8));
+  EXPECT_EQ("some 7 %", ErrorInWords(0.0712));
+  EXPECT_EQ("some 15 %", ErrorInWords(-0.157));
+  EXPECT_EQ("some 30 %", ErrorInWords(0.32));
+  EXPECT_EQ("a factor of 1.5", ErrorInWords(0.43));
+  EXPECT_EQ("a factor of 2.5", ErrorInWords(0.88));
+  EXPECT_EQ("a factor of 5", ErrorInWords(kLargestKnownError));
+  EXPECT_EQ("not determined", ErrorInWords(std::log(58.87)));
+  EXPECT_EQ("not determined", ErrorInWords(std::nan("")));
+}
+
+TEST(RoundNumber, HasTwoDigits) {
+  EXPECT_EQ("17000", RoundNumber(17137.0));
+  EXPECT_EQ("3.1", RoundNumber(3.13));
+  EXPECT_EQ("0.032", RoundNumber(0.0318));
+  EXPECT_EQ("-100", RoundNumber(-99.7));
+  EXPECT_EQ("below 0.001", RoundNumber(5.739e-8));
+  EXPECT_EQ("0", RoundNumber(0.0));
+  EXPECT_EQ("-", RoundNumber(std::nan("")));
+}
+
 TEST(RoundUp, IsTheNextOfOneTwoAndFive) {
   EXPECT_DOUBLE_EQ(0.2, RoundUp(0.11));
   EXPECT_DOUBLE_EQ(0.2, RoundUp(0.2));

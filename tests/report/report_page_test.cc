@@ -128,16 +128,25 @@ TEST(ReportPage, ShowsWhatTheResultHolds) {
   const ErrorToExpect error = ExpectError(kSpread);
   for (const std::string& part : std::vector<std::string>{
            "<h1>red &amp; &lt;plastic&gt;.yaml</h1>",
-           "a &lt;b&gt; &amp; &quot;c&quot;.exr", "Image &amp; map",
-           "Input &quot;x&quot; &lt;raw&gt;", "least prior cost",
+           "a &lt;b&gt; &amp; &quot;c&quot;.exr",
+           "Image &amp; map",
+           "Input &quot;x&quot; &lt;raw&gt;",
+           "least prior cost",
            "&lt;chrome&gt;",
-           "0.01832",  // exp(-4)
-           "1.25", "0.375", "0.3125", "solver.seconds",
-           "within a factor of 3.004",  // exp(1.1)
-           "0.2188",
-           Format("%.4g at such a spread (a factor of %.3g", error.median,
-                  std::exp(error.median)),
-           Format("%.4g", error.most), "the sphere is convex", "time (s)",
+           "0.018",  // exp(-4)
+           "1.25",
+           "0.375",
+           "0.3125",
+           "solver.seconds",
+           "30, within a factor of 3",  // exp(1.1)
+           "by 0.22 in the logarithm",
+           Format("%.2g at such a spread (a factor of 1.5", error.median),
+           Format("%.2g", error.most),
+           "<section class=\"verdict\">",
+           "Trust, with care, the light&#39;s directions and the object&#39;s "
+           "gloss",
+           "the sphere is convex",
+           "time (s)",
            "</svg>"}) {
     EXPECT_TRUE(Contains(page, part)) << part;
   }
@@ -276,6 +285,14 @@ TEST(ResultWarnings, NameEachCause) {
   };
   warned(ended(StatusCode::kNoImprovement), "initial guess");
   warned(ended(StatusCode::kInterrupted), "stopped");
+  // Beyond a factor of five no number is given.
+  warned([](Example* e) { e->solution.spread = 3.0; }, "does not determine");
+  warned(
+      [](Example* e) {
+        e->inverse.points.resize(1);
+        e->solution.pixels_used = 1;
+      },
+      "tells nothing: it was made from 1 of the object's 1 pixels");
   warned([](Example* e) { e->metrics.misfit = 0.5; }, "does not explain");
   warned([](Example* e) { e->metrics.seconds = 55.0; }, "time limit");
   warned([](Example* e) { e->solution.pixels_used = 90; },
@@ -284,7 +301,7 @@ TEST(ResultWarnings, NameEachCause) {
          "<chrome>");
   // An expected error of 0.9.
   warned([](Example* e) { e->solution.spread = 0.9 / ExpectError(1.0).median; },
-         "a factor of 2.46");
+         "a factor of 2.5");
   warned([](Example* e) { e->inverse.warnings = {"a.png: clipped"}; },
          "a.png: clipped");
 }

@@ -48,6 +48,45 @@ TEST(ResultPreview, ReferencesAddPanels) {
   EXPECT_GT(MakeOverview(input).width, alone.width);
 }
 
+TEST(ResultPreview, ImagesAreCroppedToTheObject) {
+  ResultPreviewInput input = SmallInput();
+  input.mask = Mask(12, 10, 0);
+  input.mask.inside[4 * 12 + 5] = input.mask.inside[5 * 12 + 6] = 1;
+  input.render = input.input;
+  input.residual = Image(12, 10);
+  const ResultPanels panels = *MakeResultPanels(input);
+  ASSERT_EQ(size_t{3}, panels.images.size());
+  for (const PreviewPanel& panel : panels.images) {
+    EXPECT_EQ(4, panel.image.width) << panel.label;
+    EXPECT_EQ(4, panel.image.height) << panel.label;
+    EXPECT_EQ(size_t{2}, panel.mask.CountInside()) << panel.label;
+  }
+}
+
+TEST(ResultPreview, ShowsTheObjectRelitAndOtherReflectances) {
+  ResultPreviewInput input = SmallInput();
+  input.brdf.raw.assign(size_t{3} * kMerlBins, 100.0);
+  ResultPanels panels = *MakeResultPanels(input);
+  EXPECT_EQ(size_t{2}, panels.spheres.size());
+  EXPECT_TRUE(panels.relit.empty());
+  EXPECT_TRUE(panels.alternatives.empty());
+
+  ShadingPoint point{};
+  point.normal = point.wo = Eigen::Vector3f::UnitZ();
+  point.pixel = 3;
+  const std::vector<ShadingPoint> points = {point};
+  input.points = &points;
+  BrdfGrid white({2, 2, 1});
+  std::fill(white.values.begin(), white.values.end(), 1.0f);
+  input.alternatives = {{"another", white}};
+  panels = *MakeResultPanels(input);
+  ASSERT_EQ(size_t{2}, panels.relit.size());
+  EXPECT_GT(panels.relit[0].image.At(3, 0)[1], 0.0f);
+  EXPECT_EQ(0.0f, panels.relit[0].image.At(4, 0)[1]);
+  ASSERT_EQ(size_t{2}, panels.alternatives.size());
+  EXPECT_EQ("another", panels.alternatives[1].label);
+}
+
 TEST(ResultPreview, MapsAreShownAsSeenFromTheObject) {
   ResultPreviewInput input = SmallInput();
   input.illumination = ProceduralSky(8, 16);
@@ -90,7 +129,7 @@ TEST(ResultPreview, AKnownMapIsNoEstimate) {
   input.illumination_known = true;
   const ResultPanels panels = MakeResultPanels(input).value();
   ASSERT_EQ(size_t{1}, panels.maps.size());
-  EXPECT_EQ(0u, panels.maps[0].label.find("Known illumination"));
+  EXPECT_EQ(0u, panels.maps[0].label.find("Known light"));
 }
 
 // An estimate that differs from its reference by a factor shows the same.

@@ -1,0 +1,28 @@
+// From where on a number is worth a warning.
+#pragma once
+#include <cstdint>
+
+namespace ibrdf {
+
+// A misfit above this is more than noise and the lobes' limits explain
+// (experiments/joint_grid).
+inline constexpr double kLargeMisfit = 0.1;
+// Share of the time limit from which on the last stage was cut short.
+inline constexpr double kTimeShare = 0.8;
+// Another reflectance counts as an explanation of its own within a factor of
+// 20 of the evidence and beyond a tenth in the logarithm.
+inline constexpr double kRivalCost = 3.0;
+inline constexpr double kRivalDifference = 0.1;
+// Expected error: of joint_grid's cases above it three quarters are off by more
+// than 0.6, a quarter of the others.
+inline constexpr double kUncertain = 0.84;
+
+// Whether so few of the object's pixels took part that an estimate from them
+// tells nothing: two lobes alone have about as many numbers, and a fiftieth of
+// an object shows hardly any of its normals.
+inline bool TooFewPixels(int64_t used, int64_t of_object) {
+  constexpr int64_t kFewPixels = 20, kFewOf = 50;
+  return used < kFewPixels || kFewOf * used < of_object;
+}
+
+}  // namespace ibrdf

@@ -1,0 +1,63 @@
+// Whether to trust a result: three plain sentences made from its numbers.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "ibrdf/io/problem.h"
+#include "ibrdf/solvers/report/solved_problem.h"
+
+namespace ibrdf {
+
+// How well something is known, the best first.
+enum class Trust { kKnown, kGood, kFair, kPoor, kNotDetermined };
+
+// "known", "good", "fair", "poor", "not determined".
+const char* NameOf(Trust trust);
+
+struct TrustRatings {
+  Trust light = Trust::kNotDetermined;  // its directions
+  Trust hue = Trust::kNotDetermined;    // of the reflectance
+  Trust gloss = Trust::kNotDetermined;  // the reflectance's shape over angles
+  Trust level = Trust::kNotDetermined;  // the reflectance's scale: albedo
+};
+
+struct Verdict {
+  std::string trust;  // what can be trusted
+  std::string doubt;  // what cannot, and why
+  std::string next;   // the most useful thing to do
+  TrustRatings ratings;
+
+  std::vector<std::string> Sentences() const { return {trust, doubt, next}; }
+};
+
+// What a verdict is made from. A NaN is a number that was not found.
+struct VerdictNumbers {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  ProblemKind kind = ProblemKind::kJoint;
+  StatusCode status = StatusCode::kOk;
+  bool out_of_time = false;
+  double misfit = kNone;  // mean |log L_o - log I|
+  double floor = 0.0;     // what like normals leave of it for any one material
+  bool several_materials = false;  // as colours of like normals say
+  bool has_mask = true;
+  std::string normals_advice;  // where other normals would be more plausible
+  int64_t object_pixels = 0, used_pixels = 0, clipped_pixels = 0;
+  // Errors to expect, natural logarithm: of the reflectance after the best
+  // scale; of its hue (ratios of channels) and of its level, given the gauge.
+  double reflectance_error = kNone, hue_error = kNone, level_error = kNone;
+  // Of another reflectance with a like evidence: its difference from the
+  // estimate; 0: there is none.
+  double rival_difference = 0.0;
+  // Standard deviation of log radiance that half of the light stays below.
+  double light_error = kNone;
+};
+
+VerdictNumbers NumbersForVerdict(const SolvedProblem& solved);
+
+Verdict MakeVerdict(const VerdictNumbers& numbers);
+Verdict MakeVerdict(const SolvedProblem& solved);
+
+}  // namespace ibrdf
