@@ -11,12 +11,12 @@ namespace ibrdf {
 inline double LaplaceIntervalCost(double low, double high, double mean,
                                   double b) {
   const double from = (low - mean) / b;
-  const double to = std::max((high - mean) / b, from + 1e-9);
+  const double width = std::max((high - low) / b, 1e-9);
+  const double to = std::isinf(from) ? (high - mean) / b : from + width;
   // Both ends on one side: half the density at the nearer one, times what of
   // its tail the width takes in.
-  const double nearest = std::max({from, -to, 0.0});
   if (from > 0.0 || to < 0.0) {
-    return nearest + std::log(2.0) - std::log(-std::expm1(-(to - from)));
+    return std::max(from, -to) + std::log(2.0) - std::log(-std::expm1(-width));
   }
   return -std::log1p(-0.5 * (std::exp(from) + std::exp(-to)));
 }

@@ -22,7 +22,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // of a family's line.
 constexpr double kReach = 2.0;
 constexpr int kPoints = 5;
-constexpr int kRefinements = 2;
+constexpr int kRefinements = 5;
+// A vertex that is no further from the lowest point, in lengths of the line, is
+// not looked at.
+constexpr double kSettledMove = 5e-3;
 // Of the time that remains, at most.
 constexpr double kTimeShare = 0.6;
 // Under known light: outer iterations of a search, for one curve; scales of the
@@ -173,7 +176,8 @@ LineMinimum MinimiseOnLine(const std::function<double(double)>& f, double low,
     if (!(parabola.curvature > 0.0)) break;
     minimum.curvature = parabola.curvature;
     const double next = std::clamp(parabola.vertex, low, high);
-    if (k == refinements || values.count(next) != 0) break;
+    const double move = std::abs(next - minimum.at);
+    if (k == refinements || move <= kSettledMove * (high - low)) break;
     add(next);
   }
   return minimum;

@@ -31,8 +31,8 @@ InverseProblem WithCurve(const InverseProblem& problem,
                          const ResponseDefinition& curve);
 
 // The lowest point of a function on [low, high]: values at `count` points in
-// equal steps, then `refinements` points at the vertex of the parabola through
-// the lowest and its neighbours. Infinite values are passed over.
+// equal steps, then up to `refinements` points at the vertex of the parabola
+// through the lowest and its neighbours. Infinite values are passed over.
 struct LineMinimum {
   double at = 0.0, value = 0.0;
   double curvature = 0.0;  // second derivative there; 0: the ends are lowest
