@@ -321,17 +321,16 @@ Keys GeometryKeys() {
           .Notes({"The outline of a sphere is in pixels from the image's top "
                   "left corner, x to the right and y down. The first pixel's "
                   "centre is at (0.5, 0.5).",
-                  "Without `centre` and `radius`, and before the orthographic "
-                  "camera, the sphere is the unit sphere where that overlaps "
-                  "the mask by 0.98 or there is no mask. Else its outline is "
-                  "fitted to the mask.",
+                  "Without `centre` and `radius` it is the unit sphere's, or, "
+                  "where that overlaps the mask by less than 0.98, fitted to "
+                  "the mask (orthographic camera).",
                   "A map of normals or depth has the image's size and is in "
                   "the camera's frame: with `camera.type: perspective` leave "
                   "out `camera.from`, `to` and `up`.",
-                  "Depth grows away from the camera, along the view. Before "
-                  "the orthographic camera its unit is a pixel's side; before "
-                  "the perspective one any unit will do. 0, NaN, infinite "
-                  "values and those beyond 1e8 are holes."}),
+                  "Depth grows away from the camera, along the view. Its unit "
+                  "is a pixel's side before the orthographic camera, and any "
+                  "before the perspective one.",
+                  "Depths that are 0, not finite or beyond 1e8 are holes."}),
       Row("geometry.sphere", "A sphere: `{}`, or its outline in the picture.")
           .OptionalMap()
           .Example("{}"),

@@ -225,6 +225,8 @@ TEST(ProblemSchema, NumbersEndWhereItSays) {
 TEST(ProblemSchema, ChoicesTakeItsWords) {
   for (const ProblemKey& key : AllKeys()) {
     SCOPED_TRACE(key.path);
+    // Words of one axis of the picture exclude each other.
+    if (key.Parent() == "geometry.frame") continue;
     const Setting setting = SettingOf(key);
     for (const std::string& word : key.Words()) {
       const Setting with = setting.With(key.path, word);

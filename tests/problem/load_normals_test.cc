@@ -116,7 +116,7 @@ TEST_F(LoadNormalsTest, OpenCvsFrameIsTurnedWhenAskedForAndNamedWhenNot) {
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
   EXPECT_NE(std::string::npos, status.message().find("n.exr: 100 % of the"));
   EXPECT_NE(std::string::npos, status.message().find("frame: opencv"));
-  geometry.frame = NormalFrame::kOpenCv;
+  geometry.frame = kOpenCvFrame;
   ExpectNormals(geometry, 0.0, 0);
 }
 
