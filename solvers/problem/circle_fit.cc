@@ -16,8 +16,10 @@ constexpr size_t kFewestPoints = 12;
 constexpr int kTriples = 300;
 // Of points that are tried on a circle through three.
 constexpr size_t kMostTried = 2000;
-// Points of a drawn circle are nearer than this, in pixels, to what was drawn.
+// Points of a drawn circle are nearer than this, in pixels, to what was drawn;
+// those of one drawn by hand, nearer than a share of its size.
 constexpr double kNear = 1.5;
+constexpr double kNearShare = 0.025;
 constexpr int kRefinements = 10;
 
 Points BoundaryPoints(const Mask& mask) {
@@ -86,7 +88,7 @@ PixelCircle LeastSquares(const Points& points, PixelCircle circle) {
 }
 
 // Of circles through three points, the one that most of them are near to.
-std::optional<PixelCircle> ThroughThree(const Points& points) {
+std::optional<PixelCircle> ThroughThree(const Points& points, double near) {
   Points tried;
   const size_t count = std::min(points.size(), kMostTried);
   for (size_t k = 0; k < count; ++k) {
@@ -94,7 +96,7 @@ std::optional<PixelCircle> ThroughThree(const Points& points) {
   }
   std::mt19937 random(1);
   std::optional<PixelCircle> best;
-  double least = kNear * static_cast<double>(tried.size());
+  double least = near * static_cast<double>(tried.size());
   for (int triple = 0; triple < kTriples; ++triple) {
     Points three;
     for (int k = 0; k < 3; ++k) three.push_back(tried[random() % tried.size()]);
@@ -102,7 +104,7 @@ std::optional<PixelCircle> ThroughThree(const Points& points) {
     if (!circle.has_value()) continue;
     double sum = 0.0;
     for (const Eigen::Vector2d& p : tried) {
-      sum += std::min(Distance(*circle, p), kNear);
+      sum += std::min(Distance(*circle, p), near);
     }
     if (sum >= least) continue;
     least = sum;
@@ -111,12 +113,12 @@ std::optional<PixelCircle> ThroughThree(const Points& points) {
   return best;
 }
 
-Points NearTo(const PixelCircle& circle, const Points& points) {
-  Points near;
+Points NearTo(const PixelCircle& circle, const Points& points, double near) {
+  Points out;
   for (const Eigen::Vector2d& p : points) {
-    if (Distance(circle, p) < kNear) near.push_back(p);
+    if (Distance(circle, p) < near) out.push_back(p);
   }
-  return near;
+  return out;
 }
 
 }  // namespace
@@ -140,13 +142,15 @@ double CircleOverlap(const Mask& mask, const PixelCircle& circle) {
 std::optional<CircleFit> FitCircle(const Mask& mask) {
   const Points points = BoundaryPoints(mask);
   if (points.size() < kFewestPoints) return std::nullopt;
-  std::optional<PixelCircle> circle = ThroughThree(points);
+  const double near = std::max(
+      kNear, kNearShare * std::sqrt(static_cast<double>(mask.CountInside())));
+  std::optional<PixelCircle> circle = ThroughThree(points, near);
   // Twice: the first fit brings the points of a rough circle near.
   for (int pass = 0; pass < 2 && circle.has_value(); ++pass) {
-    const Points near = NearTo(*circle, points);
-    if (near.size() < kFewestPoints) return std::nullopt;
-    circle = AlgebraicFit(near);
-    if (circle.has_value()) circle = LeastSquares(near, *circle);
+    const Points kept = NearTo(*circle, points, near);
+    if (kept.size() < kFewestPoints) return std::nullopt;
+    circle = AlgebraicFit(kept);
+    if (circle.has_value()) circle = LeastSquares(kept, *circle);
   }
   if (!circle.has_value() || !(circle->radius > 0.0) ||
       !std::isfinite(circle->x + circle->y + circle->radius)) {
@@ -154,11 +158,11 @@ std::optional<CircleFit> FitCircle(const Mask& mask) {
   }
   CircleFit fit;
   fit.circle = *circle;
-  const Points near = NearTo(*circle, points);
-  for (const Eigen::Vector2d& p : near) {
+  const Points kept = NearTo(*circle, points, near);
+  for (const Eigen::Vector2d& p : kept) {
     fit.residual += Distance(*circle, p) * Distance(*circle, p);
   }
-  fit.residual = std::sqrt(fit.residual / std::max<size_t>(near.size(), 1));
+  fit.residual = std::sqrt(fit.residual / std::max<size_t>(kept.size(), 1));
   fit.overlap = CircleOverlap(mask, *circle);
   return fit;
 }
