@@ -48,11 +48,12 @@ StatusOr<std::optional<PixelCircle>> FindSphereOutline(
   const double usual_overlap = CircleOverlap(mask, usual);
   if (usual_overlap >= kFillsImage) return unit_sphere;
   const std::optional<CircleFit> fit = FitCircle(mask);
-  if (!fit.has_value() || fit->overlap <= usual_overlap + kBetter) {
-    return unit_sphere;
-  }
-  if (fit->overlap < kLeastCircle) {
-    if (CoveredShare(mask, usual) >= kCovered) return unit_sphere;
+  if (!fit.has_value()) return unit_sphere;
+  if (fit->overlap < kLeastCircle || fit->overlap <= usual_overlap + kBetter) {
+    if (usual_overlap >= kLeastCircle ||
+        CoveredShare(mask, usual) >= kCovered) {
+      return unit_sphere;
+    }
     return InvalidInput(
         path, "expected the outline of a ball; the nearest circle has " +
                   InWords(*fit) +
