@@ -292,6 +292,22 @@ void ConfigReader::NumberList(const std::string& key, const Range& range,
   *out = std::move(values);
 }
 
+void ConfigReader::Pair(const std::string& key, const Range& range,
+                        Eigen::Vector2d* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  Eigen::Vector2d values;
+  bool ok = node->kind == Kind::kList && node->items.size() == 2;
+  for (int c = 0; ok && c < 2; ++c) {
+    ok = ParseNumber(node->items[c], &values[c]) && Inside(values[c], range);
+  }
+  if (!ok) {
+    FailExpected(key, "a list of two, each " + RangeText(range));
+    return;
+  }
+  *out = values;
+}
+
 void ConfigReader::Triple(const std::string& key, const Range& range,
                           bool one_for_all, Eigen::Vector3d* out) {
   const ConfigNode* node = Find(key);

@@ -58,6 +58,8 @@ class ConfigReader {
   void PathList(const std::string& key, std::vector<std::string>* out);
   void NumberList(const std::string& key, const Range& range,
                   std::vector<double>* out);
+  // A list of two numbers.
+  void Pair(const std::string& key, const Range& range, Eigen::Vector2d* out);
   // Three numbers; with `one_for_all` one number stands for three.
   void Triple(const std::string& key, const Range& range, bool one_for_all,
               Eigen::Vector3d* out);

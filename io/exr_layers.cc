@@ -24,6 +24,8 @@ constexpr const char* kAlphaNames[] = {"A", "a", "alpha", "Alpha"};
 constexpr const char* kColourLayers[] = {"combined", "beauty", "rgba",  "rgb",
                                          "color",    "colour", "image", "main",
                                          "c",        "ci"};
+constexpr const char* kDepthNames[] = {"Z", "z", "depth", "Depth", "V", "Y"};
+constexpr const char* kDepthLayers[] = {"depth", "z"};
 constexpr const char* kNormalLayers[] = {"normal", "normals", "n", "nn"};
 
 std::string Lower(std::string text) {
@@ -54,6 +56,14 @@ bool FindChannels(const std::set<std::string>& names, PhotoContent content,
     picture->kind = kind;
     return true;
   };
+  if (content == PhotoContent::kDepth) {
+    // X beside Z is a position or a normal.
+    const bool vector = names.count("X") > 0 || names.count("x") > 0;
+    for (const char* name : kDepthNames) {
+      if (!vector && take({name, name, name}, ExrChannels::kGrey)) return true;
+    }
+    return take(kRgbNames[0], ExrChannels::kRgb);
+  }
   const bool normals = content == PhotoContent::kNormals;
   if (normals) {
     for (const ChannelNames& triple : kXyzNames) {
@@ -111,9 +121,12 @@ constexpr int kUnknownName = 1000;
 
 int NameRank(const ExrPicture& picture, PhotoContent content) {
   const bool normals = content == PhotoContent::kNormals;
+  const bool depth = content == PhotoContent::kDepth;
   if (picture.name.empty()) {
-    // R G B without a name beside a layer of normals are colours.
-    return normals && picture.kind == ExrChannels::kRgb ? kUnknownName - 1 : 0;
+    // R G B without a name beside a layer of normals or depth are colours.
+    return (normals || depth) && picture.kind == ExrChannels::kRgb
+               ? kUnknownName - 1
+               : 0;
   }
   const std::string last = Lower(LastName(picture.name));
   const bool composite = Lower(picture.name).compare(0, 10, "composite.") == 0;
@@ -125,7 +138,9 @@ int NameRank(const ExrPicture& picture, PhotoContent content) {
     }
     return false;
   };
-  const bool found = normals ? find(kNormalLayers) : find(kColourLayers);
+  const bool found = depth     ? find(kDepthLayers)
+                     : normals ? find(kNormalLayers)
+                               : find(kColourLayers);
   if (!found) return kUnknownName;
   return composite ? rank + kUnknownName / 2 : rank;
 }
@@ -177,8 +192,9 @@ std::vector<ExrPicture> Preferred(const std::vector<ExrPicture>& pictures,
     if (Lower(LastName(p.layer)).compare(0, 6, "crypto") == 0) continue;
     const int name = NameRank(p, content);
     // A picture without a name comes first, grey or not.
-    const std::pair<bool, int> rank = {name > 0 && p.kind == ExrChannels::kGrey,
-                                       name};
+    const bool grey = p.kind == ExrChannels::kGrey;
+    const bool other = grey != (content == PhotoContent::kDepth);
+    const std::pair<bool, int> rank = {name > 0 && other, name};
     if (rank < lowest) best.clear();
     lowest = std::min(lowest, rank);
     if (rank == lowest) best.push_back(p);

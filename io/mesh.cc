@@ -1,12 +1,14 @@
 #include "ibrdf/io/mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <numeric>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "ibrdf/io/atomic_file.h"
@@ -113,69 +115,155 @@ void Triangulate(const std::vector<Eigen::Vector3d>& polygon,
   }
 }
 
-// Joins vertices by position; see ReadMesh for the normals.
-TriangleMesh ToTriangles(const PolygonMesh& polygons) {
-  TriangleMesh result;
-  std::unordered_map<VertexKey, int, VertexKeyHash> index_of;
-  bool normals = !polygons.corner_normals.empty();
-  const auto vertex_of = [&](size_t corner) {
-    const Eigen::Vector3f& position =
-        polygons.vertices[polygons.corners[corner]];
-    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-    if (normals) {
-      const Eigen::Vector3d n =
-          polygons.normals[polygons.corner_normals[corner]].cast<double>();
-      normals = n.norm() > 0.0;
-      normal = n.normalized().cast<float>();
-    }
-    const auto [it, added] = index_of.emplace(
-        MakeKey(position), static_cast<int>(result.vertices.size()));
+// Where floats of coordinates would be coarse, the centre of the bounds; else
+// 0.
+Eigen::Vector3d FarOrigin(const PolygonMesh& polygons) {
+  // Coordinates within so many sizes of the mesh keep 17 of a float's 24 bits.
+  constexpr double kNearSizes = 128.0;
+  Eigen::Vector3d low = polygons.vertices[0], high = low;
+  for (const Eigen::Vector3d& v : polygons.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  const Eigen::Vector3d centre = 0.5 * low + 0.5 * high;
+  const double size = (high - low).maxCoeff();
+  return centre.cwiseAbs().maxCoeff() > kNearSizes * size
+             ? centre
+             : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+// Joins corners of one position to vertices.
+class VertexJoiner {
+ public:
+  VertexJoiner(const PolygonMesh& polygons, const Eigen::Vector3d& origin,
+               TriangleMesh* mesh)
+      : polygons_(polygons),
+        origin_(origin),
+        mesh_(mesh),
+        has_normals_(!polygons.corner_normals.empty()),
+        agree_(true) {}
+
+  Eigen::Vector3f Position(size_t corner) const {
+    return (polygons_.vertices[polygons_.corners[corner]] - origin_)
+        .cast<float>();
+  }
+
+  // The corner's vertex, added where its position is new.
+  int Vertex(size_t corner) {
+    const Eigen::Vector3f normal = Normal(corner);
+    const Eigen::Vector3f position = Position(corner);
+    const auto [it, added] = index_of_.emplace(
+        MakeKey(position), static_cast<int>(mesh_->vertices.size()));
     if (added) {
-      result.vertices.push_back(position);
-      result.normals.push_back(normal);
-    } else if (result.normals[it->second].dot(normal) < kMinSameNormalCosine) {
-      normals = false;
+      mesh_->vertices.push_back(position);
+      mesh_->normals.push_back(normal);
+    } else if (mesh_->normals[it->second].dot(normal) < kMinSameNormalCosine) {
+      agree_ = false;
     }
     return it->second;
-  };
+  }
+
+  bool HasNormals() const { return has_normals_; }
+  // Whether all corners of a vertex have one normal.
+  bool Agree() const { return agree_; }
+
+ private:
+  Eigen::Vector3f Normal(size_t corner) const {
+    if (!has_normals_) return Eigen::Vector3f::Zero();
+    return polygons_.normals[polygons_.corner_normals[corner]]
+        .cast<double>()
+        .normalized()
+        .cast<float>();
+  }
+
+  const PolygonMesh& polygons_;
+  Eigen::Vector3d origin_;
+  TriangleMesh* mesh_;
+  bool has_normals_, agree_;
+  std::unordered_map<VertexKey, int, VertexKeyHash> index_of_;
+};
+
+std::string CountOf(size_t count, size_t all) {
+  return std::to_string(count) + " of " + std::to_string(all) + " normals ";
+}
+
+// Settles the normals (ReadMesh) of a mesh that has the file's.
+void MendNormals(const std::string& path, bool agree, TriangleMesh* mesh,
+                 MeshNotes* notes) {
+  const size_t all = mesh->normals.size();
+  const auto zero = static_cast<size_t>(
+      std::count_if(mesh->normals.begin(), mesh->normals.end(),
+                    [](const Eigen::Vector3f& n) { return n.isZero(); }));
+  if (zero > 0) {
+    notes->warnings.push_back(path + ": " + CountOf(zero, all) +
+                              "are zero or not finite; all were made from the "
+                              "faces");
+  }
+  if (zero > 0 || !agree) return ComputeVertexNormals(mesh);
+  const std::vector<int> against = NormalsAgainstFaces(*mesh);
+  if (against.empty()) return;
+  const bool many = 100 * against.size() > all;
+  notes->warnings.push_back(path + ": " + CountOf(against.size(), all) +
+                            "contradict the faces around them; " +
+                            (many ? "all" : "these") +
+                            " were made from the faces");
+  TriangleMesh computed = *mesh;
+  ComputeVertexNormals(&computed);
+  if (many) {
+    mesh->normals = std::move(computed.normals);
+    return;
+  }
+  for (const int v : against) mesh->normals[v] = computed.normals[v];
+}
+
+TriangleMesh ToTriangles(const std::string& path, const PolygonMesh& polygons,
+                         MeshNotes* notes) {
+  TriangleMesh result;
+  notes->origin = FarOrigin(polygons);
+  VertexJoiner joiner(polygons, notes->origin, &result);
   std::vector<Eigen::Vector3d> polygon;
   size_t first = 0;
   for (const int size : polygons.sizes) {
     polygon.clear();
     for (int i = 0; i < size; ++i) {
-      polygon.push_back(
-          polygons.vertices[polygons.corners[first + i]].cast<double>());
+      polygon.push_back(joiner.Position(first + i).cast<double>());
     }
     Triangulate(polygon, [&](int i, int j, int k) {
       // Braces: vertices are numbered from left to right.
-      result.triangles.push_back(
-          {vertex_of(first + i), vertex_of(first + j), vertex_of(first + k)});
+      result.triangles.push_back({joiner.Vertex(first + i),
+                                  joiner.Vertex(first + j),
+                                  joiner.Vertex(first + k)});
     });
     first += static_cast<size_t>(size);
   }
-  if (!normals) ComputeVertexNormals(&result);
+  if (joiner.HasNormals()) {
+    MendNormals(path, joiner.Agree(), &result, notes);
+  } else {
+    ComputeVertexNormals(&result);
+  }
   return result;
 }
 
 }  // namespace
 
-StatusOr<TriangleMesh> ReadMesh(const std::string& path) {
+StatusOr<TriangleMesh> ReadMesh(const std::string& path, MeshNotes* notes) {
   const std::string extension = FileExtension(path);
   if (extension != "obj" && extension != "ply") {
     return InvalidInput(path + ": extension", "expected .obj or .ply");
   }
   const StatusOr<std::string> bytes = ReadFile(path, kMaxMeshFileBytes);
   if (!bytes.ok()) return bytes.status();
-  return DecodeMesh(path, *bytes);
+  return DecodeMesh(path, *bytes, notes);
 }
 
 StatusOr<TriangleMesh> DecodeMesh(const std::string& path,
-                                  const std::string& bytes) {
+                                  const std::string& bytes, MeshNotes* notes) {
   const StatusOr<PolygonMesh> polygons = FileExtension(path) == "obj"
                                              ? ParseObj(path, bytes)
                                              : ParsePly(path, bytes);
   if (!polygons.ok()) return polygons.status();
-  return ToTriangles(*polygons);
+  MeshNotes unused;
+  return ToTriangles(path, *polygons, notes != nullptr ? notes : &unused);
 }
 
 }  // namespace ibrdf

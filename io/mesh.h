@@ -1,27 +1,43 @@
 // Triangle meshes from OBJ and PLY files.
 #pragma once
+#include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/geometry/triangle_mesh.h"
 
 namespace ibrdf {
 
+struct MeshNotes {
+  // What was subtracted from the file's coordinates; 0 where they are near the
+  // origin.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  std::vector<std::string> warnings;  // sentences that name the file
+};
+
 // Reads .obj or .ply (by extension, in any case; others are refused). All
 // objects and groups become one mesh; polygons are cut into triangles; lines
 // and points are dropped, and so are vertices that no face uses. Materials and
 // texture coordinates are ignored.
-// Vertices are joined by position, so shading is smooth across texture seams.
-// Normals: the file's, when every face corner has a finite one longer than 0
-// and the corners at one position agree; else ComputeVertexNormals. A file with
-// a normal per face (flat shading, hard edges) is thus smoothed.
-// Refuses files over 512 MiB, without faces, with non-finite coordinates or
-// with face indices out of range; the message names the file.
-StatusOr<TriangleMesh> ReadMesh(const std::string& path);
+// Coordinates far from the origin against the mesh's size, as georeferenced
+// ones are, are taken from its centre before they become floats
+// (notes->origin). Vertices are joined by position, so shading is smooth across
+// texture seams. Normals: the file's, when every face corner has a finite one
+// longer than 0 and the corners at one position agree; else
+// ComputeVertexNormals. A file with a normal per face (flat shading, hard
+// edges) is thus smoothed. Normals that all faces around contradict
+// (NormalsAgainstFaces) are computed too, all where they are more than one in a
+// hundred. What is replaced for being bad is noted. Refuses files over 512 MiB,
+// without faces, with non-finite coordinates or with face indices out of range;
+// the message names the file.
+StatusOr<TriangleMesh> ReadMesh(const std::string& path,
+                                MeshNotes* notes = nullptr);
 
 // The same of a file's bytes, read as PLY unless `path` says .obj; messages
 // call it `path`.
 StatusOr<TriangleMesh> DecodeMesh(const std::string& path,
-                                  const std::string& bytes);
+                                  const std::string& bytes,
+                                  MeshNotes* notes = nullptr);
 
 }  // namespace ibrdf

@@ -67,13 +67,15 @@ bool Parse(std::string_view text, Number* value) {
 
 // The vector of a line "v x y z" or "vn x y z".
 bool AppendVector(const std::vector<std::string_view>& words,
-                  std::vector<Eigen::Vector3f>* list) {
+                  PolygonMesh* mesh) {
   double xyz[3];
   if (words.size() < 4) return false;
   for (size_t i = 0; i < 3; ++i) {
     if (!Parse(words[i + 1], &xyz[i])) return false;
   }
-  return AppendFinite(xyz, list);
+  if (words[0] == "v") return AppendVertex(xyz, mesh);
+  AppendNormal(xyz, mesh);
+  return true;
 }
 
 // 1-based index from one that may count back from the last (-1).
@@ -128,13 +130,17 @@ bool ParseCorner(std::string_view word, const Counts& so_far,
 
 }  // namespace
 
-bool AppendFinite(const double xyz[3], std::vector<Eigen::Vector3f>* list) {
-  const Eigen::Vector3f v(static_cast<float>(xyz[0]),
-                          static_cast<float>(xyz[1]),
-                          static_cast<float>(xyz[2]));
-  if (!v.allFinite()) return false;
-  list->push_back(v);
+bool AppendVertex(const double xyz[3], PolygonMesh* mesh) {
+  const Eigen::Map<const Eigen::Vector3d> v(xyz);
+  if (!v.cast<float>().allFinite()) return false;
+  mesh->vertices.push_back(v);
   return true;
+}
+
+void AppendNormal(const double xyz[3], PolygonMesh* mesh) {
+  const Eigen::Vector3f v =
+      Eigen::Map<const Eigen::Vector3d>(xyz).cast<float>();
+  mesh->normals.push_back(v.allFinite() ? v : Eigen::Vector3f::Zero().eval());
 }
 
 StatusOr<PolygonMesh> ParseObj(const std::string& path,
@@ -175,8 +181,7 @@ StatusOr<PolygonMesh> ParseObj(const std::string& path,
     if (words.empty()) continue;
     so_far.Add(words[0]);
     if (words[0] == "v" || (words[0] == "vn" && all_have_normals)) {
-      if (!AppendVector(words,
-                        words[0] == "v" ? &mesh.vertices : &mesh.normals)) {
+      if (!AppendVector(words, &mesh)) {
         return InvalidInput(reader.Where(path),
                             "expected three finite numbers");
       }

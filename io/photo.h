@@ -20,6 +20,7 @@ const char* NameOf(PhotoFormat format);
 enum class PhotoContent {
   kColour,
   kNormals,  // three channels, whose names may be X, Y, Z; no colour conversion
+  kDepth,    // one, whose name may be Z; or several, which the caller compares
 };
 
 struct PhotoOptions {

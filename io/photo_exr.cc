@@ -327,7 +327,7 @@ StatusOr<ColourSpace> FileColours(const std::string& path,
                                   const ExrPicture& picture,
                                   PhotoContent content) {
   ColourSpace colours;
-  if (content == PhotoContent::kNormals || picture.kind == ExrChannels::kGrey) {
+  if (content != PhotoContent::kColour || picture.kind == ExrChannels::kGrey) {
     return colours;
   }
   const PrimaryColours primaries = FilePrimaries(header);
@@ -398,11 +398,13 @@ StatusOr<ExrPicture> FindPicture(const std::string& path,
   const std::vector<ExrPicture> pictures =
       ListExrPictures(headers, options.content);
   if (pictures.empty()) {
-    const bool normals = options.content == PhotoContent::kNormals;
+    const char* const names =
+        options.content == PhotoContent::kNormals ? "X Y Z, or R G B"
+        : options.content == PhotoContent::kDepth ? "Z, or Y"
+                                                  : "R G B, or Y";
     return InvalidInput(
         path + ": channels",
-        std::string("expected ") +
-            (normals ? "X Y Z, or R G B" : "R G B, or Y") +
+        std::string("expected ") + names +
             ", or a layer that has them; found: " + ListChannels(headers));
   }
   StatusOr<ExrPicture> picture = ChooseExrPicture(path, pictures, options);

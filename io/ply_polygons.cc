@@ -123,6 +123,8 @@ bool ParseHeaderLine(const std::string& line, PlyHeader* header) {
 StatusOr<PlyHeader> ParsePlyHeader(const std::string& path,
                                    const std::string& bytes) {
   PlyHeader header;
+  constexpr char kByteOrderMark[] = "\xef\xbb\xbf";
+  if (bytes.compare(0, 3, kByteOrderMark) == 0) header.end = 3;
   for (int line_number = 1; header.end < bytes.size(); ++line_number) {
     const size_t newline = bytes.find('\n', header.end);
     if (newline == std::string::npos) break;
@@ -244,7 +246,7 @@ Status ReadElement(const std::string& path, const Element& element,
   if (is_vertex && (slots_found & 7u) != 7u) {
     return InvalidInput(path + ": vertex", "expected properties x, y and z");
   }
-  bool normals = is_vertex && (slots_found & 56u) == 56u;
+  const bool normals = is_vertex && (slots_found & 56u) == 56u;
   if (element.properties.empty()) return OkStatus();
   for (int64_t row = 0; row < element.count; ++row) {
     const auto where = [&] {
@@ -282,10 +284,10 @@ Status ReadElement(const std::string& path, const Element& element,
       }
     }
     if (!is_vertex) continue;
-    if (!AppendFinite(slots, &mesh->vertices)) {
+    if (!AppendVertex(slots, mesh)) {
       return InvalidInput(where(), "expected finite coordinates");
     }
-    normals = normals && AppendFinite(slots + 3, &mesh->normals);
+    if (normals) AppendNormal(slots + 3, mesh);
   }
   return OkStatus();
 }

@@ -11,8 +11,8 @@ namespace ibrdf {
 inline constexpr int kMaxPolygonCorners = 4096;
 
 struct PolygonMesh {
-  std::vector<Eigen::Vector3f> vertices;  // finite
-  std::vector<Eigen::Vector3f> normals;   // finite, of any length
+  std::vector<Eigen::Vector3d> vertices;  // finite as floats too
+  std::vector<Eigen::Vector3f> normals;   // of any length; 0: not finite
   std::vector<int> sizes;                 // corners of each face, >= 3
   std::vector<int> corners;  // vertex of each corner, face after face
   // Normal of each corner; empty unless the file has one for every corner.
@@ -33,7 +33,9 @@ StatusOr<PolygonMesh> ParseObj(const std::string& path,
 StatusOr<PolygonMesh> ParsePly(const std::string& path,
                                const std::string& bytes);
 
-// Adds xyz to `list`; false where a number is not finite as a float.
-bool AppendFinite(const double xyz[3], std::vector<Eigen::Vector3f>* list);
+// Adds a vertex; false where a number is not finite as a float.
+bool AppendVertex(const double xyz[3], PolygonMesh* mesh);
+// Adds a normal; zero where a number is not finite as a float.
+void AppendNormal(const double xyz[3], PolygonMesh* mesh);
 
 }  // namespace ibrdf

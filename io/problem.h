@@ -1,5 +1,6 @@
 // What a problem file (joint.yaml, scene.yaml) asks for, checked.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -59,19 +60,45 @@ struct ImageSpec {
   int height = 0;
 };
 
-enum class GeometryKind { kSphere, kMesh, kNormals };
+enum class GeometryKind { kSphere, kMesh, kNormals, kDepth };
 enum class MeshFit { kUnitSphere, kNone };
-// kOpenGl: x right, y up, z towards the camera. kOpenCv: y down, z away.
-enum class NormalFrame { kOpenGl, kOpenCv };
+// As the picture has them: toward the camera, away from it.
+enum class PictureAxis { kRight, kLeft, kUp, kDown, kToward, kAway };
+// Where x, y and z of a normal map point. Each of the picture's three axes has
+// one of them.
+using NormalFrame = std::array<PictureAxis, 3>;
+inline constexpr NormalFrame kOpenGlFrame = {
+    PictureAxis::kRight, PictureAxis::kUp, PictureAxis::kToward};
+inline constexpr NormalFrame kOpenCvFrame = {
+    PictureAxis::kRight, PictureAxis::kDown, PictureAxis::kAway};
 // kFloat: the vector. kUnit01: (n + 1) / 2. kAuto: see LoadNormals.
 enum class NormalEncoding { kAuto, kFloat, kUnit01 };
 
+// In pixels from the image's top left corner, x right and y down; centres of
+// pixels are at halves.
+struct PixelCircle {
+  double x = 0.0, y = 0.0, radius = 1.0;
+};
+
 struct GeometrySpec {
-  GeometryKind kind = GeometryKind::kSphere;  // the unit sphere at the origin
-  std::string file;  // mesh (.obj, .ply) or normals (any of photo_file.h)
+  // Of a sphere without an outline: the unit sphere at the origin, or what the
+  // mask shows (sphere_outline.h).
+  GeometryKind kind = GeometryKind::kSphere;
+  // The sphere's, before an orthographic camera.
+  std::optional<PixelCircle> outline;
+  // Mesh (.obj, .ply); normals or depth (any of photo_file.h).
+  std::string file;
   MeshFit fit = MeshFit::kUnitSphere;
-  NormalFrame frame = NormalFrame::kOpenGl;
+  bool fit_stated = false;  // fit is the user's word
+  NormalFrame frame = kOpenGlFrame;
   NormalEncoding encoding = NormalEncoding::kAuto;
+  // The file's values times this are depth, which grows away from the camera;
+  // not 0. Unset: 1, for files of floats.
+  std::optional<double> depth_scale;
+
+  bool HasNormalMap() const {
+    return kind == GeometryKind::kNormals || kind == GeometryKind::kDepth;
+  }
 };
 
 struct ReflectanceSpec {
@@ -197,6 +224,7 @@ struct Problem {
   ProblemKind kind = ProblemKind::kJoint;
   ImageSpec image;
   Camera camera;
+  bool camera_placed = false;  // from or to was given
   GeometrySpec geometry;
   ReflectanceSpec reflectance;
   IlluminationSpec illumination;

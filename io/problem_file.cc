@@ -1,6 +1,7 @@
 #include "ibrdf/io/problem_file.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <utility>
 
@@ -58,36 +59,114 @@ void ReadCamera(ProblemReader reader, Camera* camera) {
   }
 }
 
-void ReadGeometry(ProblemReader reader, GeometrySpec* geometry) {
+void ReadSphere(ProblemReader reader, GeometrySpec* geometry) {
+  if (!reader.Has("centre") && !reader.Has("radius")) return;
+  if (!reader.Has("centre") || !reader.Has("radius")) {
+    reader.Fail("expected both centre and radius, or {}");
+    return;
+  }
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  PixelCircle outline;
+  reader.Read("centre", &centre);
+  reader.Read("radius", &outline.radius);
+  outline.x = centre.x();
+  outline.y = centre.y();
+  geometry->outline = outline;
+}
+
+void ReadFrame(ProblemReader* geometry, NormalFrame* frame) {
+  const ConfigNode* node = geometry->Find("frame");
+  if (node == nullptr) return;
+  if (node->kind != Kind::kMap) {
+    int word = 0;
+    geometry->ReadChoice("frame", &word);
+    *frame = word == 0 ? kOpenGlFrame : kOpenCvFrame;
+    return;
+  }
+  ProblemReader reader = geometry->Below("frame");
+  constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+  for (size_t k = 0; k < 3; ++k) reader.Read(kNames[k], &(*frame)[k]);
+  // Words of one axis of the picture are neighbours.
+  const auto axis = [&](size_t k) { return static_cast<int>((*frame)[k]) / 2; };
+  for (size_t k = 1; k < 3; ++k) {
+    for (size_t other = 0; other < k; ++other) {
+      if (axis(k) != axis(other)) continue;
+      reader.Fail(kNames[k],
+                  "expected another axis of the picture than that of " +
+                      std::string(kNames[other]) +
+                      ": one of left and right, of up and down, of toward "
+                      "and away");
+    }
+  }
+}
+
+void ReadDepth(ProblemReader* reader, bool perspective,
+               GeometrySpec* geometry) {
+  reader->Read("depth", &geometry->file);
+  reader->Read("depth_scale", &geometry->depth_scale);
+  const double scale = geometry->depth_scale.value_or(1.0);
+  if (scale == 0.0) {
+    reader->FailExpected("depth_scale", "a number other than 0");
+  } else if (scale < 0.0 && perspective) {
+    reader->FailExpected("depth_scale",
+                         "a number > 0 with camera.type: perspective");
+  }
+}
+
+void ReadShape(ProblemReader* reader, bool perspective,
+               GeometrySpec* geometry) {
+  if (reader->Has("sphere")) {
+    ReadSphere(reader->Below("sphere"), geometry);
+    if (geometry->outline.has_value() && perspective) {
+      reader->Fail("sphere",
+                   "expected {} with camera.type: perspective: centre and "
+                   "radius are of an orthographic picture");
+    }
+  } else if (reader->Has("mesh")) {
+    geometry->kind = GeometryKind::kMesh;
+    reader->Read("mesh", &geometry->file);
+  } else if (reader->Has("normals")) {
+    geometry->kind = GeometryKind::kNormals;
+    reader->Read("normals", &geometry->file);
+  } else {
+    geometry->kind = GeometryKind::kDepth;
+    ReadDepth(reader, perspective, geometry);
+  }
+}
+
+void ReadGeometry(ProblemReader reader, bool perspective,
+                  GeometrySpec* geometry) {
   int found = 0;
-  for (const char* key : {"sphere", "mesh", "normals"}) {
+  for (const char* key : {"sphere", "mesh", "normals", "depth"}) {
     found += reader.Has(key);
   }
   if (found != 1) {
-    reader.Fail("expected one of sphere, mesh and normals, found " +
+    reader.Fail("expected one of sphere, mesh, normals and depth, found " +
                 std::to_string(found));
     return;
   }
-  if (reader.Has("sphere")) {
-    const ConfigNode* sphere = reader.Find("sphere");
-    if (sphere->kind != Kind::kNull &&
-        !(sphere->kind == Kind::kMap && sphere->entries.empty())) {
-      reader.FailExpected("sphere", "{}");
-    }
-  } else if (reader.Has("mesh")) {
-    geometry->kind = GeometryKind::kMesh;
-    reader.Read("mesh", &geometry->file);
-  } else {
-    geometry->kind = GeometryKind::kNormals;
-    reader.Read("normals", &geometry->file);
-  }
   reader.CheckNeeds("fit", reader.Has("mesh"));
-  reader.Read("fit", &geometry->fit);
+  reader.CheckNeeds("depth_scale", reader.Has("depth"));
   for (const char* key : {"frame", "encoding"}) {
     reader.CheckNeeds(key, reader.Has("normals"));
   }
-  reader.Read("frame", &geometry->frame);
+  ReadShape(&reader, perspective, geometry);
+  reader.Read("fit", &geometry->fit);
+  geometry->fit_stated = reader.Has("fit");
+  ReadFrame(&reader, &geometry->frame);
   reader.Read("encoding", &geometry->encoding);
+}
+
+// Maps of normals and depth are in the camera's frame.
+void CheckCameraStays(ProblemReader camera, const GeometrySpec& geometry) {
+  if (!geometry.HasNormalMap()) return;
+  const bool depth = geometry.kind == GeometryKind::kDepth;
+  for (const char* key : {"from", "to", "up"}) {
+    if (!camera.Has(key)) continue;
+    camera.Fail(key, std::string("expected without geometry.") +
+                         (depth ? "depth" : "normals") +
+                         ", which is in the camera's frame");
+  }
 }
 
 void ReadAnalyticBrdf(ProblemReader reader, ReflectanceSpec* reflectance) {
@@ -282,13 +361,12 @@ void ReadKeys(ProblemReader root, Problem* problem) {
   root.Read("problem", &problem->kind);
   ReadImageSpec(root.Below("image"), &problem->image);
   ReadCamera(root.Below("camera"), &problem->camera);
-  ReadGeometry(root.Below("geometry"), &problem->geometry);
-  if (problem->geometry.kind == GeometryKind::kNormals &&
-      problem->camera.type == CameraType::kPerspective) {
-    root.Fail("camera.type",
-              "expected orthographic with geometry.normals, found "
-              "'perspective'");
-  }
+  ReadGeometry(root.Below("geometry"),
+               problem->camera.type == CameraType::kPerspective,
+               &problem->geometry);
+  problem->camera_placed =
+      root.Below("camera").Has("from") || root.Below("camera").Has("to");
+  CheckCameraStays(root.Below("camera"), problem->geometry);
   ReadReflectance(root.Below("reflectance"), &problem->reflectance);
   ReadIllumination(root.Below("illumination"), &problem->illumination);
   ReadLikelihood(root.Below("likelihood"), &problem->likelihood);
@@ -333,12 +411,14 @@ StatusOr<Problem> ParseProblem(const std::string& path, const std::string& text,
 }
 
 std::vector<NamedFile> NamedFiles(const Problem& problem) {
-  const bool mesh = problem.geometry.kind == GeometryKind::kMesh;
+  constexpr std::array<const char*, 4> kShapes = {
+      "geometry.sphere", "geometry.mesh", "geometry.normals", "geometry.depth"};
   std::vector<NamedFile> files = {
       {"problem", problem.path},
       {"image.file", problem.image.file},
       {"image.mask", problem.image.mask},
-      {mesh ? "geometry.mesh" : "geometry.normals", problem.geometry.file},
+      {kShapes[static_cast<size_t>(problem.geometry.kind)],
+       problem.geometry.file},
       {"reflectance.model", problem.reflectance.model},
       {"reflectance.known", problem.reflectance.known_file},
       {"illumination.known", problem.illumination.known_file},

@@ -41,28 +41,42 @@ json ImageJson(const ImageSpec& image) {
   return out;
 }
 
-json CameraJson(const Camera& camera) {
-  if (camera.type == CameraType::kOrthographic) {
-    return {{"type", WordOf("camera.type", camera.type)}};
-  }
-  return {{"type", WordOf("camera.type", camera.type)},
-          {"fov_degrees", camera.fov_degrees},
-          {"from", Triple(camera.from)},
-          {"to", Triple(camera.to)},
-          {"up", Triple(camera.up)}};
+json CameraJson(const Camera& camera, bool placed) {
+  json out = {{"type", WordOf("camera.type", camera.type)}};
+  if (camera.type == CameraType::kOrthographic) return out;
+  out["fov_degrees"] = camera.fov_degrees;
+  if (!placed) return out;
+  out["from"] = Triple(camera.from);
+  out["to"] = Triple(camera.to);
+  out["up"] = Triple(camera.up);
+  return out;
+}
+
+json FrameOfNormalsJson(const NormalFrame& frame) {
+  if (frame == kOpenGlFrame) return "opengl";
+  if (frame == kOpenCvFrame) return "opencv";
+  return {{"x", WordOf("geometry.frame.x", frame[0])},
+          {"y", WordOf("geometry.frame.y", frame[1])},
+          {"z", WordOf("geometry.frame.z", frame[2])}};
 }
 
 json GeometryJson(const GeometrySpec& geometry) {
   switch (geometry.kind) {
     case GeometryKind::kSphere:
-      break;
+      if (!geometry.outline.has_value()) break;
+      return {{"sphere",
+               {{"centre", {geometry.outline->x, geometry.outline->y}},
+                {"radius", geometry.outline->radius}}}};
     case GeometryKind::kMesh:
       return {{"mesh", geometry.file},
               {"fit", WordOf("geometry.fit", geometry.fit)}};
     case GeometryKind::kNormals:
       return {{"normals", geometry.file},
-              {"frame", WordOf("geometry.frame", geometry.frame)},
+              {"frame", FrameOfNormalsJson(geometry.frame)},
               {"encoding", WordOf("geometry.encoding", geometry.encoding)}};
+    case GeometryKind::kDepth:
+      return {{"depth", geometry.file},
+              {"depth_scale", AutoOr(geometry.depth_scale)}};
   }
   return {{"sphere", json::object()}};
 }
@@ -170,7 +184,8 @@ nlohmann::json ProblemToJson(const Problem& problem) {
   const bool rendered = problem.image.file.empty();
   json out = {
       {"image", ImageJson(problem.image)},
-      {"camera", CameraJson(problem.camera)},
+      // Maps of normals and depth are in the camera's frame.
+      {"camera", CameraJson(problem.camera, !problem.geometry.HasNormalMap())},
       {"geometry", GeometryJson(problem.geometry)},
       {"reflectance", ReflectanceJson(problem.reflectance)},
       {"illumination", IlluminationJson(problem.illumination, rendered)},

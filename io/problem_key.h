@@ -16,13 +16,15 @@ enum class ValueType {
   kOneOrTriple,   // the same, or one number for all three
   kNumberList,    // a list of numbers, each in `range`
   kPathList,      // a list of names of files
+  kPair,          // a list of two numbers, each in `range`
   kChoice,        // one of `words`
+  kChoiceOrMap,   // the same, or a map of the keys below this one
   kWordOrList,    // one of `words`, or a list of some of `list_words`
   kPath,          // the name of a file, or the default's word
   kText,          // any text that is not empty
   kMap,           // of the keys below this one
   kPathOrMap,     // the name of a file, or such a map
-  kEmptyMap,      // {}
+  kOptionalMap,   // {}, or a map of the keys below this one
 };
 
 // Bits: who uses a key or a word. The first three are ibrdf_solve with that

@@ -72,6 +72,10 @@ void ProblemReader::Read(const std::string& name, std::vector<double>* out) {
   reader_.NumberList(name, Typed(name, ValueType::kNumberList).range, out);
 }
 
+void ProblemReader::Read(const std::string& name, Eigen::Vector2d* out) {
+  reader_.Pair(name, Typed(name, ValueType::kPair).range, out);
+}
+
 void ProblemReader::Read(const std::string& name, Eigen::Vector3d* out) {
   reader_.Triple(name, Typed(name, ValueType::kTriple).range,
                  /*one_for_all=*/false, out);
@@ -98,7 +102,10 @@ void ProblemReader::Read(const std::string& name, std::optional<double>* out) {
 }
 
 void ProblemReader::ReadChoice(const std::string& name, int* index) {
-  reader_.Choice(name, Typed(name, ValueType::kChoice).Words(), index);
+  const ProblemKey& key = Key(name);
+  CHECK(key.type == ValueType::kChoice || key.type == ValueType::kChoiceOrMap)
+      << key.path;
+  reader_.Choice(name, key.Words(), index);
 }
 
 void ProblemReader::Fail(const std::string& name, const std::string& what) {

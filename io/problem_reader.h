@@ -32,6 +32,7 @@ class ProblemReader {
   void Read(const std::string& name, std::string* path);
   void Read(const std::string& name, std::vector<std::string>* paths);
   void Read(const std::string& name, std::vector<double>* out);
+  void Read(const std::string& name, Eigen::Vector2d* out);
   void Read(const std::string& name, Eigen::Vector3d* out);
   void Read(const std::string& name, Eigen::Array3d* out);
   // The word auto leaves it unset.
@@ -55,6 +56,9 @@ class ProblemReader {
                      : std::nullopt;
   }
 
+  // The word's place among the key's.
+  void ReadChoice(const std::string& name, int* index);
+
   // What is wrong with a key, or with the map itself.
   void Fail(const std::string& name, const std::string& what);
   void Fail(const std::string& what);
@@ -65,7 +69,6 @@ class ProblemReader {
 
  private:
   const ProblemKey& Typed(const std::string& name, ValueType type) const;
-  void ReadChoice(const std::string& name, int* index);
 
   const ProblemSchema* schema_;
   std::string map_;

@@ -129,8 +129,12 @@ std::string RangeText(const ProblemKey& key) {
       return "a list of numbers" + (interval.empty() ? "" : " " + interval);
     case ValueType::kPathList:
       return "a list of " + key.files;
+    case ValueType::kPair:
+      return "two numbers" + (interval.empty() ? "" : " " + interval);
     case ValueType::kChoice:
       return "a word, below";
+    case ValueType::kChoiceOrMap:
+      return "a word, below, or a map";
     case ValueType::kWordOrList:
       return "a word or a list, below";
     case ValueType::kPath:
@@ -141,8 +145,8 @@ std::string RangeText(const ProblemKey& key) {
       return "a map";
     case ValueType::kPathOrMap:
       return key.files + " or a map";
-    case ValueType::kEmptyMap:
-      return "`{}`";
+    case ValueType::kOptionalMap:
+      return "`{}` or a map";
   }
   return "";
 }

@@ -24,6 +24,8 @@ constexpr char kMapFiles[] = ".exr, .hdr, .pfm, .tif, .npy";
 constexpr int kMaxMapSide = 8192;
 constexpr int kMaxUnetChannels = 128;
 constexpr int kMaxLobes = 8;
+constexpr double kMaxPixels = 1e6;
+constexpr double kMaxDepthScale = 1e6;
 constexpr double kMaxSeconds = 1e7;
 constexpr int64_t kMaxIterations = 100000000;
 
@@ -77,6 +79,14 @@ class Row {
     key_.words = std::move(words);
     return Type(ValueType::kChoice, default_value);
   }
+  Row& ChoiceOrMap(const std::string& default_value, Words words) {
+    key_.words = std::move(words);
+    return Type(ValueType::kChoiceOrMap, default_value);
+  }
+  Row& Pair(const Range& range) {
+    key_.range = range;
+    return Type(ValueType::kPair, "");
+  }
   Row& WordOrList(const std::string& default_value, Words words, Words listed) {
     key_.words = std::move(words);
     key_.list_words = std::move(listed);
@@ -91,7 +101,7 @@ class Row {
     key_.files = files;
     return Type(ValueType::kPathOrMap, "");
   }
-  Row& EmptyMap() { return Type(ValueType::kEmptyMap, ""); }
+  Row& OptionalMap() { return Type(ValueType::kOptionalMap, ""); }
 
   Row& Unit(const std::string& unit) {
     key_.unit = unit;
@@ -291,28 +301,79 @@ Keys CameraKeys() {
           .Needs(pinhole)};
 }
 
+// Of PictureAxis, in its order.
+Words PictureAxes() {
+  return {{"right", "To the right in the picture."},
+          {"left", "To the left."},
+          {"up", "To the picture's upper side."},
+          {"down", "To its lower side."},
+          {"toward", "Toward the camera."},
+          {"away", "Away from the camera."}};
+}
+
 Keys GeometryKeys() {
+  const std::string normals = "geometry.normals";
   return {
       Row("geometry",
-          "The shape of the object: exactly one of `sphere`, `mesh` and "
-          "`normals`.")
-          .Without("needed"),
-      Row("geometry.sphere", "The unit sphere at the origin.")
-          .EmptyMap()
+          "The shape of the object: exactly one of `sphere`, `mesh`, "
+          "`normals` and `depth`.")
+          .Without("needed")
+          .Notes({"The outline of a sphere is in pixels from the image's top "
+                  "left corner, x to the right and y down. The first pixel's "
+                  "centre is at (0.5, 0.5).",
+                  "Without `centre` and `radius` it is the unit sphere's, or, "
+                  "where that overlaps the mask by less than 0.98, fitted to "
+                  "the mask (orthographic camera).",
+                  "A map of normals or depth has the image's size and is in "
+                  "the camera's frame: with `camera.type: perspective` leave "
+                  "out `camera.from`, `to` and `up`.",
+                  "Depth grows away from the camera, along the view. Its unit "
+                  "is a pixel's side before the orthographic camera, and any "
+                  "before the perspective one.",
+                  "Depths that are 0, not finite or beyond 1e8 are holes."}),
+      Row("geometry.sphere", "A sphere: `{}`, or its outline in the picture.")
+          .OptionalMap()
           .Example("{}"),
+      Row("geometry.sphere.centre", "Of the outline.")
+          .Pair({-kMaxPixels, kMaxPixels, true, true})
+          .Unit("pixels"),
+      Row("geometry.sphere.radius", "Of the outline.")
+          .Number({0.0, kMaxPixels, false, true}, "")
+          .Unit("pixels"),
       Row("geometry.mesh",
           "A mesh of polygons. It shadows and lights itself where that matters "
           "(`effects`).")
           .Path(".obj, .ply"),
       Row("geometry.normals",
-          "One normal per pixel, in the frame of the orthographic camera; "
+          "One normal per pixel, in the camera's frame; "
           "zero is outside. Without positions there are no shadows.")
           .Path(".exr, .hdr, .pfm, .png, .tif, .npy"),
-      Row("geometry.frame", "The axes of a normal map.")
-          .Choice("opengl",
-                  {{"opengl", "x right, y up, z towards the camera."},
-                   {"opencv", "x right, y down, z away from the camera."}})
-          .Needs("geometry.normals"),
+      Row("geometry.depth",
+          "One depth per pixel, which gives the normals. Without positions "
+          "there are no shadows.")
+          .Path(".exr, .pfm, .png, .tif, .npy"),
+      Row("geometry.depth_scale",
+          "The file's values times it are depth. `auto`: 1, and it must be "
+          "said of whole numbers. Negative, for the orthographic camera "
+          "alone: the file is a map of heights.")
+          .AutoOrNumber({-kMaxDepthScale, kMaxDepthScale, true, true})
+          .Needs("geometry.depth"),
+      Row("geometry.frame",
+          "The axes of a normal map: a word, or a map that says where each "
+          "points, as `{x: right, y: down, z: toward}`.")
+          .ChoiceOrMap("opengl",
+                       {{"opengl", "x right, y up, z toward the camera."},
+                        {"opencv", "x right, y down, z away from the camera."}})
+          .Needs(normals),
+      Row("geometry.frame.x", "Where x points.")
+          .Choice("", PictureAxes())
+          .Without("`right`"),
+      Row("geometry.frame.y", "Where y points.")
+          .Choice("", PictureAxes())
+          .Without("`up`"),
+      Row("geometry.frame.z", "Where z points.")
+          .Choice("", PictureAxes())
+          .Without("`toward`"),
       Row("geometry.encoding", "How a normal map stores a component n.")
           .Choice("auto",
                   {{"auto",
@@ -320,8 +381,11 @@ Keys GeometryKeys() {
                     "none is negative and lengths are far from 1."},
                    {"float", "As it is."},
                    {"unit_0_1", "(n + 1) / 2."}})
-          .Needs("geometry.normals"),
-      Row("geometry.fit", "How a mesh is placed before the camera sees it.")
+          .Needs(normals),
+      Row("geometry.fit",
+          "How a mesh is placed before the camera sees it. It must be said "
+          "where `camera.from` or `camera.to` is given and `unit_sphere` would "
+          "move the mesh.")
           .Choice("unit_sphere",
                   {{"unit_sphere",
                     "Its bounding box is centred at the origin, and its "

@@ -68,7 +68,7 @@ StatusOr<CookTorranceScore> Fit(const SweepOptions& options, const SweepCase& c,
   if (!mask.ok()) return mask.status();
   const StatusOr<Image> map = TrueMap(options, c);
   if (!map.ok()) return map.status();
-  const StatusOr<Scene> scene = LoadScene(problem.geometry);
+  const StatusOr<Scene> scene = LoadScene(problem, image->width, image->height);
   if (!scene.ok()) return scene.status();
   const StatusOr<std::vector<ShadingPoint>> points = FindShadingPoints(
       *scene, problem.camera, image->width, image->height, *mask, 1);

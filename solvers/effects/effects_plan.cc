@@ -32,7 +32,7 @@ bool AsksForShadows(const EffectsSpec& effects) {
 }
 
 ShapeKind ShapeOf(const Problem& problem, const Scene& scene) {
-  if (problem.geometry.kind == GeometryKind::kNormals) {
+  if (problem.geometry.HasNormalMap()) {
     return ShapeKind::kNormalMap;
   }
   return scene.CastsShadows() ? ShapeKind::kMesh : ShapeKind::kConvex;
@@ -43,10 +43,13 @@ Status CheckShapeHasPositions(const Problem& problem, ShapeKind shape) {
     return OkStatus();
   }
   const bool bounces = problem.effects.Lists(Effect::kInterreflection);
-  return InvalidInput(problem.path + ": effects",
-                      std::string(bounces ? "interreflection" : "visibility") +
-                          " needs a shape: expected geometry sphere or mesh, "
-                          "found normals");
+  return InvalidInput(
+      problem.path + ": effects",
+      std::string(bounces ? "interreflection" : "visibility") +
+          " needs a shape: expected geometry sphere or mesh, "
+          "found " +
+          (problem.geometry.kind == GeometryKind::kDepth ? "depth"
+                                                         : "normals"));
 }
 
 // Under the known light and reflectance. A sun in a clear sky stands in for an

@@ -41,9 +41,9 @@ Status RenderInterrupted(const Problem& problem) {
 
 StatusOr<ViewPoints> FindViewPoints(const Problem& problem, int num_threads,
                                     std::vector<std::string>* warnings) {
-  const StatusOr<Scene> scene = LoadScene(problem.geometry, warnings);
-  if (!scene.ok()) return scene.status();
   const int width = problem.image.width, height = problem.image.height;
+  const StatusOr<Scene> scene = LoadScene(problem, width, height, warnings);
+  if (!scene.ok()) return scene.status();
   StatusOr<std::vector<ShadingPoint>> found =
       FindShadingPoints(*scene, problem.camera, width, height, Mask(),
                         SamplesPerSide(problem.quality), num_threads);

@@ -67,14 +67,25 @@ Status Decode(const GeometrySpec& geometry, int bits, NormalMap* map) {
   return OkStatus();
 }
 
+// A vector of the file's frame in the camera's.
+Eigen::Vector3f Turned(const NormalFrame& frame, const Eigen::Vector3f& v) {
+  Eigen::Vector3f out;
+  for (size_t k = 0; k < 3; ++k) {
+    // Pairs in the order of x, y and z, those that grow first.
+    const int word = static_cast<int>(frame[k]);
+    const float component = v[static_cast<Eigen::Index>(k)];
+    out[word / 2] = word % 2 == 0 ? component : -component;
+  }
+  return out;
+}
+
 // Turns them into the camera's frame and counts those of other lengths.
 void Orient(const GeometrySpec& geometry, NormalMap* map) {
-  const bool opencv = geometry.frame == NormalFrame::kOpenCv;
   size_t set = 0, other = 0;
   for (size_t i = 0; i < map->normals.rgb.size() / 3; ++i) {
     Eigen::Map<Eigen::Vector3f> v(&map->normals.rgb[3 * i]);
     if (!IsSet(v.cast<double>())) continue;
-    if (opencv) v.tail<2>() = -v.tail<2>();
+    v = Turned(geometry.frame, v);
     ++set;
     other += std::abs(v.cast<double>().stableNorm() - 1.0) > kNotUnit;
   }
@@ -96,14 +107,17 @@ Status CheckTheyFaceTheCamera(const GeometrySpec& geometry,
     away += v.z() < 0.0;
   }
   if (2 * away <= set) return OkStatus();
-  const bool opencv = geometry.frame == NormalFrame::kOpenCv;
+  const std::string advice = geometry.frame == kOpenGlFrame ? "opencv"
+                             : geometry.frame == kOpenCvFrame
+                                 ? "opengl"
+                                 : "one axis is toward or away";
   return InvalidInput(
       geometry.file,
       std::to_string(100 * away / set) +
           " % of the normals face away from the camera, which is at +z (x "
           "right, y up); OpenCV's y and z have the other sign: "
           "geometry.frame: " +
-          (opencv ? "opengl" : "opencv"));
+          advice);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "ibrdf/solvers/problem/load_photograph.h"
 #include "ibrdf/solvers/problem/load_scene.h"
 #include "ibrdf/solvers/problem/silhouette.h"
+#include "ibrdf/solvers/problem/sphere_outline.h"
 
 namespace ibrdf {
 namespace {
@@ -52,6 +53,24 @@ std::shared_ptr<const ObjectLook> Look(const Problem& problem,
   return std::make_shared<const ObjectLook>(std::move(look));
 }
 
+// With the outline that the mask gives a sphere which nobody placed.
+StatusOr<Problem> WithSphereOutline(const Problem& problem, const Mask& mask,
+                                    std::vector<std::string>* warnings) {
+  Problem placed = problem;
+  if (problem.geometry.kind != GeometryKind::kSphere ||
+      problem.geometry.outline.has_value() ||
+      problem.camera.type != CameraType::kOrthographic) {
+    return placed;
+  }
+  const StatusOr<std::optional<PixelCircle>> outline = FindSphereOutline(
+      mask,
+      problem.image.mask.empty() ? problem.image.file : problem.image.mask,
+      warnings);
+  if (!outline.ok()) return outline.status();
+  placed.geometry.outline = *outline;
+  return placed;
+}
+
 }  // namespace
 
 StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
@@ -59,13 +78,16 @@ StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
   IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
   StatusOr<Photograph> observed = LoadPhotograph(problem.image);
   if (!observed.ok()) return observed.status();
-  PhotographedObject object;
-  object.warnings = std::move(observed->warnings);
-  StatusOr<Scene> scene = LoadScene(problem.geometry, &object.warnings);
-  if (!scene.ok()) return scene.status();
-  object.scene = *std::move(scene);
   const int width = observed->radiance.width;
   const int height = observed->radiance.height;
+  PhotographedObject object;
+  object.warnings = std::move(observed->warnings);
+  const StatusOr<Problem> placed =
+      WithSphereOutline(problem, observed->mask, &object.warnings);
+  if (!placed.ok()) return placed.status();
+  StatusOr<Scene> scene = LoadScene(*placed, width, height, &object.warnings);
+  if (!scene.ok()) return scene.status();
+  object.scene = *std::move(scene);
   StatusOr<std::vector<ShadingPoint>> points =
       FindShadingPoints(object.scene, problem.camera, width, height,
                         observed->mask, 1, num_threads);

@@ -13,8 +13,9 @@ namespace ibrdf {
 
 // `warnings` receives sentences for the user; it may be null.
 
-// The geometry of a problem; reads its mesh or normal map.
-StatusOr<Scene> LoadScene(const GeometrySpec& geometry,
+// The geometry of a problem before its camera; reads its mesh, normal map or
+// depth. width, height: of the image, pixels.
+StatusOr<Scene> LoadScene(const Problem& problem, int width, int height,
                           std::vector<std::string>* warnings = nullptr);
 
 // The known illumination in the library's frame: the file (ReadMap), or the sky

@@ -84,13 +84,16 @@ Status CheckText(const ProblemFlags& flags) {
 // Nobody said what the shape is.
 void AssumeSphere(ConfigNode* root, std::vector<std::string>* notes) {
   const ConfigNode* const geometry = root->Find("geometry");
-  for (const char* shape : {"sphere", "mesh", "normals"}) {
+  for (const char* shape : {"sphere", "mesh", "normals", "depth"}) {
     if (geometry != nullptr && geometry->Find(shape) != nullptr) return;
   }
   At(root, "geometry.sphere", true)->kind = ConfigNode::Kind::kMap;
   notes->push_back(
-      "no --normals and no --mesh: the object is taken for a sphere whose "
-      "outline touches the image's shorter sides");
+      At(root, "image.mask", false) != nullptr
+          ? "no --normals and no --mesh: the object is taken for a sphere "
+            "whose outline is the mask's"
+          : "no --normals and no --mesh: the object is taken for a sphere "
+            "whose outline touches the image's shorter sides");
 }
 
 std::string MovedPath(const std::string& path, const std::string& out) {

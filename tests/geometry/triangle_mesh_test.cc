@@ -91,10 +91,33 @@ TEST(TriangleMesh, DegenerateTrianglesAndLooseVertices) {
   EXPECT_NEAR(1.0f, mesh.normals[0].norm(), kUnitTolerance);
 }
 
+TEST(TriangleMesh, NormalsAgainstFacesWhateverTheWinding) {
+  // A fan about (0, 0, 0), flat but for one corner.
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0.1f}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
+  ComputeVertexNormals(&mesh);
+  EXPECT_TRUE(NormalsAgainstFaces(mesh).empty());
+  TriangleMesh turned = mesh;
+  turned.normals[2] = {1, 0, 0};  // along its faces
+  EXPECT_EQ(std::vector<int>{2}, NormalsAgainstFaces(turned));
+  for (Eigen::Vector3f& n : mesh.normals) n = -n;
+  EXPECT_TRUE(NormalsAgainstFaces(mesh).empty());
+  // Half of the faces are turned: the normals may be right.
+  std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
+  std::swap(mesh.triangles[2][1], mesh.triangles[2][2]);
+  EXPECT_TRUE(NormalsAgainstFaces(mesh).empty());
+  // No area, no opinion.
+  mesh.vertices.assign(5, {0, 0, 0});
+  EXPECT_TRUE(NormalsAgainstFaces(mesh).empty());
+}
+
 TEST(TriangleMesh, FitUnitSphere) {
   TriangleMesh mesh;
   mesh.vertices = {{10, 0, 0}, {14, 0, 0}, {12, 1, 0}, {12, -1, 0}};
-  FitUnitSphere(&mesh);
+  const BoundingSphere was = FitUnitSphere(&mesh);
+  EXPECT_EQ(Eigen::Vector3d(12, 0, 0), was.centre);
+  EXPECT_EQ(2.0, was.radius);
   EXPECT_EQ(Eigen::Vector3f(-1, 0, 0), mesh.vertices[0]);
   EXPECT_EQ(Eigen::Vector3f(1, 0, 0), mesh.vertices[1]);
   EXPECT_EQ(Eigen::Vector3f(0, 0.5f, 0), mesh.vertices[2]);

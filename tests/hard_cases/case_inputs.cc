@@ -1,5 +1,6 @@
 #include "tests/hard_cases/case_inputs.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -144,14 +145,58 @@ Status MakeNormals(const std::string& kind, Image* normals) {
   return OkStatus();
 }
 
+// Of the unit sphere 3 before the camera of a vertical angle of 40 degrees.
+void MakePerspectiveNormals(Image* normals) {
+  const double half = std::tan(20 * kPi / 180), distance = 3;
+  for (int y = 0; y < normals->height; ++y) {
+    for (int x = 0; x < normals->width; ++x) {
+      const double side = 2 * half / normals->height;
+      const Eigen::Vector3d d =
+          Eigen::Vector3d((x + 0.5 - 0.5 * normals->width) * side,
+                          (0.5 * normals->height - y - 0.5) * side, -1)
+              .normalized();
+      const double along = -distance * d.z();
+      const double rest = along * along - distance * distance + 1;
+      if (rest <= 0) continue;
+      const Eigen::Vector3d n =
+          Eigen::Vector3d(0, 0, distance) + (along - std::sqrt(rest)) * d;
+      Eigen::Map<Eigen::Vector3f>(normals->At(x, y)) = n.cast<float>();
+    }
+  }
+}
+
+// In pixels, of the sphere that fills the image; 0 outside.
+Status MakeDepth(const std::string& kind, Image* depth) {
+  if (kind != "sphere" && kind != "flat") {
+    return InvalidInput("recipe", "depth: " + kind);
+  }
+  const double radius = 0.5 * std::min(depth->width, depth->height);
+  for (int y = 0; y < depth->height; ++y) {
+    for (int x = 0; x < depth->width; ++x) {
+      const double u = x + 0.5 - 0.5 * depth->width;
+      const double v = y + 0.5 - 0.5 * depth->height;
+      const double rest = radius * radius - u * u - v * v;
+      if (rest <= 0) continue;
+      const double value = kind == "flat" ? 7 : 2 * radius - std::sqrt(rest);
+      std::fill_n(depth->At(x, y), 3, static_cast<float>(value));
+    }
+  }
+  return OkStatus();
+}
+
 // pixel: the middle one; corner: one that sees no object.
-Status WriteMask(const std::string& kind, int width, int height,
+Status WriteMask(const YAML::Node& recipe, int width, int height,
                  const std::string& path) {
+  const std::string kind = recipe["mask"].as<std::string>();
+  const std::vector<double> centre =
+      Get(recipe, "centre", std::vector<double>{0.5 * width, 0.5 * height});
+  const std::vector<double> radii =
+      Get(recipe, "radii", std::vector<double>{0.5 * width, 0.5 * height});
   Rgb8Image mask(width, height);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const double u = 2 * (x + 0.5) / width - 1,
-                   v = 2 * (y + 0.5) / height - 1;
+      const double u = (x + 0.5 - centre[0]) / radii[0],
+                   v = (y + 0.5 - centre[1]) / radii[1];
       bool on = false;
       if (kind == "disc") {
         on = u * u + v * v < 1;
@@ -295,7 +340,7 @@ Status MakeInput(const YAML::Node& recipe, const std::string& folder,
   if (recipe["sphere_mesh"]) return MakeSphereMesh(recipe, path);
   const std::vector<int> size = Get(recipe, "size", std::vector<int>{16, 16});
   if (recipe["mask"]) {
-    return WriteMask(recipe["mask"].as<std::string>(), size[0], size[1], path);
+    return WriteMask(recipe, size[0], size[1], path);
   }
   Image image(size[0], size[1]);
   if (recipe["scene"]) {
@@ -306,6 +351,11 @@ Status MakeInput(const YAML::Node& recipe, const std::string& folder,
     }
   } else if (recipe["light"]) {
     IBRDF_RETURN_IF_ERROR(MakeLight(recipe["light"], &image));
+  } else if (recipe["depth"]) {
+    IBRDF_RETURN_IF_ERROR(MakeDepth(recipe["depth"].as<std::string>(), &image));
+  } else if (recipe["normals"] &&
+             recipe["normals"].as<std::string>() == "perspective") {
+    MakePerspectiveNormals(&image);
   } else if (recipe["normals"]) {
     IBRDF_RETURN_IF_ERROR(
         MakeNormals(recipe["normals"].as<std::string>(), &image));

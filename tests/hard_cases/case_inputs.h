@@ -16,9 +16,11 @@ namespace ibrdf {
 //   constant: [r, g, b]          .exr of size: [w, h]
 //   light: {kind: sun, ...}      .exr map of size: [w, h]; see MakeLight
 //   normals: sphere              .exr normal map of size: [w, h]; or facing,
-//                                zero, away, long, grazing
+//                                zero, away, long, grazing, perspective
+//   depth: sphere                .exr depth in pixels of size: [w, h]; or flat
 //   mask: disc                   .png of size: [w, h]; or all, none, pixel,
-//                                corner
+//                                corner; centre: and radii: [x, y] in pixels
+//                                of the disc, else it touches all sides
 //   brdf: {specular: s, ...}     .binary; see MakeBrdf
 //   model: 2                     .ibrdf of so many random materials;
 //                                curvature: of its splines; code_norm: of its

@@ -9,7 +9,9 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "ibrdf/base/format.h"
 #include "tests/support/corruption.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temp_dir.h"
@@ -250,6 +252,113 @@ TEST(Mesh, AByteOrderMarkIsNoPartOfTheFirstLine) {
   ASSERT_TRUE(a.ok() && b.ok()) << b.status().message();
   EXPECT_EQ(a->vertices, b->vertices);
   EXPECT_EQ(a->triangles, b->triangles);
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const StatusOr<TriangleMesh> c = DecodeMesh("c.ply", ply);
+  const StatusOr<TriangleMesh> d = DecodeMesh("d.ply", "\xef\xbb\xbf" + ply);
+  ASSERT_TRUE(c.ok() && d.ok()) << d.status().message();
+  EXPECT_EQ(c->vertices, d->vertices);
+}
+
+// A grid of bumps, moved; with a normal per vertex, or none.
+std::string BumpsObj(const Eigen::Vector3d& moved,
+                     const std::vector<Eigen::Vector3d>& normals = {}) {
+  constexpr int kSide = 9;
+  std::string obj, faces;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const Eigen::Vector3d p =
+          moved + Eigen::Vector3d(0.25 * x, 0.5 * y, 0.125 * (x * y % 3));
+      obj += "v " + Format("%.10g", p.x()) + " " + Format("%.10g", p.y()) +
+             " " + Format("%.10g", p.z()) + "\n";
+    }
+  }
+  for (const Eigen::Vector3d& n : normals) {
+    obj += "vn " + Format("%g", n.x()) + " " + Format("%g", n.y()) + " " +
+           Format("%g", n.z()) + "\n";
+  }
+  const auto corner = [&](int x, int y) {
+    const std::string v = std::to_string(y * kSide + x + 1);
+    return " " + v + (normals.empty() ? "" : "//" + v);
+  };
+  for (int y = 0; y + 1 < kSide; ++y) {
+    for (int x = 0; x + 1 < kSide; ++x) {
+      faces += "f" + corner(x, y) + corner(x + 1, y) + corner(x + 1, y + 1) +
+               corner(x, y + 1) + "\n";
+    }
+  }
+  return obj + faces;
+}
+
+TEST(Mesh, GeoreferencedCoordinatesAreTakenFromTheirCentre) {
+  StatusOr<TriangleMesh> near = DecodeMesh("a.obj", BumpsObj({0, 0, 0}));
+  const Eigen::Vector3d offset(5e5, 4e6, 300);
+  MeshNotes notes;
+  StatusOr<TriangleMesh> far = DecodeMesh("a.obj", BumpsObj(offset), &notes);
+  ASSERT_TRUE(near.ok() && far.ok());
+  ASSERT_EQ(near->vertices.size(), far->vertices.size());
+  EXPECT_EQ(near->triangles, far->triangles);
+  EXPECT_LT((notes.origin - offset).norm(), 5.0);
+  for (size_t v = 0; v < near->vertices.size(); ++v) {
+    const Eigen::Vector3d p =
+        notes.origin + far->vertices[v].cast<double>() - offset;
+    EXPECT_LT((p - near->vertices[v].cast<double>()).norm(), 1e-6);
+    EXPECT_LT((near->normals[v] - far->normals[v]).norm(), 1e-6);
+  }
+  FitUnitSphere(&*near);
+  FitUnitSphere(&*far);
+  for (size_t v = 0; v < near->vertices.size(); ++v) {
+    EXPECT_LT((near->vertices[v] - far->vertices[v]).norm(), 1e-6);
+  }
+  // Others keep the file's floats.
+  MeshNotes none;
+  ASSERT_TRUE(DecodeMesh("a.obj", BumpsObj({70, 0, 0}), &none).ok());
+  EXPECT_TRUE(none.origin.isZero());
+}
+
+TEST(Mesh, BadNormalsAreMadeFromTheFacesAndCounted) {
+  const StatusOr<TriangleMesh> right = DecodeMesh("a.obj", BumpsObj({0, 0, 0}));
+  ASSERT_TRUE(right.ok());
+  std::vector<Eigen::Vector3d> good(right->normals.size());
+  for (size_t v = 0; v < good.size(); ++v) {  // in the file's order
+    const Eigen::Vector3f& p = right->vertices[v];
+    const long x = std::lround(4 * p.x()), y = std::lround(2 * p.y());
+    good[static_cast<size_t>(9 * y + x)] = right->normals[v].cast<double>();
+  }
+  const auto expect = [&](const std::vector<Eigen::Vector3d>& normals,
+                          const std::string& says) {
+    MeshNotes notes;
+    const StatusOr<TriangleMesh> mesh =
+        DecodeMesh("a.obj", BumpsObj({0, 0, 0}, normals), &notes);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    for (size_t v = 0; v < good.size(); ++v) {
+      EXPECT_LT((mesh->normals[v] - right->normals[v]).norm(), 1e-5);
+    }
+    ASSERT_EQ(says.empty() ? 0u : 1u, notes.warnings.size());
+    if (!says.empty()) EXPECT_EQ("a.obj: " + says, notes.warnings[0]);
+  };
+  expect(good, "");
+  std::vector<Eigen::Vector3d> bad = good;
+  bad[7] *= std::nan("");
+  bad[9].setZero();
+  expect(bad,
+         "2 of 81 normals are zero or not finite; all were made from the "
+         "faces");
+  bad = good;
+  bad[40] = -bad[40];
+  expect(bad,
+         "1 of 81 normals contradict the faces around them; all were made from "
+         "the faces");
+  for (Eigen::Vector3d& n : good) n = -n;  // a matter of the winding alone
+  MeshNotes notes;
+  const StatusOr<TriangleMesh> inward =
+      DecodeMesh("a.obj", BumpsObj({0, 0, 0}, good), &notes);
+  ASSERT_TRUE(inward.ok());
+  EXPECT_TRUE(notes.warnings.empty());
+  EXPECT_LT((inward->normals[3] + right->normals[3]).norm(), 1e-5);
 }
 
 TEST(Mesh, BadMeshesAreRefused) {

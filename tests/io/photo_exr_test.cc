@@ -362,6 +362,26 @@ TEST_F(PhotoExr, TheRuleOfTheDefault) {
   EXPECT_EQ(2.0f, First("ao"));
 }
 
+TEST_F(PhotoExr, DepthByItsName) {
+  const auto depth = PhotoContent::kDepth;
+  Write({{"Z", 3.0f}});
+  EXPECT_EQ(3.0f, First("", depth));
+  EXPECT_EQ(3.0f, Read("", depth)->image.rgb[2]);
+  Write(Both(Rgb("", 5.0f), {{"Z", 3.0f}}));  // beside colours
+  EXPECT_EQ(3.0f, First("", depth));
+  Write(
+      Both(Rgb("ViewLayer.Combined.", 20.0f), {{"ViewLayer.Depth.Z", 4.0f},
+                                               {"ViewLayer.Normal.X", 30.0f},
+                                               {"ViewLayer.Normal.Y", 31.0f},
+                                               {"ViewLayer.Normal.Z", 32.0f}}));
+  EXPECT_EQ(4.0f, First("", depth));
+  Write({{"Y", 6.0f}});
+  EXPECT_EQ(6.0f, First("", depth));
+  Write({{"X", 1.0f}, {"Y", 2.0f}, {"Z", 3.0f}});  // a position or normal
+  EXPECT_NE(std::string::npos,
+            Read("", depth).status().message().find("found: X Y Z"));
+}
+
 TEST_F(PhotoExr, NormalsByTheirNames) {
   const auto normals = PhotoContent::kNormals;
   Write({{"X", 1.0f}, {"Y", 2.0f}, {"Z", 3.0f}});

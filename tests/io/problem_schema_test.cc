@@ -52,6 +52,12 @@ Setting SettingOf(const ProblemKey& key) {
   if (map == "geometry" || map.find('.') != std::string::npos) {
     setting = setting.With(map, "{}");
   }
+  if (map == "geometry.sphere") {  // neither goes without the other
+    return setting.With("geometry.sphere", "{centre: [1, 2], radius: 3}");
+  }
+  if (map == "geometry.frame") {
+    return setting.With("geometry", "{normals: n.exr}");
+  }
   const size_t colon = key.needs.find(": ");
   if (colon != std::string::npos) {
     return setting.With(key.needs.substr(0, colon),
@@ -81,7 +87,14 @@ std::string OtherValue(const ProblemKey& key) {
       return "[0.25, 0.5, 1]";
     case ValueType::kPathList:
       return "[one.file, other.file]";
+    case ValueType::kPair:
+      return "[0.25, 0.5]";
     case ValueType::kChoice:
+    case ValueType::kChoiceOrMap:
+      // The opposite, which leaves the other axes what they are.
+      if (key.Parent() == "geometry.frame") {
+        return key.Name() == "x" ? "left" : key.Name() == "y" ? "down" : "away";
+      }
       return key.words.front().word == key.default_value
                  ? key.words.back().word
                  : key.words.front().word;
@@ -92,7 +105,7 @@ std::string OtherValue(const ProblemKey& key) {
     case ValueType::kPathOrMap:
       return "other.file";
     case ValueType::kMap:
-    case ValueType::kEmptyMap:
+    case ValueType::kOptionalMap:
       break;
   }
   return "{}";
@@ -137,7 +150,8 @@ TEST(ProblemSchema, EveryKeyIsReadAndToldInTheResult) {
 TEST(ProblemSchema, NoOtherKeyIsAccepted) {
   Strings maps = {""};
   for (const ProblemKey& key : AllKeys()) {
-    if (key.type == ValueType::kMap || key.type == ValueType::kPathOrMap) {
+    if (key.type == ValueType::kMap || key.type == ValueType::kPathOrMap ||
+        key.type == ValueType::kOptionalMap) {
       maps.push_back(key.path);
     }
   }
@@ -211,6 +225,8 @@ TEST(ProblemSchema, NumbersEndWhereItSays) {
 TEST(ProblemSchema, ChoicesTakeItsWords) {
   for (const ProblemKey& key : AllKeys()) {
     SCOPED_TRACE(key.path);
+    // Words of one axis of the picture exclude each other.
+    if (key.Parent() == "geometry.frame") continue;
     const Setting setting = SettingOf(key);
     for (const std::string& word : key.Words()) {
       const Setting with = setting.With(key.path, word);

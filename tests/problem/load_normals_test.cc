@@ -116,8 +116,26 @@ TEST_F(LoadNormalsTest, OpenCvsFrameIsTurnedWhenAskedForAndNamedWhenNot) {
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
   EXPECT_NE(std::string::npos, status.message().find("n.exr: 100 % of the"));
   EXPECT_NE(std::string::npos, status.message().find("frame: opencv"));
-  geometry.frame = NormalFrame::kOpenCv;
+  geometry.frame = kOpenCvFrame;
   ExpectNormals(geometry, 0.0, 0);
+}
+
+TEST_F(LoadNormalsTest, EachAxisMayPointAnywhere) {
+  // x holds what is down, y what is toward the camera, z what is left.
+  Image other(kSize, kSize);
+  for (size_t i = 0; i < right_.num_pixels(); ++i) {
+    const float* n = &right_.rgb[3 * i];
+    other.rgb[3 * i] = -n[1];
+    other.rgb[3 * i + 1] = n[2];
+    other.rgb[3 * i + 2] = -n[0];
+  }
+  GeometrySpec geometry = Spec(other);
+  geometry.frame = {PictureAxis::kDown, PictureAxis::kToward,
+                    PictureAxis::kLeft};
+  ExpectNormals(geometry, 0.0, 0);
+  geometry.frame = {PictureAxis::kDown, PictureAxis::kAway, PictureAxis::kLeft};
+  EXPECT_NE(std::string::npos, LoadNormals(geometry).status().message().find(
+                                   "one axis is toward or away"));
 }
 
 TEST_F(LoadNormalsTest, OtherLengthsAreCounted) {

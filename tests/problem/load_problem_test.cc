@@ -37,7 +37,8 @@ class SilhouetteTest : public ::testing::Test {
     const StatusOr<Problem> problem = ParseProblem(
         dir_.File("p.yaml"),
         "problem: illumination\nimage: {file: i.exr, mask: m.png}\n"
-        "geometry: {sphere: {}}\n"
+        // Where it would be without a mask.
+        "geometry: {sphere: {centre: [32, 32], radius: 32}}\n"
         "reflectance: {known: {lambertian: [0.5, 0.5, 0.5]}}\n",
         {});
     EXPECT_TRUE(problem.ok()) << problem.status().message();

@@ -107,7 +107,7 @@ TEST(ProblemFromFlags, ErrorsNameTheCommandLineAndTheKey) {
   flags = Flags();
   flags.mesh = "m.obj";
   EXPECT_NE(std::string::npos,
-            ErrorOf(flags).find("expected one of sphere, mesh and normals"));
+            ErrorOf(flags).find("expected one of sphere, mesh, normals"));
   flags = Flags();
   flags.overrides = {"solver.second=3"};
   EXPECT_NE(std::string::npos, ErrorOf(flags).find("solver.second"));

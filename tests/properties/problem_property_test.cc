@@ -104,6 +104,35 @@ std::optional<MapFrame> AnyFrame() {
   return AnyOf<MapFrame>(kMapFrames.size());
 }
 
+GeometrySpec AnyGeometry(CameraType camera) {
+  const bool perspective = camera == CameraType::kPerspective;
+  GeometrySpec geometry;
+  geometry.kind = AnyOf<GeometryKind>(4);
+  if (geometry.kind != GeometryKind::kSphere) geometry.file = AnyPath();
+  switch (geometry.kind) {
+    case GeometryKind::kSphere:
+      if (perspective || *rc::gen::arbitrary<bool>()) break;
+      geometry.outline = {AnyNumber(-1e6, 1e6), AnyNumber(-1e6, 1e6),
+                          AnyNumber(kLeast, 1e6)};
+      break;
+    case GeometryKind::kMesh:
+      geometry.fit = AnyOf<MeshFit>(2);
+      break;
+    case GeometryKind::kNormals:
+      for (PictureAxis& axis : geometry.frame) {  // or the opposite
+        const int word = static_cast<int>(axis) / 2 * 2 + *Choice(2);
+        axis = static_cast<PictureAxis>(word);
+      }
+      std::swap(geometry.frame[0], geometry.frame[*Choice(3)]);
+      geometry.encoding = AnyOf<NormalEncoding>(3);
+      break;
+    case GeometryKind::kDepth:
+      geometry.depth_scale = AnyNumber(kLeast, 1e6);
+      break;
+  }
+  return geometry;
+}
+
 // To be solved or, without an image, rendered; what does not apply is as by
 // default.
 Problem AnyProblem() {
@@ -145,11 +174,11 @@ Problem AnyProblem() {
                         rc::gen::just(std::numeric_limits<int64_t>::max()));
   }
   p.camera = AnyCamera();
-  p.geometry.kind =
-      AnyOf<GeometryKind>(p.camera.type == CameraType::kPerspective ? 2 : 3);
-  if (p.geometry.kind != GeometryKind::kSphere) p.geometry.file = AnyPath();
-  if (p.geometry.kind == GeometryKind::kMesh) {
-    p.geometry.fit = AnyOf<MeshFit>(2);
+  p.geometry = AnyGeometry(p.camera.type);
+  if (p.geometry.HasNormalMap()) {  // in the camera's frame
+    p.camera.from = Camera().from;
+    p.camera.to = Camera().to;
+    p.camera.up = Camera().up;
   }
   if (rendered || p.kind == ProblemKind::kIllumination) {
     if (*rc::gen::arbitrary<bool>()) {
@@ -242,6 +271,15 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
   RC_ASSERT(p.geometry.kind == q.geometry.kind);
   RC_ASSERT(p.geometry.file == q.geometry.file);
   RC_ASSERT(p.geometry.fit == q.geometry.fit);
+  RC_ASSERT(p.geometry.frame == q.geometry.frame);
+  RC_ASSERT(p.geometry.encoding == q.geometry.encoding);
+  RC_ASSERT(p.geometry.depth_scale == q.geometry.depth_scale);
+  RC_ASSERT(p.geometry.outline.has_value() == q.geometry.outline.has_value());
+  if (p.geometry.outline.has_value()) {
+    RC_ASSERT(p.geometry.outline->x == q.geometry.outline->x);
+    RC_ASSERT(p.geometry.outline->y == q.geometry.outline->y);
+    RC_ASSERT(p.geometry.outline->radius == q.geometry.outline->radius);
+  }
   RC_ASSERT(p.reflectance.model == q.reflectance.model);
   RC_ASSERT(p.reflectance.lobes == q.reflectance.lobes);
   RC_ASSERT(p.reflectance.prior_sigma == q.reflectance.prior_sigma);

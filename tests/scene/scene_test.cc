@@ -173,8 +173,65 @@ TEST(Scene, NormalMapOfASphereMatchesTheSphere) {
             FindShadingPoints(*scene, Perspective(), size, size, Mask(), 1)
                 .status()
                 .code());
+  Camera tilted = Perspective();
+  tilted.from = {0, 0, 4};
+  tilted.to = {0, 0, 0};
+  tilted.up = {0.1, 1, 0};
+  EXPECT_FALSE(FindShadingPoints(*scene, tilted, size, size, Mask(), 1).ok());
   EXPECT_FALSE(FindShadingPoints(*scene, Camera(), 20, 20, Mask(), 1).ok());
   EXPECT_FALSE(Scene::FromNormalMap(Image(4, 4)).ok());
+}
+
+TEST(Scene, NormalsBeforeAPerspectiveCameraAreSeenAsTheSphereIs) {
+  Camera camera;
+  camera.type = CameraType::kPerspective;
+  camera.fov_degrees = 40;
+  camera.from = {0.3, -0.2, 3};  // off the axis, looking along -z
+  camera.to = {0.3, -0.2, 0};
+  const int width = 48, height = 36;
+  const auto sphere =
+      FindShadingPoints(Scene::UnitSphere(), camera, width, height, Mask(), 1);
+  ASSERT_TRUE(sphere.ok());
+  Image map(width, height);
+  for (const ShadingPoint& p : *sphere) {
+    for (int c = 0; c < 3; ++c) map.rgb[3 * p.pixel + c] = p.normal[c];
+  }
+  Camera own;  // where the problem leaves it
+  own.type = CameraType::kPerspective;
+  own.fov_degrees = 40;
+  const auto points = FindShadingPoints(Scene::FromNormalMap(map).value(), own,
+                                        width, height, Mask(), 1);
+  ASSERT_TRUE(points.ok()) << points.status().message();
+  ASSERT_EQ(sphere->size(), points->size());
+  double widest = 0.0;
+  for (size_t i = 0; i < points->size(); ++i) {
+    const ShadingPoint &a = (*sphere)[i], &b = (*points)[i];
+    EXPECT_EQ(a.pixel, b.pixel);
+    EXPECT_LT((a.normal - b.normal).norm(), 1e-6);
+    EXPECT_LT((a.wo - b.wo).norm(), 1e-6);
+    widest = std::max(widest, std::acos(double{b.wo.z()}));
+  }
+  EXPECT_GT(widest, 0.2);  // the views differ
+}
+
+TEST(Scene, SpheresOfOtherPlacesAreTheUnitSphereMoved) {
+  const Eigen::Vector3d center(0.25, -0.5, 0.125);
+  const double radius = 0.5;
+  const Scene scene = Scene::Sphere(center, radius);
+  for (const Eigen::Vector3d& origin :
+       {Eigen::Vector3d(0.1, 0.2, 3), Eigen::Vector3d(-0.6, 0.5, 2),
+        Eigen::Vector3d(0.9, 0, 2)}) {
+    const Ray unit{origin, Eigen::Vector3d(0, 0, -1)};
+    const Ray moved{center + radius * origin, unit.direction};
+    SurfaceHit expected{}, hit{};
+    const bool hits = Scene::UnitSphere().Intersect(unit, false, &expected);
+    ASSERT_EQ(hits, scene.Intersect(moved, false, &hit));
+    if (!hits) continue;
+    EXPECT_LT((expected.normal - hit.normal).norm(), 1e-12);
+    EXPECT_NEAR(radius * expected.distance, hit.distance, 1e-12);
+    EXPECT_LT((center + radius * expected.position - hit.position).norm(),
+              1e-12);
+  }
 }
 
 TEST(Scene, MaskChoosesPixels) {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ibrdf {
 
@@ -44,8 +45,48 @@ void ComputeVertexNormals(TriangleMesh* mesh) {
   }
 }
 
-void FitUnitSphere(TriangleMesh* mesh) {
-  if (mesh->vertices.empty()) return;
+std::vector<int> NormalsAgainstFaces(const TriangleMesh& mesh) {
+  CHECK_EQ(mesh.normals.size(), mesh.vertices.size());
+  // Cosine of normal and face of the same side, the least.
+  constexpr double kAgrees = 0.1;
+  // Of corners on one side of their faces: the winding means something.
+  constexpr double kOneWinding = 0.9;
+  const double inf = std::numeric_limits<double>::infinity();
+  std::vector<double> least(mesh.vertices.size(), inf);
+  std::vector<double> most(mesh.vertices.size(), -inf);
+  size_t front = 0, back = 0;
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
+    Eigen::Vector3d p[3];
+    for (size_t i = 0; i < 3; ++i) {
+      p[i] = mesh.vertices[triangle[i]].cast<double>();
+    }
+    const Eigen::Vector3d cross = (p[1] - p[0]).cross(p[2] - p[0]);
+    if (!(cross.stableNorm() > 0.0)) continue;
+    const Eigen::Vector3d face = cross.stableNormalized();
+    for (const int v : triangle) {
+      const double cosine = face.dot(mesh.normals[v].cast<double>());
+      front += cosine > kAgrees;
+      back += cosine < -kAgrees;
+      least[v] = std::min(least[v], cosine);
+      most[v] = std::max(most[v], cosine);
+    }
+  }
+  const double sides = static_cast<double>(front + back);
+  const bool outward = static_cast<double>(front) >= kOneWinding * sides;
+  const bool inward = static_cast<double>(back) >= kOneWinding * sides;
+  std::vector<int> against;
+  for (size_t v = 0; v < least.size(); ++v) {
+    if (least[v] > most[v]) continue;
+    const double agreement = outward  ? most[v]
+                             : inward ? -least[v]
+                                      : std::max(most[v], -least[v]);
+    if (agreement < kAgrees) against.push_back(static_cast<int>(v));
+  }
+  return against;
+}
+
+BoundingSphere FitUnitSphere(TriangleMesh* mesh) {
+  if (mesh->vertices.empty()) return {};
   Eigen::Vector3d low = mesh->vertices[0].cast<double>(), high = low;
   for (const Eigen::Vector3f& v : mesh->vertices) {
     low = low.cwiseMin(v.cast<double>());
@@ -60,6 +101,7 @@ void FitUnitSphere(TriangleMesh* mesh) {
   for (Eigen::Vector3f& v : mesh->vertices) {
     v = ((v.cast<double>() - centre) * scale).cast<float>();
   }
+  return {centre, radius};
 }
 
 }  // namespace ibrdf

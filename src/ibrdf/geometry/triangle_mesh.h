@@ -18,9 +18,19 @@ struct TriangleMesh {
 // area are skipped; a vertex left without a normal gets (0, 0, 1).
 void ComputeVertexNormals(TriangleMesh* mesh);
 
+// The vertices whose normals no adjacent face agrees with: on the other side of
+// all of them or, where the faces' winding is mixed, along all of them.
+// Vertices without a face of positive area are left out. `mesh` has normals.
+std::vector<int> NormalsAgainstFaces(const TriangleMesh& mesh);
+
+struct BoundingSphere {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the bounding box
+  double radius = 0.0;                               // to the farthest vertex
+};
+
 // Translates the centre of the bounding box to the origin and scales the
 // farthest vertex to distance 1; a mesh of one point is only translated.
-// Normals are unchanged.
-void FitUnitSphere(TriangleMesh* mesh);
+// Normals are unchanged. Returns what became the unit sphere.
+BoundingSphere FitUnitSphere(TriangleMesh* mesh);
 
 }  // namespace ibrdf

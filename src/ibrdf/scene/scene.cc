@@ -15,19 +15,23 @@
 namespace ibrdf {
 namespace {
 
-bool IntersectUnitSphere(const Ray& ray, bool from_infinity, SurfaceHit* hit) {
-  const double b = ray.origin.dot(ray.direction);
-  const Eigen::Vector3d closest = ray.origin - b * ray.direction;
+bool IntersectSphere(const Ray& ray, const Eigen::Vector3d& center,
+                     double radius, bool from_infinity, SurfaceHit* hit) {
+  // In the frame of the unit sphere.
+  const Eigen::Vector3d origin = (ray.origin - center) / radius;
+  const double b = origin.dot(ray.direction);
+  const Eigen::Vector3d closest = origin - b * ray.direction;
   const double half_squared = 1.0 - closest.squaredNorm();
   if (!(half_squared > 0.0)) return false;
   const double half = std::sqrt(half_squared);
   double t = -b - half;
   if (t <= 0.0 && !from_infinity) t = -b + half;
   if (t <= 0.0 && !from_infinity) return false;
-  const Eigen::Vector3d normal = (ray.origin + t * ray.direction).normalized();
-  hit->distance = t;
+  const Eigen::Vector3d point = origin + t * ray.direction;
+  const Eigen::Vector3d normal = point.normalized();
+  hit->distance = radius * t;
   hit->normal = FaceViewer(normal, normal, -ray.direction);
-  hit->position = ray.origin + t * ray.direction;
+  hit->position = center + radius * point;
   return true;
 }
 
@@ -72,7 +76,9 @@ struct Scene::Impl {
   Kind kind = Kind::kSphere;
   Image normals;
   TriangleMesh mesh;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of the bounds
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of sphere or bounds
+  // The same among the mesh's vertices, whose origin may be elsewhere.
+  Eigen::Vector3d mesh_center = Eigen::Vector3d::Zero();
   double radius = 1.0;
   RTCDevice device = nullptr;
   RTCScene embree = nullptr;
@@ -123,7 +129,7 @@ bool Scene::Impl::BuildEmbree() {
   // Unit bounds: Embree's float tolerances then fit any unit of length.
   for (size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Eigen::Vector3d p =
-        (mesh.vertices[v].cast<double>() - center) / radius;
+        (mesh.vertices[v].cast<double>() - mesh_center) / radius;
     for (int k = 0; k < 3; ++k) vertices[3 * v + k] = static_cast<float>(p[k]);
   }
   for (size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -210,7 +216,8 @@ Eigen::Vector3d Scene::Impl::LiftedPosition(
   const double weights[3] = {1.0 - hit.u - hit.v, hit.u, hit.v};
   Eigen::Vector3d corners[3], corner_normals[3];
   for (int k = 0; k < 3; ++k) {
-    corners[k] = (mesh.vertices[triangle[k]].cast<double>() - center) / radius;
+    corners[k] =
+        (mesh.vertices[triangle[k]].cast<double>() - mesh_center) / radius;
     corner_normals[k] = outward;
     if (!mesh.normals.empty()) {
       corner_normals[k] = mesh.normals[triangle[k]].cast<double>();
@@ -265,7 +272,16 @@ void Scene::Impl::MeshOccludes(const Eigen::Vector3d& position,
 
 Scene Scene::UnitSphere() { return Scene(std::make_shared<Impl>()); }
 
-StatusOr<Scene> Scene::FromMesh(const TriangleMesh& mesh) {
+Scene Scene::Sphere(const Eigen::Vector3d& center, double radius) {
+  CHECK(center.allFinite() && radius > 0.0 && std::isfinite(radius));
+  auto impl = std::make_shared<Impl>();
+  impl->center = center;
+  impl->radius = radius;
+  return Scene(std::move(impl));
+}
+
+StatusOr<Scene> Scene::FromMesh(const TriangleMesh& mesh,
+                                const Eigen::Vector3d& origin) {
   const auto num_vertices = static_cast<int>(mesh.vertices.size());
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
     return InvalidInput("mesh", "expected one normal per vertex or none");
@@ -296,7 +312,8 @@ StatusOr<Scene> Scene::FromMesh(const TriangleMesh& mesh) {
   auto impl = std::make_shared<Impl>();
   impl->kind = Impl::Kind::kMesh;
   impl->mesh = mesh;
-  impl->center = 0.5 * (low + high);
+  impl->mesh_center = 0.5 * (low + high);
+  impl->center = origin + impl->mesh_center;
   impl->radius = 0.5 * (high - low).norm();
   if (!impl->BuildEmbree()) {
     return Status(StatusCode::kInternal, "mesh: Embree could not build it");
@@ -329,7 +346,8 @@ bool Scene::Intersect(const Ray& ray, bool from_infinity,
                       SurfaceHit* hit) const {
   switch (impl_->kind) {
     case Impl::Kind::kSphere:
-      return IntersectUnitSphere(ray, from_infinity, hit);
+      return IntersectSphere(ray, impl_->center, impl_->radius, from_infinity,
+                             hit);
     case Impl::Kind::kMesh:
       return impl_->IntersectMesh(ray, from_infinity, hit);
     case Impl::Kind::kNormalMap:

@@ -43,15 +43,22 @@ class Scene {
  public:
   // Unit sphere at the origin.
   static Scene UnitSphere();
+  // center: finite; radius: > 0.
+  static Scene Sphere(const Eigen::Vector3d& center, double radius);
 
   // Normals are interpolated between vertices where the mesh has them (one per
   // vertex), else taken from the triangle; the orientation of triangles and
   // normals does not matter. Fails on a mesh without a triangle of positive
   // area, an index out of range or a vertex that is not finite.
-  static StatusOr<Scene> FromMesh(const TriangleMesh& mesh);
+  // origin: of the vertices, in the world; for coordinates that floats hold too
+  // coarsely.
+  static StatusOr<Scene> FromMesh(
+      const TriangleMesh& mesh,
+      const Eigen::Vector3d& origin = Eigen::Vector3d::Zero());
 
-  // rgb = unit normal in the frame of an orthographic camera, one per pixel;
-  // zero length (or not finite) = outside the object. Fails when none is set.
+  // rgb = unit normal in the camera's frame (x right, y up, z against the
+  // view), one per pixel; zero length (or not finite) = outside the object.
+  // Fails when none is set.
   static StatusOr<Scene> FromNormalMap(const Image& normals);
 
   // First hit of the ray. `from_infinity`: the ray's origin is any point of its
@@ -83,10 +90,10 @@ class Scene {
 
 // The points that an image of width x height sees, by pixel in row order: the
 // hits of samples_per_side^2 positions on a regular grid in every pixel inside
-// `mask` (empty: all). 1: the pixel's centre. Fails when the mask has another
-// size, the camera is invalid, a normal map is combined with a perspective
-// camera or another image size, or no pixel sees the object. num_threads <= 0:
-// all.
+// `mask` (empty: all). 1: the pixel's centre. The camera of a normal map looks
+// along -z with y up. Fails when the mask has another size, the camera is
+// invalid or looks another way, a normal map has another size than the image,
+// or no pixel sees the object. num_threads <= 0: all.
 StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
     const Scene& scene, const Camera& camera, int width, int height,
     const Mask& mask, int samples_per_side, int num_threads = 0);

@@ -1,5 +1,6 @@
 #include <glog/logging.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -34,6 +35,16 @@ bool NormalAt(const Image& normals, double x, double y,
   return true;
 }
 
+// Whether the camera's frame is the world's.
+bool LooksAlongZ(const Camera& camera) {
+  if (camera.type == CameraType::kOrthographic) return true;
+  const Eigen::Vector3d view = (camera.to - camera.from).normalized();
+  const Eigen::Vector3d right = view.cross(camera.up).normalized();
+  constexpr double kRounding = 1e-9;
+  return (view + Eigen::Vector3d::UnitZ()).norm() < kRounding &&
+         (right - Eigen::Vector3d::UnitX()).norm() < kRounding;
+}
+
 Status CheckSizes(const Scene& scene, const Camera& camera, int width,
                   int height, const Mask& mask) {
   const Image& normals = scene.normal_map();
@@ -51,8 +62,10 @@ Status CheckSizes(const Scene& scene, const Camera& camera, int width,
                         "up not parallel to the view");
   }
   if (normals.empty()) return Status();
-  if (camera.type != CameraType::kOrthographic) {
-    return InvalidInput("camera", "a normal map needs type orthographic");
+  if (!LooksAlongZ(camera)) {
+    return InvalidInput("camera",
+                        "expected a view along -z with y up: normals are in "
+                        "the camera's frame");
   }
   if (normals.width != width || normals.height != height) {
     return InvalidInput("normals", "expected the image's size " +
