@@ -689,11 +689,9 @@ Keys SolverKeys() {
           .Integer(0, kMaxIterations, "1000")
           .UsedBy(kUsedBySolve),
       Row("solver.seed",
-          "Seed of all random numbers. In a render it varies the noise. In a "
-          "solve it varies the samples behind the expected error, and the "
-          "first weights of the map's network (`illumination.prior: unet`). "
-          "Nothing else depends on it, so that equal results of two seeds say "
-          "nothing about robustness.")
+          "Seed of a render's noise; in a solve, of the samples behind the "
+          "expected error and of the network's first weights alone: equal "
+          "results of two seeds say nothing of robustness.")
           .Integer(0, std::numeric_limits<int64_t>::max(), "")
           .Without("that of `--seed`")};
 }

@@ -153,9 +153,13 @@ Json MaterialJson(const MaterialSummary& material) {
     nearest.push_back({{"name", near.name},
                        {"brdf_log_difference", near.brdf_log_difference}});
   }
-  return {{"nearest", nearest},
-          {"diffuse_share", Finite(material.shares.diffuse)},
-          {"specular_share", Finite(material.shares.specular)}};
+  Json out = {{"nearest", nearest}};
+  // A known reflectance is not summarised.
+  if (std::isfinite(material.shares.diffuse)) {
+    out["diffuse_share"] = material.shares.diffuse;
+    out["specular_share"] = material.shares.specular;
+  }
+  return out;
 }
 
 // Condition number of the posterior's correlations.

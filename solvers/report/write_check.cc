@@ -4,6 +4,7 @@
 
 #include "ibrdf/io/atomic_file.h"
 #include "ibrdf/io/map_file.h"
+#include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/solvers/drawing/map_picture.h"
 #include "ibrdf/solvers/drawing/tone_map.h"
@@ -48,13 +49,17 @@ Status WriteCheck(const Problem& problem, const PhotographedObject& object,
       folder + "/check.json", CheckJson(object.look->check, object.warnings)));
   CheckPictureInput input{"Check of " + problem.image.file, object.radiance,
                           object.points, *object.look, Image()};
-  if (problem.illumination.known()) {
+  const std::string light_path = folder + "/check_light.png";
+  if (!problem.illumination.known()) {
+    // One of an earlier solve would speak of another light.
+    RemoveEarlier(problem, folder, {"check_light.png"});
+  } else {
     const StatusOr<StoredMap> light = KnownLight(problem.illumination);
     if (!light.ok()) return light.status();
     input.mirror_ball =
         DisplayColours(DrawMirrorBall(light->image, light->frame, kBallPixels));
-    IBRDF_RETURN_IF_ERROR(WritePng(DrawMapFrame(light->image, light->frame),
-                                   folder + "/check_light.png"));
+    IBRDF_RETURN_IF_ERROR(
+        WritePng(DrawMapFrame(light->image, light->frame), light_path));
   }
   return WritePng(DrawCheck(input), folder + "/check.png");
 }

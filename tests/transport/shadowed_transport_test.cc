@@ -167,8 +167,8 @@ class ShadowedDerivatives : public ::testing::Test {
     return L_o;
   }
   std::vector<double> Adjoint() {
-    std::vector<double> a(3 * points_.size());
-    for (double& v : a) v = gauss_(rng_);
+    std::vector<double> a;
+    while (a.size() < 3 * points_.size()) a.push_back(gauss_(rng_));
     return a;
   }
 
