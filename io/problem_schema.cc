@@ -690,8 +690,8 @@ Keys SolverKeys() {
           .UsedBy(kUsedBySolve),
       Row("solver.seed",
           "Seed of a render's noise; in a solve, of the samples behind the "
-          "expected error and of the network's first weights alone: equal "
-          "results of two seeds say nothing of robustness.")
+          "expected error and of the network's first weights alone. Equal "
+          "results are no sign of robustness.")
           .Integer(0, std::numeric_limits<int64_t>::max(), "")
           .Without("that of `--seed`")};
 }
