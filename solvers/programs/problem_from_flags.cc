@@ -111,20 +111,27 @@ std::string MovedPath(const std::string& path, const std::string& out) {
   return here.lexically_relative(folder).string();
 }
 
+// Of a node that holds the name of a file.
+void MovePath(const std::string& out, ConfigNode* node) {
+  if (node->kind != ConfigNode::Kind::kScalar || node->scalar.empty()) return;
+  node->scalar = MovedPath(node->scalar, out);
+  node->quoted = true;
+}
+
 // Paths of the tree, relative to the current folder, as seen from `out`.
 void MovePaths(const std::string& out, ConfigNode* root) {
   for (const ProblemKey& key : ProblemFileSchema().keys) {
-    if (key.type != ValueType::kPath && key.type != ValueType::kPathOrMap) {
+    if (key.type != ValueType::kPath && key.type != ValueType::kPathOrMap &&
+        key.type != ValueType::kPathList) {
       continue;
     }
     ConfigNode* const node = At(root, key.path, false);
-    if (node == nullptr || node->kind != ConfigNode::Kind::kScalar ||
-        node->scalar.empty() ||
+    if (node == nullptr ||
         (!key.default_value.empty() && node->scalar == key.default_value)) {
       continue;
     }
-    node->scalar = MovedPath(node->scalar, out);
-    node->quoted = true;
+    MovePath(out, node);
+    for (ConfigNode& item : node->items) MovePath(out, &item);
   }
 }
 

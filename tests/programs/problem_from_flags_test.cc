@@ -89,6 +89,18 @@ TEST(ProblemFromFlags, PathsOfOverridesAreAsThoseOfFlags) {
   EXPECT_EQ(std::string::npos, made->text.find("../default"));
 }
 
+TEST(ProblemFromFlags, PathsOfListsFollowTheFolderToo) {
+  ProblemFlags flags = Flags();
+  flags.photo = "a.png";
+  flags.overrides = {"image.brackets=[b.png, /c.png]",
+                     "image.bracket_exposures=[0.1, 10]"};
+  const StatusOr<FlagProblem> made = ProblemFromFlags(flags);
+  ASSERT_TRUE(made.ok()) << made.status().message();
+  EXPECT_EQ((std::vector<std::string>{"b.png", "/c.png"}),
+            made->problem.image.brackets);
+  EXPECT_NE(std::string::npos, made->text.find("[\"../b.png\", \"/c.png\"]"));
+}
+
 TEST(ProblemFromFlags, NoShapeIsASphereAndSaysSo) {
   ProblemFlags flags = Flags();
   flags.normals.clear();
