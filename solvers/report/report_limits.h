@@ -2,13 +2,18 @@
 #pragma once
 #include <cstdint>
 
+#include "ibrdf/solvers/report/solved_problem.h"
+
 namespace ibrdf {
 
 // A misfit above this is more than noise and the lobes' limits explain
 // (experiments/joint_grid).
 inline constexpr double kLargeMisfit = 0.1;
-// Share of the time limit from which on the last stage was cut short.
-inline constexpr double kTimeShare = 0.8;
+// Whether the last stage was cut short: from this share of the limit on.
+inline bool IsOutOfTime(const SolvedProblem& solved) {
+  constexpr double kTimeShare = 0.8;
+  return solved.metrics.seconds > kTimeShare * solved.problem.solver.seconds;
+}
 // Another reflectance counts as an explanation of its own within a factor of
 // 20 of the evidence and beyond a tenth in the logarithm.
 inline constexpr double kRivalCost = 3.0;

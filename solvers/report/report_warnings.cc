@@ -27,10 +27,6 @@ std::string StatusWarning(const Status& status) {
   }
 }
 
-bool IsOutOfTime(const SolvedProblem& solved) {
-  return solved.metrics.seconds > kTimeShare * solved.problem.solver.seconds;
-}
-
 std::string TimeWarning(const SolvedProblem& solved) {
   if (!IsOutOfTime(solved)) return "";
   return "The time limit of " + ShortNumber(solved.problem.solver.seconds) +

@@ -377,8 +377,7 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
   VerdictNumbers n;
   n.kind = solved.problem.kind;
   n.status = solution.status.code();
-  n.out_of_time =
-      solved.metrics.seconds > kTimeShare * solved.problem.solver.seconds;
+  n.out_of_time = IsOutOfTime(solved);
   n.misfit = solved.metrics.misfit;
   n.object_pixels = static_cast<int64_t>(solved.inverse.points.size());
   n.used_pixels = solution.pixels_used;

@@ -7,6 +7,7 @@
 
 #include "ibrdf/image/response_curve.h"
 #include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/file_extension.h"
 #include "tests/support/photo_files.h"
 #include "tests/support/temp_dir.h"
 
@@ -113,22 +114,18 @@ void Tiff(const YAML::Node& recipe, const Image& image,
   WriteTiff(path, {spec});
 }
 
-bool EndsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() &&
-         text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 }  // namespace
 
 Status MakePhotograph(const YAML::Node& codes, const Image& image,
                       const std::string& path) {
   const StatusOr<std::vector<uint16_t>> encoded = Encode(codes, image);
   if (!encoded.ok()) return encoded.status();
-  if (EndsWith(path, ".tif")) {
+  const std::string format = FileExtension(path);
+  if (format == "tif") {
     Tiff(codes, image, *encoded, path);
-  } else if (EndsWith(path, ".png")) {
+  } else if (format == "png") {
     WriteBytes(path, Png(codes, image, *encoded));
-  } else if (EndsWith(path, ".jpg")) {
+  } else if (format == "jpg") {
     WriteBytes(path, Jpeg(codes, image, *encoded));
   } else {
     return InvalidInput("recipe", path + ": expected .png, .jpg or .tif");

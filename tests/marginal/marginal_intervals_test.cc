@@ -47,68 +47,8 @@ LogRadianceData Mixed(const std::vector<double>& y) {
   return data;
 }
 
-double Cost(const LogRadianceData& data, const std::array<RowMatrix, 3>& T,
-            const LightHyperparameters& hyperparameters,
-            MarginalGradient* gradient, int directional_lights = 0,
-            double sigma = 0.1) {
-  const MarginalLikelihood likelihood =
-      Likelihood(data, Proper(), directional_lights);
-  LightMode mode;
-  mode.l = mode.representers =
-      Eigen::VectorXd::Zero(3 * likelihood.num_sources());
-  const MarginalValue value = likelihood.Evaluate(
-      T, Noise(sigma, static_cast<int>(data.value.size() / 3)), hyperparameters,
-      kTight, &mode, gradient);
-  EXPECT_TRUE(value.ok);
-  return value.cost;
-}
-
 TEST(MarginalIntervals, GradientMatchesDifferences) {
-  for (const auto& [width, directional_lights] :
-       {std::pair(0.3, 0), std::pair(1.0, 0), std::pair(0.3, 2)}) {
-    const std::array<RowMatrix, 3> T =
-        Lobes(width, kPoints, directional_lights);
-    std::vector<double> y =
-        LogRadiance(T, DrawLight(Proper(), 1.0, 2, directional_lights));
-    for (size_t i = 0; i < y.size(); ++i) y[i] += 0.2 * std::sin(5.0 * i);
-    const LogRadianceData data = Mixed(y);
-    const auto cost = [&, lights = directional_lights](
-                          const std::array<RowMatrix, 3>& matrices,
-                          const LightHyperparameters& at,
-                          MarginalGradient* gradient) {
-      return Cost(data, matrices, at, gradient, lights);
-    };
-    MarginalGradient gradient;
-    const LightHyperparameters hyperparameters = Rough();
-    cost(T, hyperparameters, &gradient);
-    const double h = 1e-3;
-    for (int k = 0; k < LightHyperparameters::kCount; ++k) {
-      const double numeric = (cost(T, Moved(hyperparameters, k, h), nullptr) -
-                              cost(T, Moved(hyperparameters, k, -h), nullptr)) /
-                             (2 * h);
-      EXPECT_NEAR(numeric, gradient.hyperparameters[k],
-                  1e-3 * std::abs(gradient.hyperparameters[k]) + 1e-3)
-          << k;
-    }
-    std::mt19937_64 rng(1);
-    std::normal_distribution<double> g;
-    for (int trial = 0; trial < 4; ++trial) {
-      std::array<RowMatrix, 3> up = T, down = T;
-      double expected = 0.0;
-      for (int c = 0; c < 3; ++c) {
-        const RowMatrix direction =
-            T[c].unaryExpr([&](double t) { return t * g(rng); });
-        up[c] += h * direction;
-        down[c] -= h * direction;
-        expected += gradient.matrices[c].cwiseProduct(direction).sum();
-      }
-      EXPECT_NEAR((cost(up, hyperparameters, nullptr) -
-                   cost(down, hyperparameters, nullptr)) /
-                      (2 * h),
-                  expected, 2e-3 * std::abs(expected) + 2e-3)
-          << width;
-    }
-  }
+  ExpectGradientMatches(Mixed);
 }
 
 // The integral itself, by drawing light from the prior.
