@@ -146,18 +146,18 @@ class EvidenceStudy {
   struct Descent {
     MarginalDescent summary;
     MarginalValue value;
-    Eigen::VectorXd noise;  // taken at the start
+    DataErrors errors;  // taken at the start
     Point end;
   };
   Descent DescendFrom(const MarginalReflectance& fine, const Point& start,
                       int iterations, double least_gain) const {
     Descent descent;
     LightMode mode;
-    descent.noise = fine.likelihood().FindNoise(
-        fine.Matrices(fine.WithDirectionalLights(start.lobes).data()),
+    descent.errors = fine.likelihood().FindErrors(
+        fine.Matrices(fine.WithDirectionalLights(start.lobes).data()), {},
         options_.sigma, start.hyperparameters,
         MarginalObjective::kModeTolerance, &mode);
-    const MarginalObjective objective(&fine, &prior_, descent.noise, &mode);
+    const MarginalObjective objective(&fine, &prior_, descent.errors, &mode);
     std::vector<double> y = objective.Whitened(
         fine.WithDirectionalLights(start.lobes), start.hyperparameters);
     MarginalDescentOptions o;
@@ -185,14 +185,14 @@ class EvidenceStudy {
         "noise %.4f  BRDF aligned %.3f\n",
         what, here.summary.cost, here.value.cost,
         here.summary.cost - here.value.cost, here.value.misfit,
-        here.noise.cwiseSqrt().mean(),
+        here.errors.noise.cwiseSqrt().mean(),
         metrics.ok() ? metrics->log_rmse_aligned : std::nan(""));
     const LightHyperparameters& light = point.hyperparameters;
     std::printf("  %-10s light: log amplitude %.2f, log roughness", "",
                 light.log_amplitude);
     for (const double r : light.log_roughness) std::printf(" %.2f", r);
     std::printf("\n");
-    if (study_.texel_noise) SweepTexelNoise(fine, point, here.noise);
+    if (study_.texel_noise) SweepTexelNoise(fine, point, here.errors.noise);
     std::fflush(stdout);  // one problem takes half a minute
   }
 
@@ -215,7 +215,7 @@ class EvidenceStudy {
     for (const double factor : kTexelNoise) {
       LightMode mode;
       const MarginalValue value = fine.likelihood().Evaluate(
-          matrices, (own + factor * (noise.array() - own)).matrix(),
+          matrices, {(own + factor * (noise.array() - own)).matrix(), {}},
           point.hyperparameters, MarginalObjective::kModeTolerance, &mode,
           nullptr);
       std::printf("  %.2f %.1f", factor, value.cost);

@@ -37,7 +37,7 @@ MarginalLikelihood::GradientOfDeterminant(const Given& given,
       out.inverse.block(c * P, d * P, P, P) = block;
     }
   }
-  out.by_l.resize(3 * n);
+  out.by_l.setZero(num_latents());
   out.rough_share = Eigen::VectorXd::Zero(t);
   for (int c = 0; c < 3; ++c) {
     RowMatrix sum = RowMatrix::Zero(P, t),
@@ -95,7 +95,8 @@ double MarginalLikelihood::NoiseShare(const Given& given,
 
 void MarginalLikelihood::GradientByMatrices(
     const Point& point, const DataTerm& data, const Eigen::VectorXd& v,
-    const Eigen::VectorXd& Jv, DeterminantGradient* determinant,
+    const Eigen::VectorXd& Jv, const Eigen::VectorXd& Jv_light,
+    DeterminantGradient* determinant,
     std::array<RowMatrix, 3>* gradient) const {
   const Eigen::Index n = num_sources(), P = num_points_;
   for (int c = 0; c < 3; ++c) {
@@ -103,12 +104,14 @@ void MarginalLikelihood::GradientByMatrices(
     const Eigen::ArrayXd slope = data.slope.segment(c * P, P).array();
     const Eigen::ArrayXd curvature = data.curvature.segment(c * P, P).array();
     const Eigen::ArrayXd Jv_c = Jv.segment(c * P, P).array();
+    const Eigen::ArrayXd of_light = Jv_light.segment(c * P, P).array();
     const Eigen::ArrayXd inverse_L_o =
-        point.L_o.segment(c * P, P).array().inverse();
+        point.unpainted.segment(c * P, P).array().inverse();
     RowMatrix& out = (*gradient)[c];
     out = std::move(determinant->G[c]);
-    // d(grad_l Phi) . v in T is that of -(J v) . slope.
-    out.colwise() -= (slope + Jv_c * slope + Jv_c * curvature).matrix();
+    // d(grad_l Phi) . v in T is that of -(J v) . slope; T moves the light's
+    // part of J alone.
+    out.colwise() -= (slope + of_light * slope + Jv_c * curvature).matrix();
     if (determinant->by_log_radiance.size() > 0) {
       out.colwise() += determinant->by_log_radiance.segment(c * P, P);
     }
@@ -152,8 +155,10 @@ void MarginalLikelihood::AddGradient(const Given& given, const LightMode& mode,
   const Eigen::VectorXd w = SolveHessian(given, point, data, linear,
                                          kMotionTolerance, determinant.by_l);
   const Eigen::VectorXd v = ApplyCovariance(given.light, w);
-  GradientByMatrices(point, data, v, ApplyJacobian(linear, v), &determinant,
-                     &gradient->matrices);
+  const Eigen::VectorXd Jv = ApplyJacobian(linear, v);
+  GradientByMatrices(point, data, v, Jv,
+                     has_paint() ? LightJacobianTimes(given, point, v) : Jv,
+                     &determinant, &gradient->matrices);
 
   // K_a is what the covariance's derivative by a hyperparameter makes of the
   // representers; `trace` is tr(A^-1 J K_a J^T).

@@ -35,7 +35,7 @@ MarginalLikelihood::MarginalLikelihood(LogRadianceData data,
                                        const LightProcess& process,
                                        int map_height, int map_width,
                                        int num_directional_lights,
-                                       int num_threads)
+                                       int num_threads, Eigen::MatrixXd paint)
     : num_points_(static_cast<int>(data.value.size() / 3)),
       y_(ToEigen(data.value)),
       low_(ToEigen(data.low)),
@@ -54,8 +54,10 @@ MarginalLikelihood::MarginalLikelihood(LogRadianceData data,
       smooth_share_(process.smooth_share),
       rough_share_(process.rough_share),
       texel_variance_(process.VarianceWithin(180.0 / map_height)),
+      paint_(std::move(paint)),
       num_threads_(num_threads) {
   CHECK_GT(num_points_, 0);
+  CHECK(paint_.size() == 0 || paint_.rows() == 3 * num_points_);
   CHECK_EQ(y_.size() % 3, 0);
   CHECK(low_.size() == high_.size());
   CHECK(low_.size() == 0 || low_.size() == y_.size());
@@ -68,9 +70,12 @@ MarginalLikelihood::Light MarginalLikelihood::LightAt(
 }
 
 MarginalLikelihood::Given MarginalLikelihood::GivenBy(
-    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
     const LightHyperparameters& hyperparameters) const {
-  return {matrices, noise, noise.cwiseInverse(), LightAt(hyperparameters)};
+  CHECK_EQ(errors.noise.size(), y_.size());
+  CHECK_EQ(errors.matte_share.size(), has_paint() ? y_.size() : 0);
+  return {matrices, errors.noise, errors.matte_share,
+          errors.noise.cwiseInverse(), LightAt(hyperparameters)};
 }
 
 double MarginalLikelihood::LevelFor(
@@ -88,11 +93,12 @@ Eigen::VectorXd MarginalLikelihood::NoiseVariance(
     const std::array<RowMatrix, 3>& matrices, double sigma,
     const LightMode& mode) const {
   const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
-  const Point point = At(matrices, mode.level, mode.l);
+  const Eigen::VectorXd L = Radiance(mode.level, mode.l);
+  const Eigen::VectorXd L_o = Transported(matrices, L);
   Eigen::VectorXd noise(3 * P);
   for (int c = 0; c < 3; ++c) {
     const Eigen::VectorXd power =
-        texel_variance_ * point.L.segment(c * n, t).cwiseAbs2();
+        texel_variance_ * L.segment(c * n, t).cwiseAbs2();
     for (Eigen::Index p = 0; p < P; ++p) {
       const double* T = matrices[c].row(p).data();
       double sum = 0.0;
@@ -107,21 +113,37 @@ Eigen::VectorXd MarginalLikelihood::NoiseVariance(
           if (r + 1 < map_height_) add(row + x, row + map_width_ + x);
         }
       }
-      const double L_o = point.L_o[c * P + p];
-      noise[c * P + p] = sigma * sigma + 0.125 * sum / (L_o * L_o);
+      const double of_point = L_o[c * P + p];
+      noise[c * P + p] = sigma * sigma + 0.125 * sum / (of_point * of_point);
     }
   }
   return noise;
 }
 
-Eigen::VectorXd MarginalLikelihood::FindNoise(
-    const std::array<RowMatrix, 3>& matrices, double sigma,
+Eigen::VectorXd MarginalLikelihood::MatteShare(
+    const std::array<RowMatrix, 3>& matrices,
+    const std::array<RowMatrix, 3>& matte, const LightMode& mode) const {
+  const Eigen::VectorXd L = Radiance(mode.level, mode.l);
+  return Transported(matte, L).cwiseQuotient(Transported(matrices, L));
+}
+
+DataErrors MarginalLikelihood::FindErrors(
+    const std::array<RowMatrix, 3>& matrices,
+    const std::array<RowMatrix, 3>& matte, double sigma,
     const LightHyperparameters& hyperparameters, double tolerance,
     LightMode* mode) const {
-  const Eigen::VectorXd first =
+  DataErrors errors;
+  errors.noise =
       Eigen::VectorXd::Constant(y_.size(), kFirstSigma * kFirstSigma);
-  Evaluate(matrices, first, hyperparameters, tolerance, mode, nullptr);
-  return NoiseVariance(matrices, sigma, *mode);
+  if (has_paint()) {
+    LightMode constant;
+    constant.l = Eigen::VectorXd::Zero(3 * num_sources());
+    errors.matte_share = MatteShare(matrices, matte, constant);
+  }
+  Evaluate(matrices, errors, hyperparameters, tolerance, mode, nullptr);
+  errors.noise = NoiseVariance(matrices, sigma, *mode);
+  if (has_paint()) errors.matte_share = MatteShare(matrices, matte, *mode);
+  return errors;
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyLocal(const Light& light,
@@ -156,26 +178,47 @@ Eigen::VectorXd MarginalLikelihood::ApplyCovariance(
   by_channel.rightCols(num_directional_lights_) +=
       directional_light_ * in.rightCols(num_directional_lights_);
   by_channel.colwise() += level_ * in.rowwise().sum();
+  if (has_paint()) {
+    out.tail(y_.size()).noalias() = paint_ * g.tail(y_.size());
+  }
   return out;
 }
 
-MarginalLikelihood::Point MarginalLikelihood::At(
-    const std::array<RowMatrix, 3>& matrices, double level,
-    const Eigen::VectorXd& l) const {
+Eigen::VectorXd MarginalLikelihood::PaintOf(const Eigen::VectorXd& l) const {
+  return has_paint() ? Eigen::VectorXd(l.tail(y_.size())) : Eigen::VectorXd();
+}
+
+Eigen::VectorXd MarginalLikelihood::Radiance(double level,
+                                             const Eigen::VectorXd& l) const {
+  return (l.head(Eigen::Index{3} * num_sources()).array() + level)
+      .min(kMaxLogRadianceInDouble)
+      .exp();
+}
+
+Eigen::VectorXd MarginalLikelihood::Transported(
+    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& L) const {
   const Eigen::Index n = num_sources(), P = num_points_;
-  Point point;
-  point.L = (l.array() + level).min(kMaxLogRadianceInDouble).exp();
-  point.L_o.resize(3 * P);
+  Eigen::VectorXd L_o(3 * P);
   for (int c = 0; c < 3; ++c) {
-    point.L_o.segment(c * P, P) =
-        MultiplyVector(matrices[c], point.L.segment(c * n, n));
+    L_o.segment(c * P, P) = MultiplyVector(matrices[c], L.segment(c * n, n));
   }
-  point.L_o = point.L_o.cwiseMax(kSmallestRadiance);
-  point.residual = y_ - point.L_o.array().log().matrix();
+  return L_o.cwiseMax(kSmallestRadiance);
+}
+
+MarginalLikelihood::Point MarginalLikelihood::At(
+    const Given& given, double level, const Eigen::VectorXd& l) const {
+  Point point;
+  point.L = Radiance(level, l);
+  point.unpainted = Transported(given.matrices, point.L);
+  point.log_L_o = point.unpainted.array().log();
+  if (has_paint()) {
+    point.log_L_o += given.matte_share.cwiseProduct(PaintOf(l));
+  }
+  point.residual = y_ - point.log_L_o;
   for (Eigen::Index p = 0; p < low_.size(); ++p) {
     if (low_[p] == high_[p]) continue;
-    const double log_L_o = std::log(point.L_o[p]);
-    point.residual[p] = std::clamp(log_L_o, low_[p], high_[p]) - log_L_o;
+    point.residual[p] =
+        std::clamp(point.log_L_o[p], low_[p], high_[p]) - point.log_L_o[p];
   }
   return point;
 }
@@ -196,7 +239,7 @@ MarginalLikelihood::DataTerm MarginalLikelihood::DataAt(
       continue;
     }
     const IntervalLikelihood of = EvaluateInterval(
-        low_[p], high_[p], std::log(point.L_o[p]), std::sqrt(given.noise[p]));
+        low_[p], high_[p], point.log_L_o[p], std::sqrt(given.noise[p]));
     data.cost += of.cost;
     data.slope[p] = of.slope;
     data.curvature[p] = of.curvature;
@@ -213,10 +256,11 @@ MarginalLikelihood::Linearise(const Given& given, const Point& point,
   auto linear = std::make_unique<Linearisation>();
   ParallelFor(3, num_threads_, [&](int64_t c, int) {
     linear->jacobian[c] =
-        point.L_o.segment(c * P, P).cwiseInverse().asDiagonal() *
+        point.unpainted.segment(c * P, P).cwiseInverse().asDiagonal() *
         given.matrices[c] * point.L.segment(c * n, n).asDiagonal();
     light.correlation.Multiply(linear->jacobian[c].leftCols(t), &linear->JC[c]);
   });
+  linear->matte_share = given.matte_share;
   linear->row_scale = Eigen::VectorXd::Ones(3 * P);
   linear->diagonal = given.noise;
   for (Eigen::Index p = 0; p < low_.size(); ++p) {
@@ -236,12 +280,22 @@ MarginalLikelihood::Linearise(const Given& given, const Point& point,
              DirectionalLightBlock(*linear, c, d))
                 .array() +
             level_(c, d);
+    AddPaintBlock(linear->matte_share, c, d, &block);
     ScaleBlock(*linear, c, d, &block);
     A.block(c * P, d * P, P, P) = block;
   });
   A.diagonal() += linear->diagonal;
   if (!A.allFinite() || !Factorise(&A)) return nullptr;
   return linear;
+}
+
+void MarginalLikelihood::AddPaintBlock(const Eigen::VectorXd& matte_share,
+                                       int c, int d, RowMatrix* block) const {
+  if (!has_paint()) return;
+  const Eigen::Index P = num_points_;
+  *block += matte_share.segment(c * P, P).asDiagonal() *
+            paint_.block(c * P, d * P, P, P) *
+            matte_share.segment(d * P, P).asDiagonal();
 }
 
 void MarginalLikelihood::ScaleBlock(const Linearisation& linear, int c, int d,
@@ -269,7 +323,9 @@ RowMatrix MarginalLikelihood::UnscaledBlock(const Linearisation& linear, int c,
   RowMatrix block = DirectionalLightBlock(linear, c, d);
   block.noalias() += local_(c, d) * step(c) * step(d).transpose();
   // The rows of a Jacobian sum to 1: a level moves log radiance as it is.
-  return block.array() + level_(c, d);
+  block.array() += level_(c, d);
+  AddPaintBlock(linear.matte_share, c, d, &block);
+  return block;
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyJacobian(
@@ -280,17 +336,19 @@ Eigen::VectorXd MarginalLikelihood::ApplyJacobian(
     out.segment(c * P, P) =
         MultiplyVector(linear.jacobian[c], l.segment(c * n, n));
   }
+  if (has_paint()) out += linear.matte_share.cwiseProduct(PaintOf(l));
   return out;
 }
 
 Eigen::VectorXd MarginalLikelihood::ApplyJacobianTransposed(
     const Linearisation& linear, const Eigen::VectorXd& a) const {
   const Eigen::Index n = num_sources(), P = num_points_;
-  Eigen::VectorXd out(3 * n);
+  Eigen::VectorXd out(num_latents());
   for (int c = 0; c < 3; ++c) {
     out.segment(c * n, n) =
         MultiplyTransposedVector(linear.jacobian[c], a.segment(c * P, P));
   }
+  if (has_paint()) out.tail(3 * P) = linear.matte_share.cwiseProduct(a);
   return out;
 }
 
@@ -303,22 +361,22 @@ Eigen::VectorXd MarginalLikelihood::SolveRepresenters(
   return x - ApplyJacobianTransposed(linear, linear.row_scale.cwiseProduct(a));
 }
 
-Eigen::VectorXd MarginalLikelihood::JacobianTimes(
+Eigen::VectorXd MarginalLikelihood::LightJacobianTimes(
     const Given& given, const Point& point, const Eigen::VectorXd& v) const {
   const Eigen::Index n = num_sources(), P = num_points_;
-  const Eigen::VectorXd dL = point.L.cwiseProduct(v);
+  const Eigen::VectorXd dL = point.L.cwiseProduct(v.head(3 * n));
   Eigen::VectorXd out(3 * P);
   for (int c = 0; c < 3; ++c) {
     out.segment(c * P, P) =
         MultiplyVector(given.matrices[c], dL.segment(c * n, n));
   }
-  return out.cwiseQuotient(point.L_o);
+  return out.cwiseQuotient(point.unpainted);
 }
 
-Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
+Eigen::VectorXd MarginalLikelihood::LightJacobianTransposedTimes(
     const Given& given, const Point& point, const Eigen::VectorXd& a) const {
   const Eigen::Index n = num_sources(), P = num_points_;
-  const Eigen::VectorXd dL_o = a.cwiseQuotient(point.L_o);
+  const Eigen::VectorXd dL_o = a.cwiseQuotient(point.unpainted);
   Eigen::VectorXd out(3 * n);
   for (int c = 0; c < 3; ++c) {
     out.segment(c * n, n) =
@@ -327,14 +385,35 @@ Eigen::VectorXd MarginalLikelihood::JacobianTransposedTimes(
   return out.cwiseProduct(point.L);
 }
 
-// H = K^-1 + J^T W J + C, C = -sum_p slope_p (diag(J_p) - J_p J_p^T).
+// H = K^-1 + J^T W J + C; C is the light's alone, J_l its part of J:
+// C = -sum_p slope_p (diag(J_l,p) - J_l,p J_l,p^T).
+Eigen::VectorXd MarginalLikelihood::HessianTimes(
+    const Given& given, const Point& point, const DataTerm& data,
+    const Eigen::VectorXd& curvature, const Eigen::VectorXd& representers,
+    const Eigen::VectorXd& p) const {
+  const Eigen::Index sources = Eigen::Index{3} * num_sources();
+  Eigen::VectorXd out = representers;
+  const Eigen::VectorXd of_light = LightJacobianTimes(given, point, p);
+  Eigen::VectorXd by_light =
+      (data.curvature + data.slope).cwiseProduct(of_light);
+  if (has_paint()) {
+    const Eigen::VectorXd of_paint = given.matte_share.cwiseProduct(PaintOf(p));
+    by_light += data.curvature.cwiseProduct(of_paint);
+    out.tail(y_.size()) += given.matte_share.cwiseProduct(
+        data.curvature.cwiseProduct(of_light + of_paint));
+  }
+  out.head(sources) -= curvature.cwiseProduct(p.head(sources));
+  out.head(sources) += LightJacobianTransposedTimes(given, point, by_light);
+  return out;
+}
+
 // Vectors come in pairs: x and, where x = K x', its representers x'.
 Eigen::VectorXd MarginalLikelihood::SolveHessian(
     const Given& given, const Point& point, const DataTerm& data,
     const Linearisation& linear, double tolerance,
     const Eigen::VectorXd& x) const {
   const Eigen::VectorXd curvature =
-      JacobianTransposedTimes(given, point, data.slope);
+      LightJacobianTransposedTimes(given, point, data.slope);
   Eigen::VectorXd w = Eigen::VectorXd::Zero(x.size()), rest = x, p_representers,
                   p;
   double rho = 0.0, first_rho = 0.0;
@@ -351,11 +430,8 @@ Eigen::VectorXd MarginalLikelihood::SolveHessian(
                : Eigen::VectorXd(z_representers + beta * p_representers);
     p = k == 0 ? z : Eigen::VectorXd(z + beta * p);
     rho = next_rho;
-    const Eigen::VectorXd Jp = JacobianTimes(given, point, p);
     const Eigen::VectorXd Hp =
-        p_representers - curvature.cwiseProduct(p) +
-        JacobianTransposedTimes(given, point,
-                                (data.curvature + data.slope).cwiseProduct(Jp));
+        HessianTimes(given, point, data, curvature, p_representers, p);
     const double square = p.dot(Hp);
     if (!(square > 0.0)) {
       // Not convex here: the preconditioner's direction descends all the same.
@@ -372,19 +448,23 @@ MarginalLikelihood::Point MarginalLikelihood::FirstPoint(
     const Given& given, LightMode* mode) const {
   if (mode->l.size() == 0) {
     mode->level = LevelFor(given.matrices);
-    mode->l = mode->representers = Eigen::VectorXd::Zero(3 * num_sources());
+    mode->l = mode->representers = Eigen::VectorXd::Zero(num_latents());
   } else {
     mode->l = ApplyCovariance(given.light, mode->representers);
   }
-  return At(given.matrices, mode->level, mode->l);
+  return At(given, mode->level, mode->l);
 }
 
 // The step's quadratic model of the cost promises `promise` / 2.
 MarginalLikelihood::NewtonStep MarginalLikelihood::FindNewtonStep(
     const Given& given, const Linearisation& linear, const Point& point,
     const DataTerm& data, const LightMode& mode) const {
-  const Eigen::VectorXd slope =
-      mode.representers - JacobianTransposedTimes(given, point, data.slope);
+  Eigen::VectorXd slope = mode.representers;
+  slope.head(Eigen::Index{3} * num_sources()) -=
+      LightJacobianTransposedTimes(given, point, data.slope);
+  if (has_paint()) {
+    slope.tail(y_.size()) -= given.matte_share.cwiseProduct(data.slope);
+  }
   NewtonStep step;
   step.representers =
       -SolveHessian(given, point, data, linear, kNewtonTolerance, slope);
@@ -401,12 +481,12 @@ double MarginalLikelihood::TakeStep(const Given& given, const NewtonStep& step,
                square = step.representers.dot(step.l);
   const auto try_step = [&](double s) {
     const Eigen::VectorXd l = mode->l + s * step.l;
-    Point trial = At(given.matrices, mode->level, l);
+    Point trial = At(given, mode->level, l);
     DataTerm trial_data = DataAt(given, trial);
     const double gain =
         data->cost - trial_data.cost - s * cross - 0.5 * s * s * square;
     const bool accepted =
-        trial.L_o.minCoeff() > kSmallestRadiance &&
+        trial.unpainted.minCoeff() > kSmallestRadiance &&
         gain >= kPromisedShare * s * (1.0 - 0.5 * s) * step.promise;
     if (accepted) {
       mode->representers += s * step.representers;
@@ -443,11 +523,11 @@ bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
 }
 
 MarginalValue MarginalLikelihood::Evaluate(
-    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, double tolerance,
     LightMode* mode, MarginalGradient* gradient) const {
   MarginalValue value;
-  const Given given = GivenBy(matrices, noise, hyperparameters);
+  const Given given = GivenBy(matrices, errors, hyperparameters);
   if (!given.weight.allFinite() || !std::isfinite(given.light.amplitude) ||
       !Roughness(map_height_, hyperparameters).cwiseAbs2().allFinite()) {
     return value;
@@ -455,7 +535,7 @@ MarginalValue MarginalLikelihood::Evaluate(
   Point point = FirstPoint(given, mode);
   // Nothing but black: no light explains an image of it.
   if (!point.residual.allFinite() ||
-      !(point.L_o.minCoeff() > kSmallestRadiance)) {
+      !(point.unpainted.minCoeff() > kSmallestRadiance)) {
     return value;
   }
   DataTerm data = DataAt(given, point);

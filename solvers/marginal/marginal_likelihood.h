@@ -23,8 +23,18 @@ namespace ibrdf {
 // Sources are the map's texels, then directional lights.
 struct LightMode {
   double level = 0.0;  // m, of all three channels
-  Eigen::VectorXd l;   // [3 * sources], channel by channel; empty: none yet
-  Eigen::VectorXd representers;  // [3 * sources]
+  // [3 * sources], channel by channel, then with paint its log albedo
+  // [3 * points]; empty: none yet.
+  Eigen::VectorXd l;
+  Eigen::VectorXd representers;  // as l
+};
+
+// What separates an image from the radiance that a reflectance gives.
+struct DataErrors {
+  Eigen::VectorXd noise;  // diagonal of D [3 * points], > 0
+  // The share of the radiance that paint scales, m [3 * points] in [0, 1];
+  // empty where there is no paint.
+  Eigen::VectorXd matte_share;
 };
 
 // What an image says of log radiance [3 * points], channel by channel.
@@ -57,6 +67,11 @@ struct MarginalValue {
 //
 // D is diagonal and the caller's, see NoiseVariance.
 //
+// With paint, log L_o is log(T exp(m + l)) + matte_share * a, a the log albedo
+// of the points relative to their material's: a ~ N(0, K_a) is integrated out
+// with the light, as more of l. The share is held where it was found, so a is
+// linear here, and A gets matte_share K_a matte_share.
+//
 // A datum of which an interval is known has -log of the probability that N(log
 // L_o, D) lies in it in place of (y - log L_o)^2 / (2 D): IntervalLikelihood,
 // whose slope takes the place of (y - log L_o) / D and whose curvature W that
@@ -66,23 +81,30 @@ struct MarginalValue {
 // Immutable; may be used from several threads.
 class MarginalLikelihood {
  public:
+  // paint: K_a [3 * points]^2, channel by channel, positive semidefinite;
+  // empty: none.
   MarginalLikelihood(LogRadianceData data, const LightProcess& process,
                      int map_height, int map_width, int num_directional_lights,
-                     int num_threads);
+                     int num_threads, Eigen::MatrixXd paint = {});
 
   int num_points() const { return num_points_; }
   int num_texels() const { return map_height_ * map_width_; }
   int num_directional_lights() const { return num_directional_lights_; }
   int num_sources() const { return num_texels() + num_directional_lights_; }
+  bool has_paint() const { return paint_.size() > 0; }
+  // Of LightMode: of the light and, with paint, of the points.
+  Eigen::Index num_latents() const {
+    return Eigen::Index{3} * num_sources() + (has_paint() ? y_.size() : 0);
+  }
 
   // matrices: T_c [points][sources], >= 0, of the reflectance in channel c;
-  // noise: the diagonal of D [3 * points], > 0; hyperparameters: of the
+  // errors: with a matte share where there is paint; hyperparameters: of the
   // process. `mode` is where the search starts, if it holds one, and receives
   // the mode, found where another step would gain less than `tolerance` nats;
   // gradient may be null. The gradient is of the whole cost, the mode's own
   // motion included.
   MarginalValue Evaluate(const std::array<RowMatrix, 3>& matrices,
-                         const Eigen::VectorXd& noise,
+                         const DataErrors& errors,
                          const LightHyperparameters& hyperparameters,
                          double tolerance, LightMode* mode,
                          MarginalGradient* gradient) const;
@@ -96,7 +118,7 @@ class MarginalLikelihood {
   // J K_b J^T) / 2, K_a the derivative of K by scale a. Positive semidefinite.
   // Empty where A is not positive definite.
   Eigen::MatrixXd Information(const std::array<RowMatrix, 3>& matrices,
-                              const Eigen::VectorXd& noise,
+                              const DataErrors& errors,
                               const LightHyperparameters& hyperparameters,
                               const LightMode& mode, const RowMatrix& G) const;
 
@@ -104,7 +126,7 @@ class MarginalLikelihood {
   // shows where a lobe changes within it,
   //   sigma^2 + 1 / L_o_p^2 sum_t v_t L_t^2 sum_n (T_pt - T_pn)^2 / 8,
   // n the four neighbours of t, v the process' variance inside a texel at its
-  // average hyperparameters, L and L_o those of `mode`. Small for a matte
+  // average hyperparameters, L and L_o = T L those of `mode`. Small for a matte
   // surface under soft light, v for a ray. A mirror is then not blamed for what
   // the map lacks, nor preferred for it. Were v to follow the estimated
   // hyperparameters, what they are taken for would be the noise that suits a
@@ -112,27 +134,36 @@ class MarginalLikelihood {
   Eigen::VectorXd NoiseVariance(const std::array<RowMatrix, 3>& matrices,
                                 double sigma, const LightMode& mode) const;
 
-  // NoiseVariance where no mode is known yet: at the one found, to `tolerance`
-  // nats, with independent deviations of 0.15. `mode` as in Evaluate.
-  Eigen::VectorXd FindNoise(const std::array<RowMatrix, 3>& matrices,
-                            double sigma,
-                            const LightHyperparameters& hyperparameters,
-                            double tolerance, LightMode* mode) const;
+  // The share of T L [3 * points] under the light of `mode` that is matte's,
+  // the matrices of the part that paint scales.
+  Eigen::VectorXd MatteShare(const std::array<RowMatrix, 3>& matrices,
+                             const std::array<RowMatrix, 3>& matte,
+                             const LightMode& mode) const;
+
+  // NoiseVariance and, with paint, MatteShare where no mode is known yet: at
+  // the one found, to `tolerance` nats, with independent deviations of 0.15 and
+  // the share under constant light. matte: not read without paint. `mode` as in
+  // Evaluate.
+  DataErrors FindErrors(const std::array<RowMatrix, 3>& matrices,
+                        const std::array<RowMatrix, 3>& matte, double sigma,
+                        const LightHyperparameters& hyperparameters,
+                        double tolerance, LightMode* mode) const;
 
   // The level at which constant light gives the image's mean log radiance.
   double LevelFor(const std::array<RowMatrix, 3>& matrices) const;
 
   // Diagonal of the posterior covariance of l [3 * texels] at the mode.
   Eigen::VectorXd LightVariance(const std::array<RowMatrix, 3>& matrices,
-                                const Eigen::VectorXd& noise,
+                                const DataErrors& errors,
                                 const LightHyperparameters& hyperparameters,
                                 const LightMode& mode) const;
 
  private:
   struct Point {
-    Eigen::VectorXd L;         // radiance [3 * sources]
-    Eigen::VectorXd L_o;       // [3 * points]
-    Eigen::VectorXd residual;  // y - log L_o, y the nearest of an interval
+    Eigen::VectorXd L;          // radiance [3 * sources]
+    Eigen::VectorXd unpainted;  // T L [3 * points]
+    Eigen::VectorXd log_L_o;    // [3 * points]
+    Eigen::VectorXd residual;   // y - log L_o, y the nearest of an interval
   };
   // What the data say at a point [3 * points].
   struct DataTerm {
@@ -153,6 +184,7 @@ class MarginalLikelihood {
   struct Given {
     const std::array<RowMatrix, 3>& matrices;  // T_c
     const Eigen::VectorXd& noise;              // D [3 * points]
+    const Eigen::VectorXd& matte_share;        // [3 * points] or empty
     Eigen::VectorXd weight;                    // D^-1
     Light light;
   };
@@ -160,7 +192,7 @@ class MarginalLikelihood {
   double Misfit(const Point& point) const;  // as MarginalValue's
   // Refers to its arguments.
   Given GivenBy(const std::array<RowMatrix, 3>& matrices,
-                const Eigen::VectorXd& noise,
+                const DataErrors& errors,
                 const LightHyperparameters& hyperparameters) const;
   // Weights of a band's log roughness [texels].
   Eigen::VectorXd BandWeights(int band) const;
@@ -187,11 +219,15 @@ class MarginalLikelihood {
     std::array<RowMatrix, 3> JC;        // that of texels * correlation
     // Of rows [3 * points]: 1 and D; of an interval's, W^1/2 and 1.
     Eigen::VectorXd row_scale, diagonal;
-    RowMatrix factor;  // of diagonal + row_scale J K J^T row_scale
+    RowMatrix factor;             // of diagonal + row_scale J K J^T row_scale
+    Eigen::VectorXd matte_share;  // [3 * points] or empty
   };
+  // exp(m + l) [3 * sources], and T L [3 * points], which it keeps above 0.
+  Eigen::VectorXd Radiance(double level, const Eigen::VectorXd& l) const;
+  Eigen::VectorXd Transported(const std::array<RowMatrix, 3>& matrices,
+                              const Eigen::VectorXd& L) const;
   // Radiance and residuals at l.
-  Point At(const std::array<RowMatrix, 3>& matrices, double level,
-           const Eigen::VectorXd& l) const;
+  Point At(const Given& given, double level, const Eigen::VectorXd& l) const;
   // Null where the normal equations are not positive definite.
   std::unique_ptr<const Linearisation> Linearise(const Given& given,
                                                  const Point& point,
@@ -217,12 +253,25 @@ class MarginalLikelihood {
   // The block of rows of channel c and columns of channel d, scaled as rows.
   static void ScaleBlock(const Linearisation& linear, int c, int d,
                          RowMatrix* block);
-  // J v and J^T a at a point, without its linearisation.
-  Eigen::VectorXd JacobianTimes(const Given& given, const Point& point,
-                                const Eigen::VectorXd& v) const;
-  Eigen::VectorXd JacobianTransposedTimes(const Given& given,
-                                          const Point& point,
-                                          const Eigen::VectorXd& a) const;
+  // The light's part of J v and J^T a [3 * sources] at a point, without its
+  // linearisation.
+  Eigen::VectorXd LightJacobianTimes(const Given& given, const Point& point,
+                                     const Eigen::VectorXd& v) const;
+  Eigen::VectorXd LightJacobianTransposedTimes(const Given& given,
+                                               const Point& point,
+                                               const Eigen::VectorXd& a) const;
+  // The Hessian of the first two terms times p = K representers; curvature:
+  // J_l^T slope.
+  Eigen::VectorXd HessianTimes(const Given& given, const Point& point,
+                               const DataTerm& data,
+                               const Eigen::VectorXd& curvature,
+                               const Eigen::VectorXd& representers,
+                               const Eigen::VectorXd& p) const;
+  // matte_share K_a matte_share, channels c and d; adds it.
+  void AddPaintBlock(const Eigen::VectorXd& matte_share, int c, int d,
+                     RowMatrix* block) const;
+  // The paint's part of l; empty: no paint.
+  Eigen::VectorXd PaintOf(const Eigen::VectorXd& l) const;
   // w with K w = H^-1 x, H the Hessian of the first two terms at the point, by
   // conjugate gradients preconditioned with a linearisation near it.
   Eigen::VectorXd SolveHessian(const Given& given, const Point& point,
@@ -256,9 +305,10 @@ class MarginalLikelihood {
   Eigen::VectorXd GradientThroughCurvature(const DataTerm& data,
                                            const RowMatrix& inverse) const;
   double NoiseShare(const Given& given, const RowMatrix& inverse) const;
-  // v: H^-1 by_l; Jv: J v. Takes G.
+  // v: H^-1 by_l; Jv: J v; Jv_light: the light's part of it. Takes G.
   void GradientByMatrices(const Point& point, const DataTerm& data,
                           const Eigen::VectorXd& v, const Eigen::VectorXd& Jv,
+                          const Eigen::VectorXd& Jv_light,
                           DeterminantGradient* determinant,
                           std::array<RowMatrix, 3>* gradient) const;
   // tr(A^-1 J K1 J^T), K1 what the amplitude scales: A less D and the rest.
@@ -287,6 +337,7 @@ class MarginalLikelihood {
   int map_height_, map_width_, num_directional_lights_;
   double smooth_share_, rough_share_;
   double texel_variance_;  // at amplitude and roughness 1
+  Eigen::MatrixXd paint_;  // K_a [3 * points]^2 or empty
   int num_threads_;
 };
 

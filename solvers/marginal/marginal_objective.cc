@@ -11,11 +11,11 @@ namespace ibrdf {
 
 MarginalObjective::MarginalObjective(const MarginalReflectance* reflectance,
                                      const MaterialPrior* prior,
-                                     Eigen::VectorXd noise, LightMode* mode,
+                                     DataErrors errors, LightMode* mode,
                                      double mode_tolerance)
     : reflectance_(reflectance),
       prior_(prior),
-      noise_(std::move(noise)),
+      errors_(std::move(errors)),
       mode_(mode),
       mode_tolerance_(mode_tolerance) {
   CHECK_EQ(reflectance->lobes().num_parameters(), prior->num_parameters());
@@ -70,7 +70,7 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
       !trial_.empty() && std::equal(trial_.begin(), trial_.end(), y);
   LightMode mode = tried ? trial_mode_ : *mode_;
   const MarginalValue value = reflectance_->Evaluate(
-      parameters.data(), noise_, HyperparametersOf(y), mode_tolerance_, &mode,
+      parameters.data(), errors_, HyperparametersOf(y), mode_tolerance_, &mode,
       gradient != nullptr ? &by_parameter : nullptr);
   if (!value.ok) return false;
   const Eigen::Map<const Eigen::VectorXd> whitened(y, all);
@@ -104,7 +104,7 @@ Eigen::MatrixXd MarginalObjective::Information(const double* y) const {
   const Eigen::Index first_scale = reflectance_->num_parameters();
   const Eigen::VectorXd parameters = ParametersOf(y);
   Eigen::MatrixXd information = reflectance_->Information(
-      parameters.data(), noise_, HyperparametersOf(y), *mode_);
+      parameters.data(), errors_, HyperparametersOf(y), *mode_);
   if (information.size() == 0 || !information.allFinite()) return {};
   prior_->AddWallInformation(parameters.head(n), &information);
   // Both sides by the whitening.

@@ -25,7 +25,7 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
 
   // All must outlive *this.
   MarginalObjective(const MarginalReflectance* reflectance,
-                    const MaterialPrior* prior, Eigen::VectorXd noise,
+                    const MaterialPrior* prior, DataErrors errors,
                     LightMode* mode, double mode_tolerance = kModeTolerance);
 
   int NumParameters() const override;
@@ -50,7 +50,7 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
  private:
   const MarginalReflectance* reflectance_;
   const MaterialPrior* prior_;
-  const Eigen::VectorXd noise_;
+  const DataErrors errors_;
   LightMode* mode_;
   const double mode_tolerance_;
   mutable std::vector<double> trial_;  // of the last evaluation, no gradient

@@ -8,15 +8,15 @@
 namespace ibrdf {
 
 Eigen::MatrixXd MarginalLikelihood::Information(
-    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, const LightMode& mode,
     const RowMatrix& G) const {
   const Eigen::Index P = num_points_, n = G.cols();
   constexpr int kCount = LightHyperparameters::kCount;
   CHECK_EQ(G.rows(), 3 * P);
-  const Given given = GivenBy(matrices, noise, hyperparameters);
+  const Given given = GivenBy(matrices, errors, hyperparameters);
   const Light& light = given.light;
-  const Point point = At(matrices, mode.level, mode.l);
+  const Point point = At(given, mode.level, mode.l);
   const auto linear = Linearise(given, point, DataAt(given, point));
   if (linear == nullptr) return {};
   const RowMatrix whitened =
@@ -80,12 +80,12 @@ Eigen::MatrixXd MarginalLikelihood::Information(
 }
 
 Eigen::VectorXd MarginalLikelihood::LightVariance(
-    const std::array<RowMatrix, 3>& matrices, const Eigen::VectorXd& noise,
+    const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, const LightMode& mode) const {
   const Eigen::Index t = num_texels(), P = num_points_;
-  const Given given = GivenBy(matrices, noise, hyperparameters);
+  const Given given = GivenBy(matrices, errors, hyperparameters);
   const Light& light = given.light;
-  const Point point = At(matrices, mode.level, mode.l);
+  const Point point = At(given, mode.level, mode.l);
   const auto linear = Linearise(given, point, DataAt(given, point));
   CHECK(linear != nullptr);
   RowMatrix inverse = linear->factor;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/brdf/matte_split.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/priors/directional_lights.h"
@@ -45,7 +46,8 @@ MarginalReflectance::MarginalReflectance(
     const LobeFactory& lobes, const std::vector<ShadingPoint>& points,
     const Observations& observed, const LightProcess& process,
     const MarginalResolution& resolution, int num_threads,
-    std::vector<Eigen::Vector3d> directional_lights)
+    std::vector<Eigen::Vector3d> directional_lights,
+    const std::optional<AlbedoPrior>& paint)
     : resolution_(resolution),
       binned_(BinByNormal(points, observed, resolution.bins)),
       directional_lights_(std::move(directional_lights)) {
@@ -73,7 +75,9 @@ MarginalReflectance::MarginalReflectance(
   likelihood_ = std::make_unique<MarginalLikelihood>(
       LogRadianceData{binned_.log_radiance, binned_.log_low, binned_.log_high},
       process, resolution.map_height, resolution.map_width,
-      static_cast<int>(directional_lights_.size()), num_threads);
+      static_cast<int>(directional_lights_.size()), num_threads,
+      paint ? AlbedoCovariance(*paint, LogChroma(binned_.log_radiance))
+            : Eigen::MatrixXd());
 }
 
 Eigen::VectorXd MarginalReflectance::WithDirectionalLights(
@@ -223,8 +227,23 @@ std::array<RowMatrix, 3> MarginalReflectance::Matrices(
                   ShapeMatrices(DirectionalLights(parameters), fields, 1));
 }
 
+std::array<RowMatrix, 3> MarginalReflectance::MatteMatrices(
+    const double* parameters) const {
+  if (!likelihood_->has_paint()) return {};
+  const size_t nodes = lobes_->grid_shape().num_nodes();
+  std::vector<float> fields, matte;
+  lobes_->Tabulate(parameters, false, &fields);
+  for (int k = 0; k < lobes_->num_lobes(); ++k) {
+    const std::vector<float> part =
+        MattePart(lobes_->grid_shape(), &fields[k * nodes]);
+    matte.insert(matte.end(), part.begin(), part.end());
+  }
+  return Coloured(parameters,
+                  ShapeMatrices(DirectionalLights(parameters), matte, 1));
+}
+
 MarginalValue MarginalReflectance::Evaluate(
-    const double* parameters, const Eigen::VectorXd& noise,
+    const double* parameters, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, double tolerance,
     LightMode* mode, std::vector<double>* gradient) const {
   const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
@@ -238,7 +257,7 @@ MarginalValue MarginalReflectance::Evaluate(
       ShapeMatrices(directional_lights, fields, stride);
   MarginalGradient by_matrix;
   const MarginalValue value = likelihood_->Evaluate(
-      Coloured(parameters, shapes), noise, hyperparameters, tolerance, mode,
+      Coloured(parameters, shapes), errors, hyperparameters, tolerance, mode,
       gradient != nullptr ? &by_matrix : nullptr);
   if (gradient == nullptr || !value.ok) return value;
   gradient->assign(num_parameters() + LightHyperparameters::kCount, 0.0);
@@ -354,7 +373,7 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
 }
 
 Eigen::MatrixXd MarginalReflectance::Information(
-    const double* parameters, const Eigen::VectorXd& noise,
+    const double* parameters, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, const LightMode& mode) const {
   std::vector<float> fields;
   lobes_->Tabulate(parameters, true, &fields);
@@ -366,7 +385,7 @@ Eigen::MatrixXd MarginalReflectance::Information(
   return likelihood_->Information(
       Coloured(parameters, ShapeMatrices(directional_lights, fields,
                                          1 + lobes_->code_size())),
-      noise, hyperparameters, mode, G);
+      errors, hyperparameters, mode, G);
 }
 
 }  // namespace ibrdf

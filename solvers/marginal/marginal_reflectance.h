@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ibrdf/brdf/lobe_model.h"
 #include "ibrdf/solvers/marginal/directional_responses.h"
 #include "ibrdf/solvers/marginal/marginal_likelihood.h"
 #include "ibrdf/solvers/observation/normal_bins.h"
+#include "ibrdf/solvers/priors/albedo_prior.h"
 #include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
@@ -27,12 +29,14 @@ struct MarginalResolution {
 // keep; may be used from several threads.
 class MarginalReflectance {
  public:
-  // CHECKs that at least one point can be used.
+  // CHECKs that at least one point can be used. paint: the albedo varies over
+  // the points, as this prior says; unset: it does not.
   MarginalReflectance(const LobeFactory& lobes,
                       const std::vector<ShadingPoint>& points,
                       const Observations& observed, const LightProcess& process,
                       const MarginalResolution& resolution, int num_threads,
-                      std::vector<Eigen::Vector3d> directional_lights = {});
+                      std::vector<Eigen::Vector3d> directional_lights = {},
+                      const std::optional<AlbedoPrior>& paint = std::nullopt);
 
   const LobeModel& lobes() const { return *lobes_; }
   const MarginalLikelihood& likelihood() const { return *likelihood_; }
@@ -51,18 +55,20 @@ class MarginalReflectance {
 
   // As MarginalLikelihood::Evaluate. With gradient != nullptr it receives
   // [num_parameters + hyperparameters].
-  MarginalValue Evaluate(const double* parameters, const Eigen::VectorXd& noise,
+  MarginalValue Evaluate(const double* parameters, const DataErrors& errors,
                          const LightHyperparameters& hyperparameters,
                          double tolerance, LightMode* mode,
                          std::vector<double>* gradient) const;
 
   // As MarginalLikelihood::Information at the mode of these parameters.
   Eigen::MatrixXd Information(const double* parameters,
-                              const Eigen::VectorXd& noise,
+                              const DataErrors& errors,
                               const LightHyperparameters& hyperparameters,
                               const LightMode& mode) const;
 
-  // The matrices T_c of parameters.
+  // The matrices T_c of parameters, and those of what paint scales (MattePart
+  // of each lobe); empty ones without paint.
+  std::array<RowMatrix, 3> MatteMatrices(const double* parameters) const;
   std::array<RowMatrix, 3> Matrices(const double* parameters) const;
   // Log radiance of the texels [3][H W], a directional light's light in the
   // texel that it is in.

@@ -53,7 +53,7 @@ struct LocalOptimum {
   double cost = std::numeric_limits<double>::infinity();
   MarginalValue value;
   LightMode mode;
-  Eigen::VectorXd noise;
+  DataErrors errors;
 };
 
 // A search at one resolution.
@@ -68,13 +68,12 @@ class SearchLevel {
       : prior_(prior),
         options_(options),
         reflectance_(lobes, points, observed, options.process, resolution,
-                     options.num_threads, directional_lights) {}
+                     options.num_threads, directional_lights, options.paint) {}
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
 
-  MarginalObjective Objective(const Eigen::VectorXd& noise,
-                              LightMode* mode) const {
-    return MarginalObjective(&reflectance_, &prior_, noise, mode);
+  MarginalObjective Objective(const DataErrors& errors, LightMode* mode) const {
+    return MarginalObjective(&reflectance_, &prior_, errors, mode);
   }
 
   // -log posterior at these hyperparameters of light; infinite where it has
@@ -83,13 +82,16 @@ class SearchLevel {
               const LightHyperparameters& hyperparameters,
               double* misfit) const {
     LightMode mode;
+    const Eigen::VectorXd parameters =
+        reflectance_.WithDirectionalLights(lobes);
     const std::array<RowMatrix, 3> matrices =
-        reflectance_.Matrices(reflectance_.WithDirectionalLights(lobes).data());
+        reflectance_.Matrices(parameters.data());
     const MarginalLikelihood& likelihood = reflectance_.likelihood();
-    const Eigen::VectorXd noise = likelihood.FindNoise(
-        matrices, options_.sigma, hyperparameters, kRankingTolerance, &mode);
+    const DataErrors errors = likelihood.FindErrors(
+        matrices, reflectance_.MatteMatrices(parameters.data()), options_.sigma,
+        hyperparameters, kRankingTolerance, &mode);
     const MarginalValue value = likelihood.Evaluate(
-        matrices, noise, hyperparameters, kRankingTolerance, &mode, nullptr);
+        matrices, errors, hyperparameters, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
     *misfit = value.misfit;
     double of_hyperparameters = 0.0;
@@ -102,10 +104,12 @@ class SearchLevel {
                       const LightHyperparameters& hyperparameters,
                       int iterations) const {
     LocalOptimum optimum;
-    optimum.noise = reflectance_.likelihood().FindNoise(
-        reflectance_.Matrices(parameters.data()), options_.sigma,
+    optimum.errors = reflectance_.likelihood().FindErrors(
+        reflectance_.Matrices(parameters.data()),
+        reflectance_.MatteMatrices(parameters.data()), options_.sigma,
         hyperparameters, MarginalObjective::kModeTolerance, &optimum.mode);
-    const MarginalObjective objective = Objective(optimum.noise, &optimum.mode);
+    const MarginalObjective objective =
+        Objective(optimum.errors, &optimum.mode);
     optimum.y = objective.Whitened(parameters, hyperparameters);
     MarginalDescentOptions o;
     o.max_iterations = iterations;
@@ -121,7 +125,7 @@ class SearchLevel {
   // empty where there is none.
   Eigen::MatrixXd Covariance(LocalOptimum* optimum) const {
     const Eigen::MatrixXd information =
-        Objective(optimum->noise, &optimum->mode)
+        Objective(optimum->errors, &optimum->mode)
             .Information(optimum->y.data());
     if (information.size() == 0) return {};
     VLOG(1) << "marginal posterior: condition of the information, scaled, "
@@ -262,7 +266,7 @@ class Search {
         reflectance.likelihood()
             .LightVariance(
                 reflectance.Matrices(best_candidate_.parameters.data()),
-                best_.noise, best_candidate_.hyperparameters, best_.mode)
+                best_.errors, best_candidate_.hyperparameters, best_.mode)
             .cwiseSqrt());
     std::stable_sort(
         materials_.begin(), materials_.end(),
@@ -372,7 +376,7 @@ class Search {
       }
       MaterialCandidate& material = materials_[candidates_[k].material];
       const MarginalObjective objective =
-          level.Objective(optimum.noise, &optimum.mode);
+          level.Objective(optimum.errors, &optimum.mode);
       reached.push_back(
           {candidates_[k].material, objective.ParametersOf(optimum.y.data()),
            objective.HyperparametersOf(optimum.y.data()), optimum.cost});

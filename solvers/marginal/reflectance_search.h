@@ -4,6 +4,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,8 @@ struct ReflectanceSearchOptions {
   // model can render: were it free to fall to the noise, light and reflectance
   // would bend to every error of the model.
   double sigma = 0.03;
+  // The prior of albedo that varies over the surface; unset: it does not.
+  std::optional<AlbedoPrior> paint;
   bool covariance = true;
   int num_threads = 0;
   // Light that the object throws on itself, of which the search knows nothing:

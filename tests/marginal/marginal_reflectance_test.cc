@@ -33,7 +33,7 @@ void ExpectGradient(const MarginalReflectance& reflectance,
     mode.l = mode.representers =
         Eigen::VectorXd::Zero(3 * reflectance.likelihood().num_sources());
     const MarginalValue value = reflectance.Evaluate(
-        at.data(), noise, hyperparameters, 1e-12, &mode, gradient);
+        at.data(), {noise, {}}, hyperparameters, 1e-12, &mode, gradient);
     EXPECT_TRUE(value.ok);
     return std::vector<double>{value.cost};
   };
@@ -122,8 +122,8 @@ TEST_F(MarginalReflectanceTest, CellsThatSeeNoLightAreLeftOut) {
   LightMode mode;
   EXPECT_TRUE(reflectance
                   .Evaluate(truth_.data(),
-                            Eigen::VectorXd::Constant(3 * kept, 0.01), {}, 1e-6,
-                            &mode, nullptr)
+                            {Eigen::VectorXd::Constant(3 * kept, 0.01), {}}, {},
+                            1e-6, &mode, nullptr)
                   .ok);
 }
 
@@ -136,7 +136,7 @@ TEST_F(MarginalReflectanceTest, LastValueIsOfTheLastGradient) {
   LightMode mode;
   const MarginalObjective objective(
       &reflectance, &prior,
-      Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.01),
+      {Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.01), {}},
       &mode);
   std::vector<double> y(objective.NumParameters(), 0.1), gradient(y.size());
   double cost = 0.0;
@@ -157,7 +157,7 @@ TEST_F(MarginalReflectanceTest, ObjectiveIsWhitenedAndConsistent) {
   LightMode mode;
   const MarginalObjective objective(
       &reflectance, &prior,
-      Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.01),
+      {Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.01), {}},
       &mode);
   ASSERT_EQ(23, objective.NumParameters());
   Eigen::VectorXd x(18);
@@ -205,10 +205,10 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
       x[12] = -40.0;
     }
     LightMode mode;
-    ASSERT_TRUE(
-        reflectance
-            .Evaluate(x.data(), noise, hyperparameters, 1e-6, &mode, nullptr)
-            .ok);
+    ASSERT_TRUE(reflectance
+                    .Evaluate(x.data(), {noise, {}}, hyperparameters, 1e-6,
+                              &mode, nullptr)
+                    .ok);
     const Eigen::VectorXd L = (mode.l.array() + mode.level).exp();
     const auto radiance = [&](const std::vector<double>& at) {
       const std::array<RowMatrix, 3> T = reflectance.Matrices(at.data());
@@ -259,7 +259,7 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
     const Eigen::MatrixXd expected = G.transpose() * llt.solve(G);
     const Eigen::MatrixXd X = llt.solve(A1);
     const Eigen::MatrixXd found =
-        reflectance.Information(x.data(), noise, hyperparameters, mode);
+        reflectance.Information(x.data(), {noise, {}}, hyperparameters, mode);
     ASSERT_EQ(all, found.rows());
     // Tables and sums of the renderer are float.
     EXPECT_LT((found.topLeftCorner(n, n) - expected).norm(),
@@ -296,7 +296,7 @@ TEST_F(MarginalReflectanceTest, InformationMatchesDenseReference) {
     }
 
     // The objective's terms: the prior whitened, and the wall of that code.
-    const MarginalObjective objective(&reflectance, &prior, noise, &mode);
+    const MarginalObjective objective(&reflectance, &prior, {noise, {}}, &mode);
     const std::vector<double> y = objective.Whitened(
         Eigen::Map<const Eigen::VectorXd>(x.data(), n), hyperparameters);
     Eigen::MatrixXd rest = objective.Information(y.data());
@@ -336,7 +336,7 @@ TEST_F(MarginalReflectanceTest, DescentEndsWhereNewtonGainsNothing) {
       Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.0025);
   for (const double away : {0.3, 4.0}) {
     LightMode mode;
-    const MarginalObjective objective(&reflectance, &prior, noise, &mode);
+    const MarginalObjective objective(&reflectance, &prior, {noise, {}}, &mode);
     std::vector<double> y(19);
     for (int i = 0; i < 19; ++i) y[i] = away * std::cos(3.0 * i);
     std::vector<double> gradient(19);
@@ -358,7 +358,7 @@ TEST_F(MarginalReflectanceTest, DescentEndsWhereNewtonGainsNothing) {
     options.max_iterations = 1;
     std::vector<double> one = start;
     LightMode cold;
-    const MarginalObjective again(&reflectance, &prior, noise, &cold);
+    const MarginalObjective again(&reflectance, &prior, {noise, {}}, &cold);
     const MarginalDescent step = Descend(again, options, &one);
     EXPECT_EQ(1, step.iterations);
     EXPECT_LE(descent.cost, step.cost);
@@ -366,7 +366,7 @@ TEST_F(MarginalReflectanceTest, DescentEndsWhereNewtonGainsNothing) {
   }
   // Stopped at once it is where it was.
   LightMode mode;
-  const MarginalObjective objective(&reflectance, &prior, noise, &mode);
+  const MarginalObjective objective(&reflectance, &prior, {noise, {}}, &mode);
   std::vector<double> y(19, 0.1);
   MarginalDescentOptions options;
   options.should_stop = [] { return true; };

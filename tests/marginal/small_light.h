@@ -83,8 +83,8 @@ inline std::vector<double> LogRadiance(const std::array<RowMatrix, 3>& T,
   return y;
 }
 
-inline Eigen::VectorXd Noise(double sigma, int points = kPoints) {
-  return Eigen::VectorXd::Constant(3 * points, sigma * sigma);
+inline DataErrors Noise(double sigma, int points = kPoints) {
+  return {Eigen::VectorXd::Constant(3 * points, sigma * sigma), {}};
 }
 
 // A level that the process itself holds, so that nothing is improper.
@@ -107,10 +107,17 @@ inline LightHyperparameters Moved(LightHyperparameters hyperparameters, int k,
 
 inline MarginalLikelihood Likelihood(LogRadianceData data,
                                      const LightProcess& process,
-                                     int directional_lights = 0) {
+                                     int directional_lights = 0,
+                                     const Eigen::MatrixXd& paint = {}) {
   return MarginalLikelihood(std::move(data), process, kHeight, kWidth,
-                            directional_lights, 1);
+                            directional_lights, 1, paint);
 }
+
+// Paint of the points, as MarginalLikelihood takes it.
+struct Paint {
+  Eigen::MatrixXd covariance;   // [3 * points]^2
+  Eigen::VectorXd matte_share;  // [3 * points]
+};
 
 // Nats, of the mode: its last steps shrink slowly, and the log determinant
 // feels what is left to first order.
@@ -121,15 +128,15 @@ inline double Cost(const LogRadianceData& data,
                    const std::array<RowMatrix, 3>& T,
                    const LightHyperparameters& hyperparameters,
                    MarginalGradient* gradient, int directional_lights = 0,
-                   double sigma = 0.1) {
+                   double sigma = 0.1, const Paint& paint = {}) {
   const MarginalLikelihood likelihood =
-      Likelihood(data, Proper(), directional_lights);
+      Likelihood(data, Proper(), directional_lights, paint.covariance);
   LightMode mode;
-  mode.l = mode.representers =
-      Eigen::VectorXd::Zero(3 * likelihood.num_sources());
-  const MarginalValue value = likelihood.Evaluate(
-      T, Noise(sigma, static_cast<int>(data.value.size() / 3)), hyperparameters,
-      kTight, &mode, gradient);
+  mode.l = mode.representers = Eigen::VectorXd::Zero(likelihood.num_latents());
+  DataErrors errors = Noise(sigma, static_cast<int>(data.value.size() / 3));
+  errors.matte_share = paint.matte_share;
+  const MarginalValue value =
+      likelihood.Evaluate(T, errors, hyperparameters, kTight, &mode, gradient);
   EXPECT_TRUE(value.ok);
   return value.cost;
 }
@@ -137,7 +144,8 @@ inline double Cost(const LogRadianceData& data,
 // That the gradient is what differences of the cost are, by hyperparameters and
 // by directions of the matrices, of data that `data_of` makes of log radiance.
 inline void ExpectGradientMatches(
-    const std::function<LogRadianceData(const std::vector<double>&)>& data_of) {
+    const std::function<LogRadianceData(const std::vector<double>&)>& data_of,
+    const Paint& paint = {}) {
   for (const auto& [width, directional_lights] :
        {std::pair(0.3, 0), std::pair(1.0, 0), std::pair(0.3, 2)}) {
     const std::array<RowMatrix, 3> T =
@@ -151,7 +159,7 @@ inline void ExpectGradientMatches(
                           const std::array<RowMatrix, 3>& matrices,
                           const LightHyperparameters& at,
                           MarginalGradient* gradient) {
-      return Cost(data, matrices, at, gradient, lights);
+      return Cost(data, matrices, at, gradient, lights, 0.1, paint);
     };
     MarginalGradient gradient;
     const LightHyperparameters hyperparameters = Rough();

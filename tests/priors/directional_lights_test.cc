@@ -281,9 +281,10 @@ TEST(DirectionalLights, ExplainASun) {
     x.resize(reflectance.num_parameters(), 0.0);
     const MarginalLikelihood& likelihood = reflectance.likelihood();
     mode = {};
-    const Eigen::VectorXd noise = likelihood.FindNoise(
-        reflectance.Matrices(x.data()), 0.03, {}, 1e-6, &mode);
-    return reflectance.Evaluate(x.data(), noise, {}, 1e-6, &mode, nullptr).cost;
+    const DataErrors errors = likelihood.FindErrors(
+        reflectance.Matrices(x.data()), {}, 0.03, {}, 1e-6, &mode);
+    return reflectance.Evaluate(x.data(), errors, {}, 1e-6, &mode, nullptr)
+        .cost;
   };
   const MarginalReflectance without(FlowLobes::Factory(model, 2, 1), points,
                                     MakeObservations(radiance), LightProcess(),

@@ -1,0 +1,21 @@
+// A BRDF as a matte part, which paint colours, and a glossy one, which is the
+// coat's.
+#pragma once
+#include <vector>
+
+#include "ibrdf/brdf/brdf_grid.h"
+
+namespace ibrdf {
+
+// f = matte + gloss of a scalar field [nodes] >= 0 on a grid, both >= 0:
+// matte = min(f, level), level the median of f where the half vector is far
+// from the normal (theta_h 40 to 75 degrees, theta_d <= 60 degrees). Light that
+// enters the coat and comes out of the paint hardly depends on theta_h (Burley
+// 2012, Sec. 3.2), so what rises above is the surface's reflection. Of a mirror
+// nearly all is gloss, of plaster nothing.
+std::vector<float> MattePart(const BrdfGridShape& shape, const float* field);
+
+// The same of each channel.
+BrdfGrid MattePart(const BrdfGrid& brdf);
+
+}  // namespace ibrdf

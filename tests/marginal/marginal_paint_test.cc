@@ -1,0 +1,176 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "ibrdf/solvers/costs/interval_likelihood.h"
+#include "ibrdf/solvers/priors/albedo_prior.h"
+#include "small_light.h"
+
+namespace ibrdf {
+namespace {
+
+// Colours of points, some like others.
+Eigen::MatrixX3d SomeChroma(int points) {
+  std::vector<double> log_radiance(3 * points);
+  for (size_t i = 0; i < log_radiance.size(); ++i) {
+    log_radiance[i] = 0.1 * std::sin(2.0 * i) + 0.02 * (i % 3);
+  }
+  return LogChroma(log_radiance);
+}
+
+// Shares from gloss alone to matte alone.
+Paint SomePaint(double factor = 1.0, int points = kPoints) {
+  Paint paint;
+  paint.covariance =
+      AlbedoCovariance(AlbedoPrior().Scaled(factor), SomeChroma(points));
+  paint.matte_share = Eigen::VectorXd::LinSpaced(3 * points, 0.0, 1.0);
+  return paint;
+}
+
+LogRadianceData Values(const std::vector<double>& y) { return {y, {}, {}}; }
+
+LogRadianceData SomeIntervals(const std::vector<double>& y) {
+  LogRadianceData data = {y, y, y};
+  for (size_t i = 0; i < y.size(); i += 2) {
+    data.low[i] -= 0.1;
+    data.high[i] =
+        i % 4 == 0 ? y[i] + 0.2 : std::numeric_limits<double>::infinity();
+  }
+  return data;
+}
+
+TEST(MarginalPaint, GradientMatchesDifferences) {
+  ExpectGradientMatches(Values, SomePaint());
+  ExpectGradientMatches(Values, SomePaint(5.0));
+  ExpectGradientMatches(SomeIntervals, SomePaint());
+}
+
+TEST(MarginalPaint, OfNoVarianceOrNoMatteIsNone) {
+  const std::array<RowMatrix, 3> T = Lobes(0.4);
+  std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 4));
+  for (size_t i = 0; i < y.size(); ++i) y[i] += 0.2 * std::sin(5.0 * i);
+  const double none = Cost(Values(y), T, Rough(), nullptr);
+  Paint gloss = SomePaint();
+  gloss.matte_share.setZero();
+  for (const Paint& paint : {SomePaint(0.0), gloss}) {
+    EXPECT_NEAR(none, Cost(Values(y), T, Rough(), nullptr, 0, 0.1, paint),
+                1e-9);
+  }
+  EXPECT_GT(std::abs(none -
+                     Cost(Values(y), T, Rough(), nullptr, 0, 0.1, SomePaint())),
+            0.1);
+}
+
+// Independent paint is noise of its own.
+TEST(MarginalPaint, WithoutCorrelationIsNoise) {
+  const std::array<RowMatrix, 3> T = Lobes(0.4);
+  std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 4));
+  for (size_t i = 0; i < y.size(); ++i) y[i] += 0.2 * std::sin(5.0 * i);
+  Paint paint = SomePaint();
+  paint.covariance = 0.09 * Eigen::MatrixXd::Identity(3 * kPoints, 3 * kPoints);
+  const MarginalLikelihood likelihood = Likelihood(Values(y), Proper());
+  LightMode mode;
+  mode.l = mode.representers = Eigen::VectorXd::Zero(likelihood.num_latents());
+  DataErrors errors = Noise(0.1);
+  errors.noise += 0.09 * paint.matte_share.cwiseAbs2();
+  const MarginalValue noisy =
+      likelihood.Evaluate(T, errors, Rough(), kTight, &mode, nullptr);
+  EXPECT_NEAR(noisy.cost, Cost(Values(y), T, Rough(), nullptr, 0, 0.1, paint),
+              1e-8);
+}
+
+// The integral itself, by drawing light and albedo from their priors.
+TEST(MarginalPaint, IsTheIntegralWhereLightVariesLittle) {
+  const int points = 2;
+  const std::array<RowMatrix, 3> T = Lobes(0.8, points);
+  LightProcess process = Proper();
+  process.level_variance = 0.01;
+  process.level_chroma_variance = 0.002;
+  process.horizon_share = 0.02;
+  const double log_amplitude = std::log(0.02), sigma = 0.15;
+  const Paint paint = SomePaint(0.5, points);
+  const Eigen::MatrixXd factor = paint.covariance.llt().matrixL();
+  std::mt19937_64 rng(3);
+  std::normal_distribution<double> g;
+  const auto draw = [&](uint64_t seed) {
+    std::vector<double> y = LogRadiance(T, DrawLight(process, 0.02, seed));
+    Eigen::VectorXd white(3 * points);
+    for (double& w : white) w = g(rng);
+    const Eigen::VectorXd a = factor * white;
+    for (size_t i = 0; i < y.size(); ++i) y[i] += paint.matte_share[i] * a[i];
+    return y;
+  };
+  const std::vector<double> y = draw(5);
+  const MarginalLikelihood likelihood =
+      Likelihood(Values(y), process, 0, paint.covariance);
+  LightMode mode;
+  mode.l = mode.representers = Eigen::VectorXd::Zero(likelihood.num_latents());
+  DataErrors errors = Noise(sigma, points);
+  errors.matte_share = paint.matte_share;
+  const MarginalValue value =
+      likelihood.Evaluate(T, errors, {log_amplitude}, kTight, &mode, nullptr);
+  ASSERT_TRUE(value.ok);
+  double sum = 0.0;
+  const int count = 40000;
+  for (int k = 0; k < count; ++k) {
+    const std::vector<double> at = draw(100 + k);
+    double log_p = -3 * points * std::log(sigma);
+    for (size_t i = 0; i < at.size(); ++i) {
+      const double r = (y[i] - at[i]) / sigma;
+      log_p -= 0.5 * r * r;
+    }
+    sum += std::exp(log_p) / count;
+  }
+  EXPECT_NEAR(std::log(sum), -value.cost, 0.1);
+}
+
+// A bright patch of another colour is paint's: the light stays as even as
+// without it.
+TEST(MarginalPaint, TakesWhatColourTellsFromTheLight) {
+  const std::array<RowMatrix, 3> T = Lobes(1.2, 24);
+  const Eigen::VectorXd dark = Eigen::VectorXd::Zero(3 * kTexels);
+  std::vector<double> y = LogRadiance(T, dark);
+  const double shift[3] = {0.8, 0.5, 0.2};
+  for (int c = 0; c < 3; ++c) {
+    for (int p = 0; p < 12; ++p) y[c * 24 + p] += shift[c];
+  }
+  Paint paint;
+  paint.covariance = AlbedoCovariance(AlbedoPrior(), LogChroma(y));
+  paint.matte_share = Eigen::VectorXd::Ones(3 * 24);
+  const auto spread_of_light = [&](const Paint& with) {
+    const MarginalLikelihood likelihood =
+        Likelihood(Values(y), Proper(), 0, with.covariance);
+    LightMode mode;
+    mode.l = mode.representers =
+        Eigen::VectorXd::Zero(likelihood.num_latents());
+    DataErrors errors = Noise(0.03, 24);
+    errors.matte_share = with.matte_share;
+    EXPECT_TRUE(likelihood.Evaluate(T, errors, {}, 1e-9, &mode, nullptr).ok);
+    const Eigen::ArrayXd l = mode.l.head(kTexels);
+    return std::sqrt((l - l.mean()).square().mean());
+  };
+  EXPECT_LT(spread_of_light(paint), 0.2 * spread_of_light({}));
+}
+
+TEST(AlbedoCovariance, IsPositiveDefiniteAndOfItsDeviations) {
+  const AlbedoPrior prior;
+  const Eigen::MatrixX3d chroma = SomeChroma(5);
+  const Eigen::MatrixXd K = AlbedoCovariance(prior, chroma);
+  EXPECT_GT(K.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-12);
+  // Variance of the mean of the channels at a point.
+  double mean = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d < 3; ++d) mean += K(c * 5, d * 5) / 9.0;
+  }
+  EXPECT_NEAR(mean,
+              prior.luminance_std * prior.luminance_std +
+                  prior.own_luminance * prior.own_luminance,
+              1e-12);
+  EXPECT_NEAR(LogChroma({0.1, 0.4, 0.7}).sum(), 0.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace ibrdf
