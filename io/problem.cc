@@ -18,6 +18,10 @@ const char* SolverGaugeName(SolverGauge gauge) {
   return WordOf("solver.gauge", gauge).c_str();
 }
 
+const char* ReflectanceVariationName(ReflectanceVariation variation) {
+  return WordOf("reflectance.variation", variation).c_str();
+}
+
 const char* EffectName(Effect effect) {
   const ProblemKey& key = ProblemFileSchema().Key("effects");
   return key.list_words.at(static_cast<size_t>(effect)).word.c_str();

@@ -101,11 +101,18 @@ struct GeometrySpec {
   }
 };
 
+// How the reflectance varies over the object, in the order of the schema.
+enum class ReflectanceVariation { kNone, kAlbedo };
+inline constexpr int kNumReflectanceVariations = 2;
+// "none", "albedo".
+const char* ReflectanceVariationName(ReflectanceVariation variation);
+
 struct ReflectanceSpec {
   // Unknown reflectance.
   std::string model;         // trained model; empty: the default one
   int lobes = 2;             // [1, 8]
   double prior_sigma = 0.5;  // of the codes, > 0
+  ReflectanceVariation variation = ReflectanceVariation::kNone;
   // Known reflectance: at most one is set.
   std::string known_file;                // MERL .binary
   std::optional<CookTorrance> analytic;  // `lambertian` too: specular 0

@@ -190,6 +190,7 @@ void ReadReflectance(ProblemReader reader, ReflectanceSpec* reflectance) {
   reader.Read("model", &reflectance->model);
   reader.Read("lobes", &reflectance->lobes);
   reader.Read("prior_sigma", &reflectance->prior_sigma);
+  reader.Read("variation", &reflectance->variation);
   const ConfigNode* known = reader.Find("known");
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {

@@ -99,7 +99,8 @@ json ReflectanceJson(const ReflectanceSpec& reflectance) {
   }
   return {{"model", reflectance.model.empty() ? "default" : reflectance.model},
           {"lobes", reflectance.lobes},
-          {"prior_sigma", reflectance.prior_sigma}};
+          {"prior_sigma", reflectance.prior_sigma},
+          {"variation", ReflectanceVariationName(reflectance.variation)}};
 }
 
 std::string FrameJson(const std::optional<MapFrame>& frame) {

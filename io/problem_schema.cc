@@ -418,6 +418,14 @@ Keys ReflectanceKeys() {
           "maximum`.")
           .Number(kPositive, "0.5")
           .UsedBy(kUnknownReflectance),
+      Row("reflectance.variation",
+          "How the reflectance varies over the object.")
+          .Choice("none",
+                  {{"none", "One material."},
+                   {"albedo",
+                    "One gloss over paint: the albedo of what is matte is "
+                    "found at every pixel."}})
+          .UsedBy(kUsedByJoint),
       Row("reflectance.known",
           "The known BRDF: a MERL table, or one of `lambertian` and "
           "`cook_torrance`.")

@@ -62,6 +62,9 @@ struct Solution {
   MerlTable brdf;      // empty if known
   Image map;           // [H, W]; the known one if known
   Image render;        // radiance at the object's pixels, else 0
+  // Where the albedo varies: that of what is matte, at the object's pixels,
+  // else 0; and the radiance that is gloss. Empty where it does not.
+  Image albedo, gloss;
   double scale = 0.0;  // b used at the end
   double epsilon = 0.0;
   double misfit = 0.0;

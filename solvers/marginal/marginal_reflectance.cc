@@ -230,16 +230,9 @@ std::array<RowMatrix, 3> MarginalReflectance::Matrices(
 std::array<RowMatrix, 3> MarginalReflectance::MatteMatrices(
     const double* parameters) const {
   if (!likelihood_->has_paint()) return {};
-  const size_t nodes = lobes_->grid_shape().num_nodes();
-  std::vector<float> fields, matte;
-  lobes_->Tabulate(parameters, false, &fields);
-  for (int k = 0; k < lobes_->num_lobes(); ++k) {
-    const std::vector<float> part =
-        MattePart(lobes_->grid_shape(), &fields[k * nodes]);
-    matte.insert(matte.end(), part.begin(), part.end());
-  }
   return Coloured(parameters,
-                  ShapeMatrices(DirectionalLights(parameters), matte, 1));
+                  ShapeMatrices(DirectionalLights(parameters),
+                                MatteShapes(*lobes_, parameters), 1));
 }
 
 MarginalValue MarginalReflectance::Evaluate(

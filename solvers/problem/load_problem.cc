@@ -134,6 +134,7 @@ InverseProblem SettingsOf(const Problem& problem, uint64_t default_seed,
   inverse.kind = problem.kind;
   inverse.lobes = problem.reflectance.lobes;
   inverse.prior_sigma = problem.reflectance.prior_sigma;
+  inverse.variation = problem.reflectance.variation;
   inverse.map_width = problem.illumination.width;
   inverse.map_height = problem.illumination.height;
   inverse.illumination_prior = problem.illumination.prior;

@@ -11,6 +11,9 @@ namespace {
 
 // A fit that overlaps the mask by no more than this is no better.
 constexpr double kBetter = 0.01;
+// Outlines no further apart than this, pixels, are one: a mask may have every
+// pixel that the ball touches, or those alone whose centre it covers.
+constexpr double kOneOutline = 1.0;
 // Of a part of the unit sphere's outline.
 constexpr double kCovered = 0.99;
 
@@ -49,6 +52,10 @@ StatusOr<std::optional<PixelCircle>> FindSphereOutline(
   if (usual_overlap >= kFillsImage) return unit_sphere;
   const std::optional<CircleFit> fit = FitCircle(mask);
   if (!fit.has_value()) return unit_sphere;
+  const double apart =
+      std::hypot(fit->circle.x - usual.x, fit->circle.y - usual.y) +
+      std::abs(fit->circle.radius - usual.radius);
+  if (apart <= kOneOutline) return unit_sphere;
   if (fit->overlap < kLeastCircle || fit->overlap <= usual_overlap + kBetter) {
     if (usual_overlap >= kLeastCircle ||
         CoveredShare(mask, usual) >= kCovered) {

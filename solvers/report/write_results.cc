@@ -29,6 +29,9 @@ std::vector<std::string> EarlierNames(const Solution& solution) {
   if (solution.map_std.rgb.empty()) {
     names.emplace_back("illumination_log_std.exr");
   }
+  if (solution.albedo.rgb.empty()) {
+    names.insert(names.end(), {"albedo.exr", "gloss.exr"});
+  }
   return names;
 }
 
@@ -50,6 +53,10 @@ Status WriteRadiance(const SolvedProblem& solved, const std::string& folder) {
                                    folder + "/illumination_log_std.exr"));
   }
   IBRDF_RETURN_IF_ERROR(WriteExr(solution.render, folder + "/render.exr"));
+  if (!solution.albedo.rgb.empty()) {
+    IBRDF_RETURN_IF_ERROR(WriteExr(solution.albedo, folder + "/albedo.exr"));
+    IBRDF_RETURN_IF_ERROR(WriteExr(solution.gloss, folder + "/gloss.exr"));
+  }
   return WriteExr(LogResidual(solved.inverse, solution),
                   folder + "/residual.exr");
 }

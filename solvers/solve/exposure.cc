@@ -46,6 +46,7 @@ InverseProblem InUnitsOf(double exposure, const InverseProblem& problem) {
 void RestoreUnits(double exposure, Solution* estimate) {
   Scale(exposure, &estimate->map);
   Scale(exposure, &estimate->render);
+  Scale(exposure, &estimate->gloss);
   estimate->epsilon *= exposure;
 }
 

@@ -13,6 +13,7 @@
 #include "ibrdf/solvers/published/joint_maximum.h"
 #include "ibrdf/solvers/solve/curve_search.h"
 #include "ibrdf/solvers/solve/exposure.h"
+#include "ibrdf/solvers/solve/painted.h"
 #include "ibrdf/solvers/solve/summary.h"
 
 namespace ibrdf {
@@ -53,6 +54,9 @@ StatusOr<Estimate> EstimateUnknowns(const SolveSetup& setup,
 
 // In units in which radiance is near 1.
 StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
+  if (problem.variation == ReflectanceVariation::kAlbedo) {
+    return SolvePainted(problem, context);
+  }
   const StatusOr<SolveSetup> setup = SetUp(problem);
   if (!setup.ok()) return setup.status();
   IBRDF_RETURN_IF_ERROR(CheckMethod(*setup));

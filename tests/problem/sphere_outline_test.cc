@@ -45,6 +45,27 @@ TEST_F(SphereOutlineTest, StaysWhereTheMaskFillsTheImage) {
   EXPECT_FALSE(Outline(Mask(64, 64, 255), 0).has_value());
 }
 
+// A mask of the pixels that a ball touches, as ibrdf_render writes it, not of
+// those whose centre it covers.
+TEST_F(SphereOutlineTest, StaysWhereTheMaskHasEveryPixelThatIsTouched) {
+  for (const int size : {8, 10, 16, 24, 33, 64, 128}) {
+    Mask touched(size, size, 0);
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < size; ++x) {
+        for (const double dx : {0.25, 0.75}) {
+          for (const double dy : {0.25, 0.75}) {
+            if (std::hypot(x + dx - 0.5 * size, y + dy - 0.5 * size) <
+                0.5 * size) {
+              touched.inside[static_cast<size_t>(y) * size + x] = 255;
+            }
+          }
+        }
+      }
+    }
+    EXPECT_FALSE(Outline(touched, 0).has_value()) << size;
+  }
+}
+
 TEST_F(SphereOutlineTest, IsTheMasksElsewhere) {
   const auto outline = Outline(Disc(300, 400, 140, 230, 101, 101), 1);
   ASSERT_TRUE(outline.has_value());

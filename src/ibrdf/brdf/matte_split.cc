@@ -49,4 +49,17 @@ BrdfGrid MattePart(const BrdfGrid& brdf) {
   return matte;
 }
 
+std::vector<float> MatteShapes(const LobeModel& lobes,
+                               const double* parameters) {
+  const size_t nodes = lobes.grid_shape().num_nodes();
+  std::vector<float> fields, matte;
+  lobes.Tabulate(parameters, false, &fields);
+  for (int k = 0; k < lobes.num_lobes(); ++k) {
+    const std::vector<float> part =
+        MattePart(lobes.grid_shape(), &fields[k * nodes]);
+    matte.insert(matte.end(), part.begin(), part.end());
+  }
+  return matte;
+}
+
 }  // namespace ibrdf

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/brdf/lobe_model.h"
 
 namespace ibrdf {
 
@@ -17,5 +18,9 @@ std::vector<float> MattePart(const BrdfGridShape& shape, const float* field);
 
 // The same of each channel.
 BrdfGrid MattePart(const BrdfGrid& brdf);
+
+// MattePart of each lobe's shape, [num_lobes][nodes].
+std::vector<float> MatteShapes(const LobeModel& lobes,
+                               const double* parameters);
 
 }  // namespace ibrdf

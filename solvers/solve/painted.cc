@@ -1,0 +1,145 @@
+#include "ibrdf/solvers/solve/painted.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "ibrdf/base/pi.h"
+#include "ibrdf/brdf/matte_split.h"
+#include "ibrdf/solvers/estimation/light_given_reflectance.h"
+#include "ibrdf/solvers/estimation/marginal_search.h"
+#include "ibrdf/solvers/estimation/solve_setup.h"
+#include "ibrdf/solvers/paint/albedo_fit.h"
+#include "ibrdf/solvers/solve/summary.h"
+#include "ibrdf/transport/transport.h"
+
+namespace ibrdf {
+namespace {
+
+constexpr size_t kPaintedPointsAtOnce = 4096;
+// Light and paint in turns.
+constexpr int kTurns = 2;
+
+// Matte and gloss of lobes, a = 1.
+struct Unpainted {
+  BrdfGrid whole, matte;
+  Eigen::Array3d albedo;  // of the matte part
+};
+
+Unpainted UnpaintedOf(const LobeModel& lobes, const double* parameters) {
+  Unpainted out;
+  out.whole = lobes.Grid(parameters);
+  out.matte = lobes.Combine(parameters, MatteShapes(lobes, parameters), 1);
+  const int nodes = out.matte.shape.num_nodes();
+  for (int c = 0; c < 3; ++c) {
+    const float* f = out.matte.Channel(c);
+    out.albedo[c] = kPi * *std::max_element(f, f + nodes);
+  }
+  return out;
+}
+
+UnpaintedRadiance Render(const SolveSetup& setup, const Unpainted& reflectance,
+                         const std::vector<float>& map, MapSize size) {
+  const std::vector<ShadingPoint>& points = setup.pixels.points;
+  UnpaintedRadiance out;
+  out.matte.resize(3 * points.size());
+  out.gloss.resize(3 * points.size());
+  const size_t at_once = setup.transport.patches != nullptr
+                             ? kPointsAtOnceWithBounces
+                             : kPaintedPointsAtOnce;
+  for (size_t begin = 0; begin < points.size(); begin += at_once) {
+    const size_t end = std::min(begin + at_once, points.size());
+    const Transport transport(
+        std::vector<ShadingPoint>(points.begin() + begin, points.begin() + end),
+        size.height, size.width, setup.transport);
+    transport.Render(reflectance.matte, map.data(), &out.matte[3 * begin]);
+    transport.Render(reflectance.whole, map.data(), &out.gloss[3 * begin]);
+  }
+  for (size_t i = 0; i < out.gloss.size(); ++i) {
+    out.gloss[i] = std::max(out.gloss[i] - out.matte[i], 0.0);
+  }
+  return out;
+}
+
+// Values [points * 3] at the object's pixels, 0 elsewhere.
+Image AtPixels(const std::vector<double>& values,
+               const std::vector<ShadingPoint>& points, const Image& like) {
+  Image image(like.width, like.height);
+  for (size_t i = 0; i < points.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      image.rgb[size_t{3} * points[i].pixel + c] =
+          static_cast<float>(values[3 * i + c]);
+    }
+  }
+  return image;
+}
+
+// Radiance divided by, or times, factors > 0 [points * 3].
+void ScalePixels(const std::vector<double>& factors, bool divide,
+           const std::vector<ShadingPoint>& points, Image* image) {
+  for (size_t i = 0; i < points.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      float& v = image->rgb[size_t{3} * points[i].pixel + c];
+      const double factor = factors[3 * i + c];
+      v = static_cast<float>(divide ? v / factor : v * factor);
+    }
+  }
+}
+
+InverseProblem WithoutPaint(const InverseProblem& problem,
+                            const std::vector<double>& gain,
+                            const std::vector<ShadingPoint>& points) {
+  InverseProblem out = problem;
+  ScalePixels(gain, true, points, &out.image);
+  if (out.bounds) {
+    ScalePixels(gain, true, points, &out.bounds->low);
+    ScalePixels(gain, true, points, &out.bounds->high);
+  }
+  return out;
+}
+
+}  // namespace
+
+StatusOr<Solution> SolvePainted(const InverseProblem& problem,
+                                SolveContext* context) {
+  const StatusOr<SolveSetup> setup = SetUp(problem);
+  if (!setup.ok()) return setup.status();
+  IBRDF_RETURN_IF_ERROR(CheckMethod(*setup));
+  context->Reserve(PredictSummarySeconds(*setup, *context));
+  const StatusOr<ReflectanceEstimate> found =
+      EstimateReflectance(*setup, context);
+  if (!found.ok()) return found.status();
+  const std::vector<ShadingPoint>& points = setup->pixels.points;
+  const Unpainted reflectance = UnpaintedOf(*setup->lobes, found->lobes.data());
+  MapSize size = found->light.mode.size();
+  std::vector<float> map;
+  found->light.mode.Exp(&map);
+  StatusOr<Solution> solution = Status(StatusCode::kInternal, "no turn");
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const UnpaintedRadiance unpainted = Render(*setup, reflectance, map, size);
+    const std::vector<double> log_albedo =
+        FitAlbedo(unpainted, setup->pixels.observed, AlbedoFitOptions());
+    const std::vector<double> gain = PaintGain(unpainted, log_albedo);
+    const InverseProblem without = WithoutPaint(problem, gain, points);
+    const StatusOr<SolveSetup> of_light = SetUp(without);
+    if (!of_light.ok()) return of_light.status();
+    StatusOr<Estimate> estimate = EstimateLight(*of_light, *found, context);
+    if (!estimate.ok()) return estimate.status();
+    solution = Summarise(*of_light, *std::move(estimate), context);
+    if (!solution.ok()) return solution;
+    ScalePixels(gain, false, points, &solution->render);
+    std::vector<double> albedo(log_albedo.size());
+    for (size_t i = 0; i < albedo.size(); ++i) {
+      albedo[i] = reflectance.albedo[i % 3] * std::exp(log_albedo[i]);
+    }
+    solution->albedo = AtPixels(albedo, points, problem.image);
+    solution->gloss = AtPixels(unpainted.gloss, points, problem.image);
+    map = solution->map.rgb;
+    size = {solution->map.width, solution->map.height};
+  }
+  return solution;
+}
+
+}  // namespace ibrdf
