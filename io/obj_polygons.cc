@@ -72,6 +72,17 @@ bool IsPlain(std::string_view word) {
                      [](char c) { return c > ' ' && c < '\x7f'; });
 }
 
+// A line's words, as far as a message takes them.
+std::string Joined(const std::vector<std::string_view>& words) {
+  constexpr size_t kMaxShown = 60;
+  std::string line;
+  for (const std::string_view word : words) {
+    if (line.size() > kMaxShown) break;
+    line += (line.empty() ? "" : " ") + std::string(word.substr(0, kMaxShown));
+  }
+  return line;
+}
+
 struct Counts {
   int64_t vertices = 0;
   int64_t normals = 0;
@@ -142,8 +153,9 @@ StatusOr<PolygonMesh> ParseObj(const std::string& path,
     so_far.Add(words[0]);
     if (words[0] == "v" || (words[0] == "vn" && all_have_normals)) {
       if (!AppendVector(words, &mesh)) {
-        return InvalidInput(reader.Where(path),
-                            "expected three finite numbers");
+        return InvalidInput(
+            reader.Where(path),
+            "expected three finite numbers, found '" + Joined(words) + "'");
       }
     } else if (words[0] == "f") {
       if (words.size() < 4 || words.size() > size_t{kMaxPolygonCorners} + 1) {
