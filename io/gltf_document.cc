@@ -11,6 +11,7 @@ using Json = nlohmann::json;
 
 // What describes a mesh is short; the parsed form takes tens of times as much.
 constexpr size_t kMaxGltfJsonBytes = size_t{16} << 20;
+constexpr int kMaxGltfDepth = 64;
 
 // Component types by their numbers in the format.
 enum GltfType {
@@ -66,6 +67,19 @@ bool KeepsGeometry(const std::string& extension) {
     if (extension.rfind(prefix, 0) == 0) return true;
   }
   return false;
+}
+
+// No object where the text is not valid or nested too deep, whose levels are
+// not stored.
+Json ParseGltfJson(std::string_view text) {
+  bool too_deep = false;
+  const auto keep = [&](int depth, Json::parse_event_t, Json&) {
+    too_deep = too_deep || depth > kMaxGltfDepth;
+    return !too_deep;
+  };
+  Json json = Json::parse(text, keep, false);
+  if (too_deep) return {};
+  return json;
 }
 
 // The next chunk of a GLB, from *at on.
@@ -171,9 +185,10 @@ StatusOr<GltfDocument> GltfDocument::Open(const std::string& path,
                                        std::to_string(kMaxGltfJsonBytes) +
                                        " bytes that ends inside of the file");
   }
-  document.json_ = Json::parse(text, nullptr, false);
+  document.json_ = ParseGltfJson(text);
   if (!document.json_.is_object()) {
-    return document.Fail("JSON", "expected a valid object");
+    return document.Fail("JSON", "expected a valid object of at most " +
+                                     std::to_string(kMaxGltfDepth) + " levels");
   }
   while (at < bytes.size()) {
     std::string_view chunk;

@@ -264,6 +264,9 @@ TEST(Glb, BadContainersAreRefused) {
   ExpectRefused(GlbOf("{\"meshes\": [1e999]}", ""), "JSON");
   ExpectRefused(GlbOf("{", ""), "JSON");
   ExpectRefused(GlbOf(std::string(100000, '['), ""), "JSON");
+  const std::string deep(100, '['), ends(100, ']');
+  ExpectRefused(GlbOf("{\"extras\": " + deep + ends + "}", ""),
+                "at most 64 levels");
   // A buffer's chunk that ends behind the file.
   std::string buffer;
   const std::string json = GltfJsonOf(Tetrahedron(), &buffer).dump();
