@@ -65,6 +65,7 @@ void AppendMap(const ConfigNode& map, const std::string& indent,
 }  // namespace
 
 std::string ConfigText(const ConfigNode& node) {
+  if (node.entries.empty()) return "{}\n";
   std::string text;
   AppendMap(node, "", &text);
   return text;

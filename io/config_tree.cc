@@ -11,6 +11,8 @@ namespace ibrdf {
 namespace {
 constexpr size_t kMaxConfigBytes = size_t{1} << 20;
 constexpr size_t kMaxDepth = 32;
+// YAML's keys have 1024 characters on their line, where one may take four.
+constexpr size_t kMaxKeyBytes = 200;
 
 // Thrown from the handler, caught in ParseConfig.
 struct Refusal {
@@ -117,6 +119,11 @@ class TreeBuilder final : public YAML::EventHandler {
       if (node.kind != ConfigNode::Kind::kScalar || node.scalar.empty()) {
         throw Refusal{mark.line + 1, "expected a word as key"};
       }
+      if (node.scalar.size() > kMaxKeyBytes) {
+        throw Refusal{mark.line + 1, "expected a key of at most " +
+                                         std::to_string(kMaxKeyBytes) +
+                                         " bytes"};
+      }
       if (top.node.Find(node.scalar) != nullptr) {
         throw Refusal{mark.line + 1, "duplicate key '" + node.scalar + "'"};
       }
@@ -212,7 +219,9 @@ Status ApplyOverride(const std::string& override_text, ConfigNode* root) {
     if (keys[k].empty()) {
       return InvalidInput(where, "expected key.path=value, found an empty key");
     }
-    if (k >= kMaxDepth) return InvalidInput(where, "nested too deep");
+    if (k >= kMaxDepth || keys[k].size() > kMaxKeyBytes) {
+      return InvalidInput(where, "nested too deep, or a key too long");
+    }
     // A scalar or list on the way gives place to the map that was asked for.
     if (node->kind != ConfigNode::Kind::kMap) {
       *node = ConfigNode();

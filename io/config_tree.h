@@ -22,7 +22,8 @@ struct ConfigNode {
 
 // `where` (the file) begins every message, followed by the line. Refuses text
 // over 1 MiB, nesting over 32 levels, duplicate keys, keys that are not plain
-// words, anchors, aliases, tags, and more than one document.
+// words or longer than 200 bytes, anchors, aliases, tags, and more than one
+// document.
 StatusOr<ConfigNode> ParseConfig(const std::string& where,
                                  const std::string& text);
 

@@ -232,6 +232,11 @@ StatusOr<ExrPicture> ChooseExrPicture(const std::string& path,
   if (best.size() == 1 || (!best.empty() && DifferByView(best))) {
     return best[0];
   }
+  if (best.empty()) {
+    return InvalidInput(path + ": layers",
+                        "expected one of colours, found Cryptomatte alone: " +
+                            ListNames(pictures));
+  }
   return InvalidInput(
       path + ": layers",
       "several may be meant, name one by `layer`: " + ListNames(pictures));

@@ -77,11 +77,10 @@ Status CheckFloats(const std::string& path, const Photo& photo) {
                 " bits, which cuts off lamps and the sun");
 }
 
-}  // namespace
-
-StatusOr<StoredMap> ReadStoredMap(const std::string& path,
-                                  std::optional<MapFrame> frame) {
-  StatusOr<Photo> photo = ReadPhoto(path);
+// The map of a picture, whose floats are its radiance.
+StatusOr<StoredMap> MapOfPhoto(const std::string& path,
+                               std::optional<MapFrame> frame,
+                               StatusOr<Photo> photo) {
   if (!photo.ok()) return photo.status();
   IBRDF_RETURN_IF_ERROR(CheckFloats(path, *photo));
   StoredMap map;
@@ -99,6 +98,22 @@ StatusOr<StoredMap> ReadStoredMap(const std::string& path,
                            std::to_string(below->lowest) + ", were set to 0");
   }
   return map;
+}
+
+}  // namespace
+
+StatusOr<StoredMap> ReadStoredMap(const std::string& path,
+                                  std::optional<MapFrame> frame) {
+  return MapOfPhoto(path, frame, ReadPhoto(path));
+}
+
+StatusOr<StoredMap> DecodeStoredMap(const std::string& path,
+                                    const std::string& bytes,
+                                    std::optional<MapFrame> frame,
+                                    const ImageLimits& limits) {
+  PhotoOptions options;
+  options.limits = limits;
+  return MapOfPhoto(path, frame, DecodePhoto(path, bytes, options));
 }
 
 StatusOr<Image> ReadMap(const std::string& path, std::optional<MapFrame> frame,

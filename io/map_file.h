@@ -6,6 +6,7 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
+#include "ibrdf/io/image_limits.h"
 #include "ibrdf/light/map_frame.h"
 
 namespace ibrdf {
@@ -33,7 +34,13 @@ struct StoredMap {
 StatusOr<StoredMap> ReadStoredMap(const std::string& path,
                                   std::optional<MapFrame> frame);
 
-// The same in the library's frame, as fine as the file. `warnings` receives
+// The same of a file's bytes; messages call it `path`.
+StatusOr<StoredMap> DecodeStoredMap(const std::string& path,
+                                    const std::string& bytes,
+                                    std::optional<MapFrame> frame,
+                                    const ImageLimits& limits = {});
+
+// A stored map in the library's frame, as fine as the file. `warnings` receives
 // those of the stored map; it may be null.
 StatusOr<Image> ReadMap(const std::string& path, std::optional<MapFrame> frame,
                         std::vector<std::string>* warnings = nullptr);

@@ -244,13 +244,30 @@ TriangleMesh ToTriangles(const std::string& path, const PolygonMesh& polygons,
   return result;
 }
 
+using PolygonParser = StatusOr<PolygonMesh>(const std::string& path,
+                                            const std::string& bytes);
+
+// The parser of a file by its extension; null for other extensions.
+PolygonParser* ParserOf(const std::string& path) {
+  const std::string extension = FileExtension(path);
+  if (extension == "obj") return ParseObj;
+  if (extension == "ply") return ParsePly;
+  if (extension == "stl") return ParseStl;
+  if (extension == "glb") return ParseGlb;
+  return nullptr;
+}
+
+Status UnknownExtension(const std::string& path) {
+  return InvalidInput(path + ": extension",
+                      FileExtension(path) == "gltf"
+                          ? "expected .glb, glTF in one file with its buffer"
+                          : "expected .obj, .ply, .stl or .glb");
+}
+
 }  // namespace
 
 StatusOr<TriangleMesh> ReadMesh(const std::string& path, MeshNotes* notes) {
-  const std::string extension = FileExtension(path);
-  if (extension != "obj" && extension != "ply") {
-    return InvalidInput(path + ": extension", "expected .obj or .ply");
-  }
+  if (ParserOf(path) == nullptr) return UnknownExtension(path);
   const StatusOr<std::string> bytes = ReadFile(path, kMaxMeshFileBytes);
   if (!bytes.ok()) return bytes.status();
   return DecodeMesh(path, *bytes, notes);
@@ -258,9 +275,9 @@ StatusOr<TriangleMesh> ReadMesh(const std::string& path, MeshNotes* notes) {
 
 StatusOr<TriangleMesh> DecodeMesh(const std::string& path,
                                   const std::string& bytes, MeshNotes* notes) {
-  const StatusOr<PolygonMesh> polygons = FileExtension(path) == "obj"
-                                             ? ParseObj(path, bytes)
-                                             : ParsePly(path, bytes);
+  PolygonParser* const parse = ParserOf(path);
+  if (parse == nullptr) return UnknownExtension(path);
+  const StatusOr<PolygonMesh> polygons = parse(path, bytes);
   if (!polygons.ok()) return polygons.status();
   MeshNotes unused;
   return ToTriangles(path, *polygons, notes != nullptr ? notes : &unused);

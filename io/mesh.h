@@ -1,4 +1,4 @@
-// Triangle meshes from OBJ and PLY files.
+// Triangle meshes from OBJ, PLY, STL and GLB files.
 #pragma once
 #include <Eigen/Core>
 #include <string>
@@ -16,8 +16,9 @@ struct MeshNotes {
   std::vector<std::string> warnings;  // sentences that name the file
 };
 
-// Reads .obj or .ply (by extension, in any case; others are refused). All
-// objects and groups become one mesh; polygons are cut into triangles; lines
+// Reads .obj, .ply, .stl or .glb (by extension, in any case; others are
+// refused). All objects and groups become one mesh, and so do the nodes of a
+// GLB's scene, each in its place; polygons are cut into triangles; lines
 // and points are dropped, and so are vertices that no face uses. Materials and
 // texture coordinates are ignored.
 // Coordinates far from the origin against the mesh's size, as georeferenced
@@ -34,8 +35,8 @@ struct MeshNotes {
 StatusOr<TriangleMesh> ReadMesh(const std::string& path,
                                 MeshNotes* notes = nullptr);
 
-// The same of a file's bytes, read as PLY unless `path` says .obj; messages
-// call it `path`.
+// The same of a file's bytes; messages call it `path`, whose extension says
+// what they are.
 StatusOr<TriangleMesh> DecodeMesh(const std::string& path,
                                   const std::string& bytes,
                                   MeshNotes* notes = nullptr);

@@ -1,11 +1,10 @@
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "ibrdf/io/polygon_mesh.h"
+#include "ibrdf/io/text_numbers.h"
 
 namespace ibrdf {
 namespace {
@@ -30,7 +29,7 @@ class LineReader {
       if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
       joined = !line.empty() && line.back() == '\\';
       if (joined) line.remove_suffix(1);
-      Split(line.substr(0, line.find('#')), words);
+      SplitWords(line.substr(0, line.find('#')), words);
     }
     return true;
   }
@@ -40,30 +39,10 @@ class LineReader {
   }
 
  private:
-  static void Split(std::string_view line,
-                    std::vector<std::string_view>* words) {
-    for (size_t i = 0; i < line.size();) {
-      const size_t start = line.find_first_not_of(" \t", i);
-      if (start == std::string_view::npos) return;
-      i = line.find_first_of(" \t", start);
-      if (i == std::string_view::npos) i = line.size();
-      words->push_back(line.substr(start, i - start));
-    }
-  }
-
   std::string_view text_;
   size_t position_ = 0;
   int64_t line_ = 0;
 };
-
-template <typename Number>
-bool Parse(std::string_view text, Number* value) {
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  const char* end = text.data() + text.size();
-  const std::from_chars_result result =
-      std::from_chars(text.data(), end, *value);
-  return result.ec == std::errc() && result.ptr == end;
-}
 
 // The vector of a line "v x y z" or "vn x y z".
 bool AppendVector(const std::vector<std::string_view>& words,
@@ -71,7 +50,7 @@ bool AppendVector(const std::vector<std::string_view>& words,
   double xyz[3];
   if (words.size() < 4) return false;
   for (size_t i = 0; i < 3; ++i) {
-    if (!Parse(words[i + 1], &xyz[i])) return false;
+    if (!ParseNumber(words[i + 1], &xyz[i])) return false;
   }
   if (words[0] == "v") return AppendVertex(xyz, mesh);
   AppendNormal(xyz, mesh);
@@ -81,15 +60,9 @@ bool AppendVector(const std::vector<std::string_view>& words,
 // 1-based index from one that may count back from the last (-1).
 bool Resolve(std::string_view text, int64_t so_far, int64_t total,
              int64_t* index) {
-  if (!Parse(text, index)) return false;
+  if (!ParseNumber(text, index)) return false;
   if (*index < 0) *index += so_far + 1;
   return *index >= 1 && *index <= total;
-}
-
-std::string_view WithoutByteOrderMark(std::string_view text) {
-  constexpr std::string_view kMark = "\xef\xbb\xbf";
-  if (text.substr(0, kMark.size()) == kMark) text.remove_prefix(kMark.size());
-  return text;
 }
 
 // Keywords of OBJ are ASCII; lines of others would pass for unknown ones, and
@@ -97,6 +70,17 @@ std::string_view WithoutByteOrderMark(std::string_view text) {
 bool IsPlain(std::string_view word) {
   return std::all_of(word.begin(), word.end(),
                      [](char c) { return c > ' ' && c < '\x7f'; });
+}
+
+// A line's words, as far as a message takes them.
+std::string Joined(const std::vector<std::string_view>& words) {
+  constexpr size_t kMaxShown = 60;
+  std::string line;
+  for (const std::string_view word : words) {
+    if (line.size() > kMaxShown) break;
+    line += (line.empty() ? "" : " ") + std::string(word.substr(0, kMaxShown));
+  }
+  return line;
 }
 
 struct Counts {
@@ -129,19 +113,6 @@ bool ParseCorner(std::string_view word, const Counts& so_far,
 }
 
 }  // namespace
-
-bool AppendVertex(const double xyz[3], PolygonMesh* mesh) {
-  const Eigen::Map<const Eigen::Vector3d> v(xyz);
-  if (!v.cast<float>().allFinite()) return false;
-  mesh->vertices.push_back(v);
-  return true;
-}
-
-void AppendNormal(const double xyz[3], PolygonMesh* mesh) {
-  const Eigen::Vector3f v =
-      Eigen::Map<const Eigen::Vector3d>(xyz).cast<float>();
-  mesh->normals.push_back(v.allFinite() ? v : Eigen::Vector3f::Zero().eval());
-}
 
 StatusOr<PolygonMesh> ParseObj(const std::string& path,
                                const std::string& bytes) {
@@ -182,8 +153,9 @@ StatusOr<PolygonMesh> ParseObj(const std::string& path,
     so_far.Add(words[0]);
     if (words[0] == "v" || (words[0] == "vn" && all_have_normals)) {
       if (!AppendVector(words, &mesh)) {
-        return InvalidInput(reader.Where(path),
-                            "expected three finite numbers");
+        return InvalidInput(
+            reader.Where(path),
+            "expected three finite numbers, found '" + Joined(words) + "'");
       }
     } else if (words[0] == "f") {
       if (words.size() < 4 || words.size() > size_t{kMaxPolygonCorners} + 1) {

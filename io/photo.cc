@@ -214,6 +214,14 @@ void AddExif(const ExifTags& exif, Photo* photo) {
   }
 }
 
+Status CheckSquarePixels(const std::string& path, const Photo& photo) {
+  if (photo.pixel_aspect == 1.0) return OkStatus();
+  return InvalidInput(path + ": pixelAspectRatio",
+                      "expected 1, found " +
+                          std::to_string(photo.pixel_aspect) +
+                          "; resample the picture to square pixels");
+}
+
 std::string Printable(const std::string& text) {
   std::string out = text;
   for (char& c : out) {

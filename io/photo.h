@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/io/exif.h"
 #include "ibrdf/io/image_limits.h"
@@ -122,6 +123,9 @@ void SetAlpha(const std::vector<float>& alpha, Photo* photo);
 // Notes orientation (not undone yet), colour space and exposure; a damaged
 // block makes a note.
 void AddExif(const ExifTags& exif, Photo* photo);
+
+// Refuses a picture whose pixels are not as wide as high.
+Status CheckSquarePixels(const std::string& path, const Photo& photo);
 
 // Control characters become '?', so that text of a file stays one line.
 std::string Printable(const std::string& text);

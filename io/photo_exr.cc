@@ -31,7 +31,7 @@ constexpr size_t kMaxParts = 256;
 // What OpenEXR may allocate for one block of lines or one tile of all channels
 // of a part. A line of 8192 pixels of 100 float channels has 3.3 MB; 256 lines
 // of it (DWAB) 0.84 GB.
-constexpr int64_t kMaxBlockBytes = int64_t{1} << 30;
+constexpr int64_t kMaxExrBlockBytes = int64_t{1} << 30;
 
 int Width(const Imath::Box2i& window) {
   return window.max.x - window.min.x + 1;
@@ -85,7 +85,7 @@ Status CheckBlocks(const std::string& path, const Imf::Header& header,
     block = x * y;
     blocks = ((width + x - 1) / x) * ((height + y - 1) / y);
   }
-  if (block > kMaxBlockBytes / std::max<int64_t>(pixel_bytes, 1)) {
+  if (block > kMaxExrBlockBytes / std::max<int64_t>(pixel_bytes, 1)) {
     return InvalidInput(path + ": channels",
                         "expected blocks of at most 1 GiB, found " +
                             std::to_string(block) + " pixels of " +

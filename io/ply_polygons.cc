@@ -1,4 +1,3 @@
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include "ibrdf/io/polygon_mesh.h"
+#include "ibrdf/io/text_numbers.h"
 
 namespace ibrdf {
 namespace {
@@ -123,8 +123,7 @@ bool ParseHeaderLine(const std::string& line, PlyHeader* header) {
 StatusOr<PlyHeader> ParsePlyHeader(const std::string& path,
                                    const std::string& bytes) {
   PlyHeader header;
-  constexpr char kByteOrderMark[] = "\xef\xbb\xbf";
-  if (bytes.compare(0, 3, kByteOrderMark) == 0) header.end = 3;
+  header.end = bytes.size() - WithoutByteOrderMark(bytes).size();
   for (int line_number = 1; header.end < bytes.size(); ++line_number) {
     const size_t newline = bytes.find('\n', header.end);
     if (newline == std::string::npos) break;
@@ -166,13 +165,10 @@ class NumberReader {
     const size_t start = bytes_.find_first_not_of(kSpace);
     if (start == std::string_view::npos) return false;
     bytes_.remove_prefix(start);
-    std::string_view word = bytes_.substr(0, bytes_.find_first_of(kSpace));
+    const std::string_view word =
+        bytes_.substr(0, bytes_.find_first_of(kSpace));
     bytes_.remove_prefix(word.size());
-    if (word.front() == '+') word.remove_prefix(1);
-    const char* end = word.data() + word.size();
-    const std::from_chars_result result =
-        std::from_chars(word.data(), end, *value);
-    return result.ec == std::errc() && result.ptr == end;
+    return ParseNumber(word, value);
   }
 
   bool NextBinary(Type type, double* value) {
@@ -234,63 +230,114 @@ int VertexSlot(const std::string& name) {
   return -1;
 }
 
-Status ReadElement(const std::string& path, const Element& element,
-                   NumberReader* numbers, PolygonMesh* mesh) {
-  const bool is_vertex = element.name == "vertex";
-  const bool is_face = element.name == "face";
-  unsigned slots_found = 0;
-  for (const Property& p : element.properties) {
-    const int slot = p.is_list ? -1 : VertexSlot(p.name);
-    if (slot >= 0) slots_found |= 1u << slot;
+// Reads the rows of one element into the mesh.
+class ElementReader {
+ public:
+  ElementReader(const std::string& path, const Element& element,
+                NumberReader* numbers, PolygonMesh* mesh)
+      : path_(path),
+        element_(element),
+        numbers_(numbers),
+        mesh_(mesh),
+        is_vertex_(element.name == "vertex"),
+        is_strip_(element.name == "tristrips"),
+        has_corners_(element.name == "face" || is_strip_) {}
+
+  Status Read() {
+    unsigned slots_found = 0;
+    for (const Property& p : element_.properties) {
+      const int slot = p.is_list ? -1 : VertexSlot(p.name);
+      if (slot >= 0) slots_found |= 1u << slot;
+    }
+    if (is_vertex_ && (slots_found & 7u) != 7u) {
+      return InvalidInput(path_ + ": vertex", "expected properties x, y and z");
+    }
+    has_normals_ = is_vertex_ && (slots_found & 56u) == 56u;
+    if (element_.properties.empty()) return OkStatus();
+    for (row_ = 0; row_ < element_.count; ++row_) {
+      IBRDF_RETURN_IF_ERROR(ReadRow());
+    }
+    return OkStatus();
   }
-  if (is_vertex && (slots_found & 7u) != 7u) {
-    return InvalidInput(path + ": vertex", "expected properties x, y and z");
+
+ private:
+  std::string Where() const {
+    return path_ + ": " + element_.name + " " + std::to_string(row_);
   }
-  const bool normals = is_vertex && (slots_found & 56u) == 56u;
-  if (element.properties.empty()) return OkStatus();
-  for (int64_t row = 0; row < element.count; ++row) {
-    const auto where = [&] {
-      return path + ": " + element.name + " " + std::to_string(row);
-    };
+
+  Status ReadRow() {
     double slots[6] = {};
-    for (const Property& p : element.properties) {
+    for (const Property& p : element_.properties) {
       double value = 0.0;
-      if (!numbers->Next(p.is_list ? p.count_type : p.type, &value)) {
-        return InvalidInput(where(), "expected a number for " + p.name);
+      if (!numbers_->Next(p.is_list ? p.count_type : p.type, &value)) {
+        return InvalidInput(Where(), "expected a number for " + p.name);
       }
-      const int slot = is_vertex && !p.is_list ? VertexSlot(p.name) : -1;
-      if (slot >= 0) slots[slot] = value;
-      if (!p.is_list) continue;
-      const bool corners =
-          is_face && (p.name == "vertex_indices" || p.name == "vertex_index");
-      const double longest = corners ? kMaxPolygonCorners : INT32_MAX;
-      if (!(value >= (corners ? 3 : 0) && value <= longest)) {
-        return InvalidInput(
-            where() + ": " + p.name,
-            "expected a list of " +
-                std::string(corners ? "3 to 4096" : "0 or more") + " numbers");
-      }
-      if (corners) mesh->sizes.push_back(static_cast<int>(value));
-      for (int i = 0; i < static_cast<int>(value); ++i) {
-        double item = 0.0;
-        if (!numbers->Next(p.type, &item)) {
-          return InvalidInput(where(), "expected a number for " + p.name);
-        }
-        if (!corners) continue;
-        if (!(item >= 0.0 && item <= INT32_MAX && item == std::floor(item))) {
-          return InvalidInput(where(), "expected indices of vertices");
-        }
-        mesh->corners.push_back(static_cast<int>(item));
+      if (p.is_list) {
+        IBRDF_RETURN_IF_ERROR(ReadList(p, value));
+      } else if (const int slot = is_vertex_ ? VertexSlot(p.name) : -1;
+                 slot >= 0) {
+        slots[slot] = value;
       }
     }
-    if (!is_vertex) continue;
-    if (!AppendVertex(slots, mesh)) {
-      return InvalidInput(where(), "expected finite coordinates");
+    if (!is_vertex_) return OkStatus();
+    if (!AppendVertex(slots, mesh_)) {
+      return InvalidInput(Where(), "expected finite coordinates");
     }
-    if (normals) AppendNormal(slots + 3, mesh);
+    if (has_normals_) AppendNormal(slots + 3, mesh_);
+    return OkStatus();
   }
-  return OkStatus();
-}
+
+  Status ReadList(const Property& p, double count) {
+    const bool corners = has_corners_ && (p.name == "vertex_indices" ||
+                                          p.name == "vertex_index");
+    const int least = corners && !is_strip_ ? 3 : 0;
+    const int most = corners && !is_strip_ ? kMaxPolygonCorners : INT32_MAX;
+    if (!(count >= least && count <= most)) {
+      return InvalidInput(Where() + ": " + p.name,
+                          "expected a list of " +
+                              (least > 0 ? "3 to " + std::to_string(most)
+                                         : std::string("0 or more")) +
+                              " numbers");
+    }
+    if (corners && !is_strip_) mesh_->sizes.push_back(static_cast<int>(count));
+    strip_.clear();
+    for (int i = 0; i < static_cast<int>(count); ++i) {
+      double item = 0.0;
+      if (!numbers_->Next(p.type, &item)) {
+        return InvalidInput(Where(), "expected a number for " + p.name);
+      }
+      if (corners) IBRDF_RETURN_IF_ERROR(AddCorner(item));
+    }
+    return corners && is_strip_ ? EndStrip() : OkStatus();
+  }
+
+  Status AddCorner(double item) {
+    if (is_strip_ && item == -1.0) return EndStrip();  // another begins
+    if (!(item >= 0.0 && item <= INT32_MAX && item == std::floor(item))) {
+      return InvalidInput(Where(), "expected indices of vertices");
+    }
+    (is_strip_ ? strip_ : mesh_->corners).push_back(static_cast<int>(item));
+    return OkStatus();
+  }
+
+  Status EndStrip() {
+    const bool fits = AppendStrip(strip_, mesh_);
+    strip_.clear();
+    return fits ? OkStatus()
+                : InvalidInput(Where(), "expected strips of at most " +
+                                            std::to_string(kMaxStripTriangles) +
+                                            " triangles in all");
+  }
+
+  const std::string& path_;
+  const Element& element_;
+  NumberReader* numbers_;
+  PolygonMesh* mesh_;
+  const bool is_vertex_, is_strip_, has_corners_;
+  bool has_normals_ = false;
+  int64_t row_ = 0;
+  std::vector<int> strip_;
+};
 
 }  // namespace
 
@@ -310,7 +357,7 @@ StatusOr<PolygonMesh> ParsePly(const std::string& path,
                           "expected a count that fits into the file, found " +
                               std::to_string(element.count));
     }
-    IBRDF_RETURN_IF_ERROR(ReadElement(path, element, &numbers, &mesh));
+    IBRDF_RETURN_IF_ERROR(ElementReader(path, element, &numbers, &mesh).Read());
   }
   if (mesh.sizes.empty()) {
     return InvalidInput(path + ": faces", "expected at least one face");

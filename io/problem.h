@@ -86,7 +86,7 @@ struct GeometrySpec {
   GeometryKind kind = GeometryKind::kSphere;
   // The sphere's, before an orthographic camera.
   std::optional<PixelCircle> outline;
-  // Mesh (.obj, .ply); normals or depth (any of photo_file.h).
+  // Mesh (.obj, .ply, .stl, .glb); normals or depth (any of photo_file.h).
   std::string file;
   MeshFit fit = MeshFit::kUnitSphere;
   bool fit_stated = false;  // fit is the user's word

@@ -357,7 +357,7 @@ void SettlePrior(const SolverSpec& solver, IlluminationSpec* illumination) {
 // The first error is the context's.
 void ReadKeys(ProblemReader root, Problem* problem) {
   for (const char* key : {"image", "geometry"}) {
-    if (!root.Has(key)) root.Fail(key, "expected, found nothing");
+    if (!root.Has(key)) root.Fail(key, "expected this key, found nothing");
   }
   root.Read("problem", &problem->kind);
   ReadImageSpec(root.Below("image"), &problem->image);

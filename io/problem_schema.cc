@@ -343,7 +343,7 @@ Keys GeometryKeys() {
       Row("geometry.mesh",
           "A mesh of polygons. It shadows and lights itself where that matters "
           "(`effects`).")
-          .Path(".obj, .ply"),
+          .Path(".obj, .ply, .stl, .glb"),
       Row("geometry.normals",
           "One normal per pixel, in the camera's frame; "
           "zero is outside. Without positions there are no shadows.")

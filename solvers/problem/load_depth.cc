@@ -20,6 +20,7 @@ bool IsHole(float value, bool codes) {
 }
 
 Status CheckFile(const GeometrySpec& geometry, const Photo& photo) {
+  IBRDF_RETURN_IF_ERROR(CheckSquarePixels(geometry.file, photo));
   if (photo.format == PhotoFormat::kJpeg) {
     return InvalidInput(geometry.file,
                         "expected depth in OpenEXR, PFM, PNG, TIFF or .npy, "
@@ -63,13 +64,16 @@ StatusOr<DepthMap> ReadDepthMap(const GeometrySpec& geometry,
   return map;
 }
 
-}  // namespace
-
-StatusOr<NormalMap> LoadDepth(const GeometrySpec& geometry,
-                              const Camera& camera) {
+PhotoOptions DepthOptions(const ImageLimits& limits) {
   PhotoOptions options;
   options.content = PhotoContent::kDepth;
-  const StatusOr<Photo> photo = ReadPhoto(geometry.file, options);
+  options.limits = limits;
+  return options;
+}
+
+StatusOr<NormalMap> NormalsOfPhoto(const GeometrySpec& geometry,
+                                   const Camera& camera,
+                                   const StatusOr<Photo>& photo) {
   if (!photo.ok()) return photo.status();
   IBRDF_RETURN_IF_ERROR(CheckFile(geometry, *photo));
   const StatusOr<DepthMap> map =
@@ -97,6 +101,22 @@ StatusOr<NormalMap> LoadDepth(const GeometrySpec& geometry,
                            "16 bits or floats");
   }
   return out;
+}
+
+}  // namespace
+
+StatusOr<NormalMap> LoadDepth(const GeometrySpec& geometry,
+                              const Camera& camera) {
+  return NormalsOfPhoto(geometry, camera,
+                        ReadPhoto(geometry.file, DepthOptions({})));
+}
+
+StatusOr<NormalMap> DecodeDepth(const GeometrySpec& geometry,
+                                const Camera& camera, const std::string& bytes,
+                                const ImageLimits& limits) {
+  return NormalsOfPhoto(
+      geometry, camera,
+      DecodePhoto(geometry.file, bytes, DepthOptions(limits)));
 }
 
 }  // namespace ibrdf

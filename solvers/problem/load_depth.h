@@ -1,7 +1,10 @@
 // Depth maps, as normals.
 #pragma once
+#include <string>
+
 #include "ibrdf/base/status.h"
 #include "ibrdf/geometry/camera.h"
+#include "ibrdf/io/image_limits.h"
 #include "ibrdf/io/problem.h"
 #include "ibrdf/solvers/problem/load_normals.h"
 
@@ -16,5 +19,10 @@ namespace ibrdf {
 // scale, depth of 0 or less before a perspective camera, and a file of holes.
 StatusOr<NormalMap> LoadDepth(const GeometrySpec& geometry,
                               const Camera& camera);
+
+// The same of a file's bytes; messages call it geometry.file.
+StatusOr<NormalMap> DecodeDepth(const GeometrySpec& geometry,
+                                const Camera& camera, const std::string& bytes,
+                                const ImageLimits& limits = {});
 
 }  // namespace ibrdf

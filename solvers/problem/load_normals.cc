@@ -3,8 +3,11 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
+#include <vector>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/io/photo_file.h"
 
 namespace ibrdf {
@@ -15,6 +18,13 @@ namespace {
 constexpr double kFarOff = 0.1;
 // Lengths further from 1 are worth a word: half floats and 8 bits are nearer.
 constexpr double kNotUnit = 0.02;
+// What is decoded and shorter is the middle grey that maps have around an
+// object.
+constexpr double kGround = 0.1;
+// Lengths of normals that were averaged or rounded keep within these factors of
+// their median, and those of (n + 1) / 2 have a median of 1. Others are colours
+// or positions, where more than this share is so.
+constexpr double kFarFactor = 2.0, kFarMedian = 0.3, kFarShare = 0.25;
 
 Eigen::Vector3d At(const Image& image, size_t pixel) {
   return Eigen::Map<const Eigen::Vector3f>(&image.rgb[3 * pixel])
@@ -38,6 +48,35 @@ bool LooksEncoded(const Image& image) {
   return 2 * far_off > set;
 }
 
+// Refuses what cannot be normals by its lengths. Those of floats may have any
+// unit, those that were `decoded` have not.
+Status CheckLengths(const GeometrySpec& geometry, const Image& normals,
+                    bool decoded) {
+  std::vector<double> lengths;
+  for (size_t i = 0; i < normals.rgb.size() / 3; ++i) {
+    const Eigen::Vector3d v = At(normals, i);
+    if (IsSet(v)) lengths.push_back(v.stableNorm());
+  }
+  if (lengths.empty()) return OkStatus();
+  const auto middle =
+      lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  const double median = *middle;
+  const auto far_off = static_cast<double>(
+      std::count_if(lengths.begin(), lengths.end(), [&](double length) {
+        return length > kFarFactor * median || kFarFactor * length < median;
+      }));
+  if (far_off <= kFarShare * static_cast<double>(lengths.size()) &&
+      !(decoded && std::abs(median - 1.0) > kFarMedian)) {
+    return OkStatus();
+  }
+  return InvalidInput(
+      geometry.file,
+      "expected normals, found vectors whose lengths are far from alike, or "
+      "from 1 (the median is " +
+          Format("%.3g", median) + "): is it another picture?");
+}
+
 // Turns what the file holds into vectors in its own frame.
 Status Decode(const GeometrySpec& geometry, int bits, NormalMap* map) {
   NormalEncoding encoding = geometry.encoding;
@@ -56,15 +95,18 @@ Status Decode(const GeometrySpec& geometry, int bits, NormalMap* map) {
     }
     encoding = encoded ? NormalEncoding::kUnit01 : NormalEncoding::kFloat;
   }
-  if (encoding == NormalEncoding::kFloat) return OkStatus();
+  if (encoding == NormalEncoding::kFloat) {
+    return CheckLengths(geometry, map->normals, false);
+  }
   const double largest = bits > 0 ? std::exp2(bits) - 1.0 : 1.0;
   for (size_t i = 0; i < map->normals.rgb.size() / 3; ++i) {
     const Eigen::Vector3d v = At(map->normals, i);
     if (!IsSet(v)) continue;
-    Eigen::Map<Eigen::Vector3f>(&map->normals.rgb[3 * i]) =
-        (2.0 * v.array() / largest - 1.0).matrix().cast<float>();
+    Eigen::Vector3d n = (2.0 * v.array() / largest - 1.0).matrix();
+    if (n.norm() < kGround) n.setZero();
+    Eigen::Map<Eigen::Vector3f>(&map->normals.rgb[3 * i]) = n.cast<float>();
   }
-  return OkStatus();
+  return CheckLengths(geometry, map->normals, true);
 }
 
 // A vector of the file's frame in the camera's.
@@ -97,6 +139,16 @@ void Orient(const GeometrySpec& geometry, NormalMap* map) {
   }
 }
 
+// The axis of a frame that points along the view, with its other word.
+std::string OtherWay(const NormalFrame& frame) {
+  for (size_t k = 0; k < 3; ++k) {
+    const std::string axis(1, "xyz"[k]);
+    if (frame[k] == PictureAxis::kAway) return axis + ": toward";
+    if (frame[k] == PictureAxis::kToward) return axis + ": away";
+  }
+  return "one axis is toward or away";
+}
+
 Status CheckTheyFaceTheCamera(const GeometrySpec& geometry,
                               const Image& normals) {
   size_t set = 0, away = 0;
@@ -110,7 +162,7 @@ Status CheckTheyFaceTheCamera(const GeometrySpec& geometry,
   const std::string advice = geometry.frame == kOpenGlFrame ? "opencv"
                              : geometry.frame == kOpenCvFrame
                                  ? "opengl"
-                                 : "one axis is toward or away";
+                                 : OtherWay(geometry.frame);
   return InvalidInput(
       geometry.file,
       std::to_string(100 * away / set) +
@@ -120,19 +172,36 @@ Status CheckTheyFaceTheCamera(const GeometrySpec& geometry,
           advice);
 }
 
-}  // namespace
-
-StatusOr<NormalMap> LoadNormals(const GeometrySpec& geometry) {
+PhotoOptions NormalsOptions(const ImageLimits& limits) {
   PhotoOptions options;
   options.content = PhotoContent::kNormals;
-  StatusOr<Photo> photo = ReadPhoto(geometry.file, options);
+  options.limits = limits;
+  return options;
+}
+
+StatusOr<NormalMap> NormalsOfPhoto(const GeometrySpec& geometry,
+                                   StatusOr<Photo> photo) {
   if (!photo.ok()) return photo.status();
+  IBRDF_RETURN_IF_ERROR(CheckSquarePixels(geometry.file, *photo));
   NormalMap map;
   map.normals = std::move(photo->image);
   IBRDF_RETURN_IF_ERROR(Decode(geometry, photo->bits, &map));
   Orient(geometry, &map);
   IBRDF_RETURN_IF_ERROR(CheckTheyFaceTheCamera(geometry, map.normals));
   return map;
+}
+
+}  // namespace
+
+StatusOr<NormalMap> LoadNormals(const GeometrySpec& geometry) {
+  return NormalsOfPhoto(geometry, ReadPhoto(geometry.file, NormalsOptions({})));
+}
+
+StatusOr<NormalMap> DecodeNormals(const GeometrySpec& geometry,
+                                  const std::string& bytes,
+                                  const ImageLimits& limits) {
+  return NormalsOfPhoto(
+      geometry, DecodePhoto(geometry.file, bytes, NormalsOptions(limits)));
 }
 
 }  // namespace ibrdf

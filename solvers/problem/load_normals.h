@@ -5,6 +5,7 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
+#include "ibrdf/io/image_limits.h"
 #include "ibrdf/io/problem.h"
 
 namespace ibrdf {
@@ -21,7 +22,16 @@ struct NormalMap {
 // negative and whose lengths are far from 1; the latter is a warning. Values
 // (0, 0, 0) are outside the object in every encoding.
 //
-// Fails where most normals face away from the camera, which is at +z.
+// Vectors that (n + 1) / 2 leaves shorter than 0.1 are the grey ground around
+// an object, and become (0, 0, 0).
+//
+// Fails where most normals face away from the camera, which is at +z, where
+// lengths say that they are no normals, and where pixels are not square.
 StatusOr<NormalMap> LoadNormals(const GeometrySpec& geometry);
+
+// The same of a file's bytes; messages call it geometry.file.
+StatusOr<NormalMap> DecodeNormals(const GeometrySpec& geometry,
+                                  const std::string& bytes,
+                                  const ImageLimits& limits = {});
 
 }  // namespace ibrdf

@@ -301,12 +301,7 @@ StatusOr<Photograph> LoadPhotograph(const ImageSpec& spec) {
   options.layer = spec.layer;
   StatusOr<Photo> photo = ReadPhoto(spec.file, options);
   if (!photo.ok()) return photo.status();
-  if (photo->pixel_aspect != 1.0) {
-    return InvalidInput(spec.file + ": pixelAspectRatio",
-                        "expected 1, found " +
-                            std::to_string(photo->pixel_aspect) +
-                            "; resample the picture to square pixels");
-  }
+  IBRDF_RETURN_IF_ERROR(CheckSquarePixels(spec.file, *photo));
   Photograph photograph;
   for (const std::string& note : photo->notes) {
     photograph.warnings.push_back(spec.file + ": " + note);

@@ -37,10 +37,10 @@ Silhouette FindSilhouette(const Scene& scene, const Camera& camera, int width,
 }
 
 std::string FitAdvice(const Problem& problem) {
-  const bool moved = problem.geometry.kind == GeometryKind::kMesh &&
-                     problem.geometry.fit == MeshFit::kUnitSphere;
-  return moved ? ".fit: unit_sphere moved and scaled the mesh, not the camera"
-               : "";
+  if (problem.geometry.kind != GeometryKind::kMesh) return "";
+  return problem.geometry.fit == MeshFit::kUnitSphere
+             ? ".fit: unit_sphere moved and scaled the mesh, not the camera"
+             : ".fit: none leaves the mesh in the file's coordinates";
 }
 
 Status CheckSilhouette(const Problem& problem, const Silhouette& silhouette,

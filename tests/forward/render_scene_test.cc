@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/map_file.h"
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/light/environment_map.h"
+#include "tests/support/mesh_files.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -85,6 +88,51 @@ TEST(RenderScene, PreviewSamplesThePixelsThatNeedIt) {
     ++count;
   }
   EXPECT_LT(error / count, 0.006);
+}
+
+// A ball of flat sides, before the camera.
+MeshSpec Ball() {
+  constexpr int kRings = 8, kColumns = 2 * kRings;
+  MeshSpec ball;
+  for (int i = 0; i <= kRings; ++i) {
+    for (int k = 0; k < kColumns; ++k) {
+      const double theta = kPi * i / kRings, phi = 2 * kPi * k / kColumns;
+      // A float's numbers, so that all formats hold the same.
+      const Eigen::Vector3f p(Eigen::Vector3d(std::sin(theta) * std::sin(phi),
+                                              std::cos(theta),
+                                              std::sin(theta) * std::cos(phi))
+                                  .cast<float>());
+      ball.vertices.push_back(p.cast<double>());
+    }
+  }
+  for (int i = 0; i < kRings; ++i) {
+    for (int k = 0; k < kColumns; ++k) {
+      const int a = i * kColumns + k, d = i * kColumns + (k + 1) % kColumns;
+      ball.triangles.push_back({a, a + kColumns, d + kColumns});
+      ball.triangles.push_back({a, d + kColumns, d});
+    }
+  }
+  return ball;
+}
+
+TEST(RenderScene, AMeshRendersTheSameFromAFileOfAnyFormat) {
+  const TempDir dir;
+  Problem problem = Scene24();
+  problem.geometry.kind = GeometryKind::kMesh;
+  const auto render = [&](const std::string& file, const std::string& bytes) {
+    WriteBytes(dir.File(file), bytes);
+    problem.geometry.file = dir.File(file);
+    const StatusOr<RenderedScene> out = RenderScene(problem, {});
+    EXPECT_TRUE(out.ok()) << out.status().message();
+    return out->image.rgb;
+  };
+  const MeshSpec ball = Ball();
+  const std::vector<float> obj = render("a.obj", ObjBytes(ball));
+  EXPECT_GT(*std::max_element(obj.begin(), obj.end()), 0.0f);
+  EXPECT_EQ(obj, render("a.ply", PlyBytes(ball)));
+  EXPECT_EQ(obj, render("a.stl", StlBytes(ball)));
+  EXPECT_EQ(obj, render("b.stl", StlText(ball)));
+  EXPECT_EQ(obj, render("a.glb", GlbBytes(ball)));
 }
 
 // A light whose log radiance changes by 1 per radian at most, brighter to the

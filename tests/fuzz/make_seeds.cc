@@ -24,6 +24,7 @@
 #include "ibrdf/io/radiance_hdr.h"
 #include "ibrdf/solvers/bench/results_table.h"
 #include "tests/fuzz/parsers.h"
+#include "tests/support/mesh_files.h"
 #include "tests/support/photo_files.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/tiny_model.h"
@@ -105,6 +106,83 @@ void WriteMeshes(const std::string& obj, const std::string& ply) {
                std::string("ply\nformat binary_") + (big ? "big" : "little") +
                    "_endian 1.0\n" + header + body);
   }
+}
+
+// Triangles in every way of the other formats.
+void WriteOtherMeshes(const std::string& ply, const std::string& stl,
+                      const std::string& glb) {
+  MeshSpec mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                   {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
+                   {{0, 1, 2}}};
+  WriteBytes(ply + "/strips.ply",
+             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+             "property float y\nproperty float z\nelement tristrips 1\n"
+             "property list int int vertex_indices\nend_header\n"
+             "0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 2 1 3\n");
+  WriteBytes(stl + "/binary.stl", StlBytes(mesh));
+  WriteBytes(stl + "/text.stl", StlText(mesh));
+  WriteBytes(glb + "/container", std::string(1, '\0') + GlbBytes(mesh));
+  std::string buffer;
+  nlohmann::json json = GltfJsonOf(mesh, &buffer);
+  const auto write = [&](const std::string& name) {
+    WriteBytes(glb + "/" + name, "\1" + json.dump() + "\xff" + buffer);
+  };
+  write("plain");
+  json["nodes"] = {
+      {{"children", {1}},
+       {"rotation", {0, 0, 0, 1}},
+       {"translation", {1, 2, 3}},
+       {"scale", {1, -1, 2}}},
+      {{"mesh", 0},
+       {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1}}}};
+  json["scene"] = 0;
+  json["extensionsRequired"] = {"KHR_mesh_quantization"};
+  nlohmann::json& primitive = json["meshes"][0]["primitives"][0];
+  primitive.erase("indices");
+  primitive["mode"] = 5;
+  json["bufferViews"][0]["byteStride"] = 12;
+  json["accessors"][1]["componentType"] = 5120;
+  json["accessors"][1]["normalized"] = true;
+  write("nodes");
+}
+
+// A byte of choice, then pictures that are maps, depth and normals.
+void WriteGeometryImages(const std::string& map, const std::string& depth,
+                         const std::string& normals) {
+  const std::string pfm = "Pf\n4 2\n-1.0\n" + std::string(32, '?');
+  const std::string cross = "Pf\n3 4\n-1.0\n" + std::string(48, '?');
+  const std::string probe = "PF\n4 4\n-1.0\n" + std::string(192, '?');
+  WriteBytes(map + "/latlong", std::string(1, '\0') + pfm);
+  WriteBytes(map + "/probe", "\5" + probe);
+  WriteBytes(map + "/cross", "\6" + cross);
+  const TempDir dir;
+  CHECK(WriteExr(Gradient(4, 2), dir.File("a.exr"), ExrPixelType::kFloat,
+                 {ExrEnvmap::kLatLong, "mitsuba"})
+            .ok());
+  WriteBytes(map + "/attributes", "\x8" + ReadBytes(dir.File("a.exr")));
+  WriteBytes(depth + "/orthographic", std::string(1, '\0') + pfm);
+  WriteBytes(depth + "/perspective", "\3" + pfm);
+  const std::string header =
+      "{'descr': '|u1', 'fortran_order': False, 'shape': (2, 2, 3), }";
+  const std::string npy =
+      std::string("\x93NUMPY\1\0", 8) +
+      LittleEndianBytes(static_cast<uint32_t>(header.size()), 2) + header +
+      "\x80\x80\xff\x80\xff\x80\xff\x80\x80\x90\x90\xf0";
+  WriteBytes(normals + "/codes", std::string(1, '\0') + npy);
+  WriteBytes(normals + "/floats", "\4" + probe);
+}
+
+void WriteTexts(const std::string& config, const std::string& flags) {
+  WriteBytes(config + "/kinds",
+             "a: 1\nb: [x, 'y z', ~, -1.5e-3]\nc: {d: {}, e: {f: no}}\n"
+             "\"g\": \"\\x41\\n\"\nh: null\n");
+  WriteBytes(flags + "/all",
+             "photo.exr\xffmask.png\xffsrgb\xffnormals.npy\xff\xffsky.hdr"
+             "\xffsolver.seconds=5\xffimage.brackets=[a.png, b.png]"
+             "\xffimage.bracket_exposures=[0.5, 2]");
+  WriteBytes(flags + "/mesh",
+             "photo.png\xff\xff"
+             "auto\xff\xffvase.glb");
 }
 
 void WriteProblems(const std::string& folder) {
@@ -426,6 +504,9 @@ void WriteSeeds(const std::string& folder) {
   WriteArrays(in("npy"), in("pfm"), in("exif"), in("icc"));
   WriteMerl(in("merl"));
   WriteMeshes(in("obj"), in("ply"));
+  WriteOtherMeshes(in("ply"), in("stl"), in("glb"));
+  WriteGeometryImages(in("map"), in("depth"), in("normals"));
+  WriteTexts(in("config"), in("flags"));
   WriteProblems(in("problem"));
   WriteModels(in("model"));
 }

@@ -6,153 +6,24 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <optional>
 
 #include "ibrdf/io/checksum.h"
-#include "ibrdf/io/exif.h"
-#include "ibrdf/io/exr.h"
-#include "ibrdf/io/icc_profile.h"
-#include "ibrdf/io/image_limits.h"
+#include "ibrdf/io/config_text.h"
+#include "ibrdf/io/config_tree.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/mesh.h"
 #include "ibrdf/io/model_file.h"
-#include "ibrdf/io/photo_file.h"
-#include "ibrdf/io/png.h"
 #include "ibrdf/io/problem_file.h"
-#include "ibrdf/io/radiance_hdr.h"
 #include "ibrdf/solvers/bench/results_table.h"
 #include "ibrdf/solvers/bench/solver_trace.h"
+#include "ibrdf/solvers/programs/problem_from_flags.h"
 #include "ibrdf/solvers/training/checkpoint.h"
-#include "tests/support/png_crc.h"
+#include "tests/fuzz/image_parsers.h"
+#include "tests/fuzz/parser_checks.h"
+#include "tests/support/mesh_files.h"
 
 namespace ibrdf {
 namespace {
-
-// What a small file claims beyond this is refused, as larger claims are with
-// the limits of the programs: time goes into parsing, not into large images.
-constexpr ImageLimits kLimits{256, 1 << 14};
-
-void CheckError(const Status& status, const std::string& name) {
-  CHECK(status.code() == StatusCode::kInvalidInput) << status.message();
-  CHECK_NE(status.message().find(name), std::string::npos) << status.message();
-  CHECK_EQ(status.message().find('\n'), std::string::npos) << status.message();
-}
-
-void CheckImage(const StatusOr<Image>& image, const std::string& name) {
-  if (!image.ok()) return CheckError(image.status(), name);
-  CHECK(CheckImageSize(name, image->width, image->height, kLimits).ok());
-  CHECK_EQ(image->rgb.size(), 3 * image->num_pixels());
-}
-
-void FuzzExr(const std::string& bytes) {
-  CheckImage(DecodeExr("a.exr", bytes, kLimits), "a.exr");
-}
-
-void FuzzHdr(const std::string& bytes) {
-  const StatusOr<Image> image = DecodeRadianceHdr("a.hdr", bytes, kLimits);
-  CheckImage(image, "a.hdr");
-  if (!image.ok()) return;
-  for (const float value : image->rgb) CHECK(!std::isnan(value) && value >= 0);
-}
-
-// Gives every chunk the checksum that fits it, as far as chunks go.
-void FixPngChecksums(std::string* png) {
-  constexpr size_t kSignature = 8, kSizeAndType = 8, kChecksum = 4;
-  size_t at = kSignature;
-  while (png->size() >= at + kSizeAndType + kChecksum) {
-    uint32_t size = 0;
-    for (size_t i = 0; i < 4; ++i) {
-      size = size << 8 | static_cast<uint8_t>((*png)[at + i]);
-    }
-    if (size > png->size() - at - kSizeAndType - kChecksum) return;
-    const uint32_t crc = PngCrc(png->data() + at + 4, size + 4);
-    at += kSizeAndType + size;
-    for (size_t i = 0; i < 4; ++i) {
-      (*png)[at + i] = static_cast<char>(crc >> (24 - 8 * i));
-    }
-    at += kChecksum;
-  }
-}
-
-void FuzzPng(const std::string& input) {
-  if (input.empty()) return;
-  std::string bytes = input.substr(1);
-  if (input[0] & 1) FixPngChecksums(&bytes);
-  const StatusOr<Mask> mask = DecodeMask("a.png", bytes, kLimits);
-  if (!mask.ok()) return CheckError(mask.status(), "a.png");
-  CHECK(CheckImageSize("a.png", mask->width, mask->height, kLimits).ok());
-  CHECK_EQ(mask->inside.size(),
-           static_cast<size_t>(mask->width) * mask->height);
-  for (const uint8_t v : mask->inside) CHECK_LE(v, 1);
-}
-
-void CheckOneLine(const std::string& text) {
-  for (const char c : text) CHECK_GE(static_cast<unsigned char>(c), 0x20);
-}
-
-void CheckMask(const Mask& mask, const Photo& photo) {
-  if (mask.empty()) return;
-  CHECK_EQ(mask.width, photo.image.width);
-  CHECK_EQ(mask.inside.size(), photo.image.num_pixels());
-  for (const uint8_t v : mask.inside) CHECK_LE(v, 1);
-}
-
-// `magic`: the format is this one, whatever the bytes begin with.
-void FuzzPhoto(const std::string& bytes, const std::string& magic,
-               PhotoContent content = PhotoContent::kColour) {
-  std::string file = bytes;
-  file.replace(0, std::min(magic.size(), file.size()), magic);
-  PhotoOptions options;
-  options.content = content;
-  options.limits = kLimits;
-  const StatusOr<Photo> photo = DecodePhoto("a.photo", file, options);
-  if (!photo.ok()) return CheckError(photo.status(), "a.photo");
-  CHECK(CheckImageSize("a.photo", photo->image.width, photo->image.height,
-                       kLimits)
-            .ok());
-  CHECK_EQ(photo->image.rgb.size(), 3 * photo->image.num_pixels());
-  CheckMask(photo->opaque, *photo);
-  CheckMask(photo->has_data, *photo);
-  CHECK(photo->bits >= 0 && photo->bits <= 16);
-  CHECK(photo->significant_bits >= 0 && photo->significant_bits <= photo->bits);
-  if (photo->bits > 0) {
-    const float largest = static_cast<float>((1 << photo->bits) - 1);
-    for (const float v : photo->image.rgb) CHECK(v >= 0.0f && v <= largest);
-  }
-  CHECK(photo->pixel_aspect > 0.0 && std::isfinite(photo->pixel_aspect));
-  CHECK(photo->orientation >= 1 && photo->orientation <= 8);
-  CheckOneLine(photo->curve.source);
-  CheckOneLine(photo->layer);
-  for (const std::string& note : photo->notes) CheckOneLine(note);
-}
-
-void FuzzPhotoPng(const std::string& input) {
-  if (input.empty()) return;
-  std::string bytes = input.substr(1);
-  if (input[0] & 1) FixPngChecksums(&bytes);
-  FuzzPhoto(bytes, "\x89PNG\r\n\x1a\n");
-}
-
-void FuzzPhotoExr(const std::string& input) {
-  if (input.empty()) return;
-  FuzzPhoto(input.substr(1), "\x76\x2f\x31\x01",
-            input[0] & 1 ? PhotoContent::kNormals : PhotoContent::kColour);
-}
-
-void FuzzExif(const std::string& bytes) {
-  const ExifTags exif = ParseExif(bytes);
-  CHECK(exif.orientation >= 1 && exif.orientation <= 8);
-  for (const auto& value : {exif.exposure_seconds, exif.f_number, exif.iso}) {
-    CHECK(!value || (*value > 0.0 && std::isfinite(*value)));
-  }
-}
-
-void FuzzIcc(const std::string& bytes) {
-  const std::optional<IccProfile> profile = ParseIccProfile(bytes);
-  if (!profile) return;
-  CheckOneLine(profile->description);
-  CHECK(profile->exponent > 0.0 && std::isfinite(profile->exponent));
-}
 
 // A table of few bins goes the way of a whole one.
 void FuzzMerl(const std::string& bytes) {
@@ -179,7 +50,20 @@ void FuzzMesh(const std::string& name, const std::string& bytes) {
   }
 }
 
-void FuzzProblem(const std::string& input) {
+// Counts of a GLB's container that fit, so that what is behind them is reached:
+// where the first byte is odd, the rest is JSON up to a byte 0xff, then the
+// buffer.
+void FuzzGlb(const std::string& input) {
+  if (input.empty()) return;
+  const std::string rest = input.substr(1);
+  if ((input[0] & 1) == 0) return FuzzMesh("a.glb", rest);
+  const size_t split = std::min(rest.find('\xff'), rest.size());
+  FuzzMesh("a.glb", GlbOf(rest.substr(0, split),
+                          rest.substr(std::min(split + 1, rest.size()))));
+}
+
+// Split at bytes 0xff.
+std::vector<std::string> Parts(const std::string& input) {
   std::vector<std::string> parts(1);
   for (const char c : input) {
     if (c == '\xff') {
@@ -188,6 +72,58 @@ void FuzzProblem(const std::string& input) {
       parts.back() += c;
     }
   }
+  return parts;
+}
+
+bool SameTree(const ConfigNode& a, const ConfigNode& b) {
+  bool same = a.kind == b.kind && a.scalar == b.scalar &&
+              a.items.size() == b.items.size() &&
+              a.entries.size() == b.entries.size();
+  for (size_t i = 0; same && i < a.items.size(); ++i) {
+    same = SameTree(a.items[i], b.items[i]);
+  }
+  for (size_t i = 0; same && i < a.entries.size(); ++i) {
+    same = a.entries[i].first == b.entries[i].first &&
+           SameTree(a.entries[i].second, b.entries[i].second);
+  }
+  return same;
+}
+
+// What is written of a tree is the tree.
+void FuzzConfig(const std::string& text) {
+  const StatusOr<ConfigNode> tree = ParseConfig("a.yaml", text);
+  if (!tree.ok()) return CheckError(tree.status(), "a.yaml");
+  if (tree->kind != ConfigNode::Kind::kMap) return;
+  const std::string written = ConfigText(*tree);
+  const StatusOr<ConfigNode> back = ParseConfig("b.yaml", written);
+  CHECK(back.ok()) << back.status().message() << "\n" << written;
+  CHECK(SameTree(*tree, *back)) << written;
+}
+
+void FuzzFlags(const std::string& input) {
+  std::vector<std::string> parts = Parts(input);
+  ProblemFlags flags;
+  size_t next = 0;
+  for (std::string* const flag :
+       {&flags.photo, &flags.mask, &flags.response, &flags.normals, &flags.mesh,
+        &flags.known_light}) {
+    if (next < parts.size()) *flag = parts[next++];
+  }
+  flags.overrides.assign(parts.begin() + static_cast<std::ptrdiff_t>(next),
+                         parts.end());
+  flags.command = ShellCommand(parts);
+  const StatusOr<FlagProblem> made = ProblemFromFlags(flags);
+  if (!made.ok()) {
+    const bool of_override = made.status().message().find("--set ") == 0;
+    return CheckError(made.status(), of_override ? "--set" : "command line");
+  }
+  const StatusOr<Problem> again =
+      ParseProblem("out/problem.yaml", made->text, {});
+  CHECK(again.ok()) << again.status().message();
+}
+
+void FuzzProblem(const std::string& input) {
+  std::vector<std::string> parts = Parts(input);
   const std::string text = parts[0];
   parts.erase(parts.begin());
   const StatusOr<Problem> problem = ParseProblem("a.yaml", text, parts);
@@ -256,34 +192,25 @@ void FuzzModel(const std::string& input) {
   for (const float w : model->weights) CHECK(std::isfinite(w));
 }
 
-struct Parser {
-  const char* name;
-  std::function<void(const std::string&)> run;
-};
-
-const std::vector<Parser>& Parsers() {
-  static const std::vector<Parser> parsers = {
-      {"exr", FuzzExr},
-      {"hdr", FuzzHdr},
-      {"png", FuzzPng},
-      {"photo_png", FuzzPhotoPng},
-      {"photo_jpeg",
-       [](const std::string& b) { FuzzPhoto(b, "\xff\xd8\xff"); }},
-      // Of either byte order: the first bytes stay.
-      {"photo_tiff", [](const std::string& b) { FuzzPhoto(b, ""); }},
-      {"photo_exr", FuzzPhotoExr},
-      {"npy", [](const std::string& b) { FuzzPhoto(b, "\x93NUMPY"); }},
-      {"pfm", [](const std::string& b) { FuzzPhoto(b, "P"); }},
-      {"exif", FuzzExif},
-      {"icc", FuzzIcc},
-      {"merl", FuzzMerl},
-      {"obj", [](const std::string& b) { FuzzMesh("a.obj", b); }},
-      {"ply", [](const std::string& b) { FuzzMesh("a.ply", b); }},
-      {"problem", FuzzProblem},
-      {"model", FuzzModel},
-      {"checkpoint", FuzzCheckpoint},
-      {"results", FuzzResults},
-      {"trace", FuzzTrace}};
+const std::vector<FuzzedParser>& Parsers() {
+  static const std::vector<FuzzedParser> parsers = [] {
+    std::vector<FuzzedParser> all = ImageParsers();
+    const std::vector<FuzzedParser> others = {
+        {"merl", FuzzMerl},
+        {"obj", [](const std::string& b) { FuzzMesh("a.obj", b); }},
+        {"ply", [](const std::string& b) { FuzzMesh("a.ply", b); }},
+        {"stl", [](const std::string& b) { FuzzMesh("a.stl", b); }},
+        {"glb", FuzzGlb},
+        {"config", FuzzConfig},
+        {"flags", FuzzFlags},
+        {"problem", FuzzProblem},
+        {"model", FuzzModel},
+        {"checkpoint", FuzzCheckpoint},
+        {"results", FuzzResults},
+        {"trace", FuzzTrace}};
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+  }();
   return parsers;
 }
 
@@ -311,14 +238,14 @@ TrainingState FuzzedTrainingState() {
 const std::vector<std::string>& FuzzedParsers() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> out;
-    for (const Parser& parser : Parsers()) out.emplace_back(parser.name);
+    for (const FuzzedParser& parser : Parsers()) out.emplace_back(parser.name);
     return out;
   }();
   return names;
 }
 
 void FuzzParser(const std::string& parser, const uint8_t* input, size_t size) {
-  for (const Parser& p : Parsers()) {
+  for (const FuzzedParser& p : Parsers()) {
     if (parser != p.name) continue;
     p.run(std::string(reinterpret_cast<const char*>(input), size));
     return;

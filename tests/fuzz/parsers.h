@@ -20,10 +20,12 @@ TrainingState FuzzedTrainingState();
 // The columns that the parser of `results` expects.
 const std::vector<std::string>& FuzzedColumns();
 
-// Names of the parsers: exr, hdr, png, merl, obj, ply, problem, model; of
-// photographs, photo_png, photo_jpeg, photo_tiff, photo_exr, npy, pfm, and what
-// is inside of them, exif, icc; and of what programs leave for themselves: checkpoint (a training's), results (a
-// sweep's table), trace (in result.json).
+// Names of the parsers. Files that users bring: exr, hdr, png, merl, obj, ply,
+// stl, glb, problem, model; photographs photo_png, photo_jpeg, photo_tiff,
+// photo_exr, npy, pfm, and what is inside of them, exif, icc; maps, depth and
+// normals of any format: map, depth, normals. What is written of problems:
+// config, flags. What programs leave for themselves: checkpoint (a training's),
+// results (a sweep's table), trace (in result.json).
 const std::vector<std::string>& FuzzedParsers();
 
 // Feeds `input` to the parser of that name as a file's bytes; dies (CHECK)
@@ -40,7 +42,14 @@ const std::vector<std::string>& FuzzedParsers();
 //   model, checkpoint
 //            after the first byte; where that is odd, with the checksum that
 //            fits it at the end
+//   map, depth, normals
+//            after the first byte, which chooses among frames, cameras, scales
+//            and encodings
+//   glb      after the first byte; where that is odd, the JSON up to a byte
+//            0xff and the buffer, in a container that fits them
 //   problem  the text up to a byte 0xff, then overrides, split there
+//   flags    the flags of problem_from_flags.h in order, then overrides, split
+//            there
 //   others   the bytes as they are
 void FuzzParser(const std::string& parser, const uint8_t* input, size_t size);
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "ibrdf/base/pi.h"
@@ -13,12 +13,15 @@
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
 #include "ibrdf/io/exr.h"
+#include "ibrdf/io/file_extension.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/model_file.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/solvers/forward/render_scene.h"
+#include "tests/hard_cases/case_exr.h"
 #include "tests/hard_cases/case_photographs.h"
+#include "tests/support/mesh_files.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/tiny_model.h"
 
@@ -65,6 +68,8 @@ Status Edit(const YAML::Node& edit, Image* image) {
           v = Value(edit["set"]);
         } else if (edit["scale"]) {
           v *= Value(edit["scale"]);
+        } else if (edit["add"]) {
+          v += Value(edit["add"]);
         } else if (edit["clip"]) {
           v = std::min(v, Value(edit["clip"]));
         } else {
@@ -236,6 +241,27 @@ Status MakeBrdf(const YAML::Node& brdf, const std::string& path) {
   return WriteMerl(SampleMerl(f), path);
 }
 
+// By the extension. gltf: {pointer: value}: of a .glb, changes of its JSON.
+Status WriteMesh(const YAML::Node& recipe, const MeshSpec& mesh,
+                 const std::string& path) {
+  const std::string format = FileExtension(path);
+  if (format == "glb") {
+    std::string buffer;
+    nlohmann::json json = GltfJsonOf(mesh, &buffer);
+    for (const auto& entry : recipe["gltf"]) {
+      json[nlohmann::json::json_pointer(entry.first.as<std::string>())] =
+          nlohmann::json::parse(entry.second.as<std::string>());
+    }
+    WriteBytes(path, GlbOf(json.dump(), buffer));
+  } else if (format == "stl") {
+    const bool text = Get(recipe, "stl_text", false);
+    WriteBytes(path, text ? StlText(mesh) : StlBytes(mesh));
+  } else {
+    WriteBytes(path, format == "ply" ? PlyBytes(mesh) : ObjBytes(mesh));
+  }
+  return OkStatus();
+}
+
 // rings: of latitude. radius, centre: [x, y, z]; flip: turns triangles over;
 // flip_half: every other one; hole: leaves out the triangles with a vertex
 // beyond this height, or hole_towards: z; spike: adds triangles without area.
@@ -249,8 +275,7 @@ Status MakeSphereMesh(const YAML::Node& recipe, const std::string& path) {
       Get(recipe, "hole_towards", std::string("y")) == "z";
   const bool flip = Get(recipe, "flip", false);
   const bool flip_half = Get(recipe, "flip_half", false);
-  std::ostringstream obj;
-  obj.precision(17);
+  MeshSpec mesh;
   const int columns = 2 * rings;
   std::vector<double> height;
   for (int i = 0; i <= rings; ++i) {
@@ -258,8 +283,8 @@ Status MakeSphereMesh(const YAML::Node& recipe, const std::string& path) {
       const double theta = kPi * i / rings, phi = 2 * kPi * k / columns;
       const double x = std::sin(theta) * std::sin(phi), y = std::cos(theta),
                    z = std::sin(theta) * std::cos(phi);
-      obj << "v " << centre[0] + radius * x << ' ' << centre[1] + radius * y
-          << ' ' << centre[2] + radius * z << '\n';
+      mesh.vertices.emplace_back(centre[0] + radius * x, centre[1] + radius * y,
+                                 centre[2] + radius * z);
       height.push_back(hole_towards_z ? z : y);
     }
   }
@@ -267,7 +292,7 @@ Status MakeSphereMesh(const YAML::Node& recipe, const std::string& path) {
   const auto face = [&](int a, int b, int c) {
     if (std::max({height[a], height[b], height[c]}) > hole) return;
     if (flip != (flip_half && count++ % 2 == 0)) std::swap(b, c);
-    obj << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
+    mesh.triangles.push_back({a, b, c});
   };
   for (int i = 0; i < rings; ++i) {
     for (int k = 0; k < columns; ++k) {
@@ -279,8 +304,7 @@ Status MakeSphereMesh(const YAML::Node& recipe, const std::string& path) {
       if (Get(recipe, "spike", false)) face(a, a, c);
     }
   }
-  WriteBytes(path, obj.str());
-  return OkStatus();
+  return WriteMesh(recipe, mesh, path);
 }
 
 Status WriteModelOf(const YAML::Node& recipe, const std::string& path) {
@@ -326,13 +350,42 @@ Status RenderInput(const YAML::Node& scene, const std::string& folder,
   return OkStatus();
 }
 
-}  // namespace
+// Two digits a byte, in groups as one likes.
+std::string BytesOfHex(const std::string& hex) {
+  std::string bytes, digits;
+  for (const char c : hex) {
+    if (c == ' ') continue;
+    digits += c;
+    if (digits.size() < 2) continue;
+    bytes += static_cast<char>(std::stoi(digits, nullptr, 16));
+    digits.clear();
+  }
+  return bytes;
+}
 
-Status MakeInput(const YAML::Node& recipe, const std::string& folder,
+Status ChangeBytes(const YAML::Node& change, const std::string& path) {
+  std::string bytes = ReadBytes(path);
+  if (change["cut"]) bytes.resize(change["cut"].as<size_t>());
+  if (change["before"])
+    bytes = BytesOfHex(change["before"].as<std::string>()) + bytes;
+  if (change["after"]) bytes += BytesOfHex(change["after"].as<std::string>());
+  if (change["at"]) {
+    const std::string put = BytesOfHex(change["put"].as<std::string>());
+    bytes.replace(change["at"].as<size_t>(), put.size(), put);
+  }
+  WriteBytes(path, bytes);
+  return OkStatus();
+}
+
+Status MakeWhole(const YAML::Node& recipe, const std::string& folder,
                  const std::string& name) {
   const std::string path = folder + "/" + name;
   if (recipe["text"]) {
     WriteBytes(path, recipe["text"].as<std::string>());
+    return OkStatus();
+  }
+  if (recipe["hex"]) {
+    WriteBytes(path, BytesOfHex(recipe["hex"].as<std::string>()));
     return OkStatus();
   }
   if (recipe["brdf"]) return MakeBrdf(recipe["brdf"], path);
@@ -366,7 +419,17 @@ Status MakeInput(const YAML::Node& recipe, const std::string& folder,
     IBRDF_RETURN_IF_ERROR(Edit(edit, &image));
   }
   if (recipe["codes"]) return MakePhotograph(recipe["codes"], image, path);
+  if (recipe["exr"]) return MakeExr(recipe["exr"], image, path);
   return WriteExr(image, path);
+}
+
+}  // namespace
+
+Status MakeInput(const YAML::Node& recipe, const std::string& folder,
+                 const std::string& name) {
+  IBRDF_RETURN_IF_ERROR(MakeWhole(recipe, folder, name));
+  return recipe["bytes"] ? ChangeBytes(recipe["bytes"], folder + "/" + name)
+                         : OkStatus();
 }
 
 }  // namespace ibrdf

@@ -11,6 +11,7 @@ namespace ibrdf {
 // Makes the file `name` in `folder`. Recipes, by their first key:
 //
 //   text: |                      the bytes themselves
+//   hex: 00 ff                   the same, by hexadecimal digits
 //   scene: {...}                 .exr: what ibrdf_render makes of these keys,
 //                                at preview quality
 //   constant: [r, g, b]          .exr of size: [w, h]
@@ -25,14 +26,18 @@ namespace ibrdf {
 //   model: 2                     .ibrdf of so many random materials;
 //                                curvature: of its splines; code_norm: of its
 //                                codes; log_colour: of all, or [r, g, b]
-//   sphere_mesh: 12              .obj of so many rings; see MakeSphereMesh
+//   sphere_mesh: 12              .obj, .ply, .stl or .glb of so many rings; see
+//                                MakeSphereMesh
 //
 // An image with `codes: {...}` becomes a photograph (case_photographs.h), a
-// .png, .jpg or .tif.
+// .png, .jpg or .tif; one with `exr: {...}` another kind of OpenEXR
+// (case_exr.h). Of any file `bytes` changes what was written: {cut: n} keeps so
+// many, {before: hex} and {after: hex} add some, {at: n, put: hex} replaces
+// some.
 //
 // Images and maps take `edit`, a list of changes in order:
 //   {set: v}                     v: a number, nan, inf, -inf or denormal
-//   {scale: v}  {clip: v}        clip: at this radiance
+//   {scale: v}  {add: v}  {clip: v}   clip: at this radiance
 // each with `pixel: [x, y]`, or `every: n` (each n-th pixel), or `rows: [a,
 // b)`, else all; and `channel: c`, else all three.
 //

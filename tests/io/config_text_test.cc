@@ -39,6 +39,9 @@ TEST(ConfigText, ReadsBackAsTheSameTree) {
       "h: null\ni: []\nj: true\n");
   ASSERT_TRUE(tree.ok());
   ExpectRoundTrip(*tree);
+  ConfigNode nothing;
+  nothing.kind = ConfigNode::Kind::kMap;
+  ExpectRoundTrip(nothing);
 }
 
 TEST(ConfigText, AnyTextComesBack) {

@@ -37,6 +37,8 @@ TEST(ConfigTree, RefusesDuplicatesAliasesTagsAndDocuments) {
   EXPECT_TRUE(Contains(ErrorOf("a: 1\nb: 2\na: 3\n"),
                        "f.yaml: line 3: duplicate key 'a'"));
   EXPECT_TRUE(Contains(ErrorOf("a: {b: 1, b: 2}"), "duplicate key 'b'"));
+  EXPECT_EQ("", ErrorOf(std::string(200, 'k') + ": 1"));
+  EXPECT_TRUE(Contains(ErrorOf(std::string(201, 'k') + ": 1"), "200 bytes"));
   EXPECT_TRUE(Contains(ErrorOf("a: &x 1\nb: *x\n"), "anchors"));
   EXPECT_TRUE(Contains(ErrorOf("a: &x [1]\n"), "anchors"));
   EXPECT_TRUE(Contains(ErrorOf("b: *x\n"), "f.yaml: line 1"));

@@ -195,6 +195,32 @@ TEST(Mesh, PlyAsciiAndBinary) {
   EXPECT_EQ(mesh->vertices, binary->vertices);
 }
 
+// Two strips in one list; triangles that a strip repeats a corner in are
+// joints.
+TEST(Mesh, PlyStrips) {
+  const auto ply = [](const std::string& strips) {
+    return "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\n"
+           "property float y\nproperty float z\nelement tristrips 1\n"
+           "property list int int vertex_indices\nend_header\n"
+           "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n" +
+           strips + "\n";
+  };
+  for (const char* strips :
+       {"9 0 1 2 3 -1 2 3 4 5", "6 0 1 2 3 4 5", "10 0 1 2 3 3 2 2 3 4 5"}) {
+    const StatusOr<TriangleMesh> mesh = DecodeMesh("a.ply", ply(strips));
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    EXPECT_EQ(4u, mesh->triangles.size()) << strips;
+    for (const Eigen::Vector3f& n : mesh->normals) {
+      EXPECT_NEAR(1.0f, n.z(), kUnitTolerance) << strips;
+    }
+  }
+  for (const char* strips :
+       {"3 0 1 6", "3 0 1 -2", "5 0 1 2 3", "2 0 1", "0", "-1", "3 0 1 1.5"}) {
+    const Status status = DecodeMesh("a.ply", ply(strips)).status();
+    EXPECT_EQ(StatusCode::kInvalidInput, status.code()) << strips;
+  }
+}
+
 TEST(Mesh, NormalsOfTheFileAreUsedWhenValid) {
   const TempDir dir;
   const std::string path = dir.File("t.obj");
@@ -410,9 +436,10 @@ TEST(Mesh, WhatIsNotAMeshFile) {
   EXPECT_FALSE(ReadMesh(dir.File("missing.obj")).ok());
   std::filesystem::create_directory(dir.File("folder.obj"));
   EXPECT_FALSE(ReadMesh(dir.File("folder.obj")).ok());
-  WriteBytes(dir.File("a.stl"), "solid a\nendsolid a\n");
-  EXPECT_EQ(dir.File("a.stl") + ": extension: expected .obj or .ply",
-            ReadMesh(dir.File("a.stl")).status().message());
+  WriteBytes(dir.File("a.fbx"), "Kaydara FBX Binary");
+  EXPECT_EQ(
+      dir.File("a.fbx") + ": extension: expected .obj, .ply, .stl or .glb",
+      ReadMesh(dir.File("a.fbx")).status().message());
 }
 
 TEST(Mesh, DamagedFiles) {

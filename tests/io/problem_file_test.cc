@@ -236,8 +236,8 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {least + "reflectance: {known: [a]}",
        "reflectance.known: expected the name of a file, found a list of 1"},
       {least + "truth: {brdf: }", "truth.brdf: expected the name of a file"},
-      {"geometry: {sphere: {}}", "image: expected, found nothing"},
-      {"image: {file: a.exr}", "geometry: expected, found nothing"},
+      {"geometry: {sphere: {}}", "image: expected this key, found nothing"},
+      {"image: {file: a.exr}", "geometry: expected this key, found nothing"},
       {"image: {file: a, width: 3, height: 3}\ngeometry: {sphere: {}}",
        "image: expected either file or width and height"},
       {"image: {width: 3}\ngeometry: {sphere: {}}", "both width and height"},
@@ -285,7 +285,7 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {"image: {file: a}\ngeometry: {depth: d.png, depth_scale: -1}\n"
        "camera: {type: perspective}",
        "geometry.depth_scale: expected a number > 0 with camera.type"},
-      {"", "image: expected, found nothing"},
+      {"", "image: expected this key, found nothing"},
       {"just words", "expected a map of problem, image"},
   };
   for (const auto& c : cases) {

@@ -134,8 +134,43 @@ TEST_F(LoadNormalsTest, EachAxisMayPointAnywhere) {
                     PictureAxis::kLeft};
   ExpectNormals(geometry, 0.0, 0);
   geometry.frame = {PictureAxis::kDown, PictureAxis::kAway, PictureAxis::kLeft};
-  EXPECT_NE(std::string::npos, LoadNormals(geometry).status().message().find(
-                                   "one axis is toward or away"));
+  EXPECT_NE(std::string::npos,
+            LoadNormals(geometry).status().message().find("y: toward"));
+}
+
+TEST_F(LoadNormalsTest, TheGreyGroundOfCodesIsNoObject) {
+  const auto encode = [](float v) { return 0.5f * (v + 1.0f); };
+  Image encoded = right_;
+  for (float& v : encoded.rgb) v = encode(v) + 0.002f;  // 128 of 255
+  GeometrySpec geometry = Spec(encoded);
+  geometry.encoding = NormalEncoding::kUnit01;
+  ExpectNormals(geometry, 0.0041, 0);
+  const StatusOr<NormalMap> map = LoadNormals(geometry);
+  ASSERT_TRUE(map.ok());
+  for (size_t i = 0; i < right_.num_pixels(); ++i) {
+    EXPECT_EQ(IsOutside(right_, i), IsOutside(map->normals, i));
+  }
+}
+
+TEST_F(LoadNormalsTest, OtherPicturesAreRefused) {
+  const auto expect_refused = [](const GeometrySpec& geometry) {
+    const Status status = LoadNormals(geometry).status();
+    EXPECT_EQ(StatusCode::kInvalidInput, status.code());
+    EXPECT_NE(std::string::npos,
+              status.message().find("n.exr: expected normals, found"))
+        << status.message();
+  };
+  // Colours between 0 and 1, radiance of any size, and positions.
+  Image even(kSize, kSize), radiance(kSize, kSize), places(kSize, kSize);
+  for (size_t i = 0; i < even.rgb.size(); ++i) {
+    even.rgb[i] = 0.45f + 0.05f * static_cast<float>(i % 3) + 0.15f;
+    radiance.rgb[i] = std::exp2(static_cast<float>(i / 3 % 11) - 3.0f);
+    const auto column = static_cast<float>(i / 3 % kSize);
+    places.rgb[i] = i % 3 == 2 ? 0.1f : column * column;
+  }
+  expect_refused(Spec(even));
+  expect_refused(Spec(radiance));
+  expect_refused(Spec(places));
 }
 
 TEST_F(LoadNormalsTest, OtherLengthsAreCounted) {
