@@ -59,11 +59,11 @@ void StudyMarginalHessian(const NeuralBrdfModel& model,
   const MarginalReflectance reflectance(
       FlowLobes::Factory(model, prior.num_lobes(), 1), points,
       MakeObservations(radiance), LightProcess(), resolution, 0);
-  const Eigen::VectorXd noise =
-      Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.0025);
+  const DataErrors errors = {
+      Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.0025), {}};
   LightMode mode;
-  reflectance.Evaluate(x.data(), noise, {}, 1e-9, &mode, nullptr);
-  const MarginalObjective whitened(&reflectance, &prior, noise, &mode,
+  reflectance.Evaluate(x.data(), errors, {}, 1e-9, &mode, nullptr);
+  const MarginalObjective whitened(&reflectance, &prior, errors, &mode,
                                    kModeTolerance);
   std::vector<double> y = whitened.Whitened(x, {});
   MarginalDescentOptions o;
@@ -79,7 +79,7 @@ void StudyMarginalHessian(const NeuralBrdfModel& model,
       std::vector<double> at = y;
       at[i] += s == 0 ? kStep : -kStep;
       LightMode start = mode;
-      const MarginalObjective objective(&reflectance, &prior, noise, &start,
+      const MarginalObjective objective(&reflectance, &prior, errors, &start,
                                         kModeTolerance);
       double cost = 0.0;
       side[s].resize(n);

@@ -155,7 +155,7 @@ class MarginalStudy {
     LightMode mode;
     std::vector<double> by_lobes;
     const MarginalValue value = reflectance.Evaluate(
-        at.data(), noise, hyperparameters, 1e-12, &mode, &by_lobes);
+        at.data(), {noise, {}}, hyperparameters, 1e-12, &mode, &by_lobes);
     CHECK(value.ok) << kind;
     const std::vector<Real> exact =
         Exact(reflectance, at, noise, hyperparameters, mode);
@@ -165,7 +165,8 @@ class MarginalStudy {
     LightMode start;
     start.level = mode.level;
     start.l = start.representers = Eigen::VectorXd::Zero(mode.l.size());
-    const MarginalObjective objective(&reflectance, &prior_, noise, &start);
+    const MarginalObjective objective(&reflectance, &prior_, {noise, {}},
+                                      &start);
     const Eigen::Map<const Eigen::VectorXd> p(
         at.data(), static_cast<Eigen::Index>(at.size()));
     const std::vector<double> y = objective.Whitened(p, hyperparameters);
