@@ -140,6 +140,9 @@ struct IlluminationSpec {
   // Of the file. Unset: what the file says, else camera (io/map_file.h).
   std::optional<MapFrame> frame;
   MapFrame output_frame = MapFrame::kCamera;  // of the maps that are written
+  // Radiance that every pixel has beside the known light's, >= 0; unset: found
+  // where pixels show it.
+  std::optional<Eigen::Array3d> ambient;
 
   bool known() const { return !known_file.empty() || sky.has_value(); }
 };

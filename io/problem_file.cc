@@ -249,6 +249,8 @@ void ReadIllumination(ProblemReader reader, IlluminationSpec* illumination) {
   reader.Read("output_frame", &illumination->output_frame);
   const ConfigNode* known = reader.Find("known");
   reader.CheckNeeds("frame", known != nullptr);
+  reader.Read("ambient", &illumination->ambient);
+  reader.CheckNeeds("ambient", known != nullptr);
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {
     if (reader.Has("frame")) {

@@ -19,6 +19,10 @@ json AutoOr(const std::optional<double>& value) {
   return value.has_value() ? json(*value) : json("auto");
 }
 
+json AutoOr(const std::optional<Eigen::Array3d>& value) {
+  return value.has_value() ? Triple(*value) : json("auto");
+}
+
 json ImageJson(const ImageSpec& image) {
   if (image.file.empty()) {
     return {{"width", image.width}, {"height", image.height}};
@@ -110,6 +114,9 @@ std::string FrameJson(const std::optional<MapFrame>& frame) {
 json IlluminationJson(const IlluminationSpec& illumination, bool rendered) {
   const bool file = !illumination.known_file.empty();
   json out = {{"output_frame", MapFrameName(illumination.output_frame)}};
+  if (!rendered && illumination.known()) {
+    out["ambient"] = AutoOr(illumination.ambient);
+  }
   // A render takes the file's map as it is, an estimate may resample it.
   if (!file || (!rendered && illumination.sized)) {
     out["width"] = illumination.width;

@@ -14,6 +14,7 @@ enum class ValueType {
   kInteger,       // in [least, most]
   kTriple,        // a list of three numbers, each in `range`
   kOneOrTriple,   // the same, or one number for all three
+  kAutoOrTriple,  // the word auto, or as kOneOrTriple
   kNumberList,    // a list of numbers, each in `range`
   kPathList,      // a list of names of files
   kPair,          // a list of two numbers, each in `range`

@@ -2,6 +2,8 @@
 
 #include <glog/logging.h>
 
+#include <limits>
+
 namespace ibrdf {
 
 ProblemReader::ProblemReader(const ProblemSchema* schema,
@@ -99,6 +101,17 @@ void ProblemReader::Read(const std::string& name, std::optional<double>* out) {
   double value = 0.0;
   reader_.Number(name, key.range, &value);
   *out = value;
+}
+
+void ProblemReader::Read(const std::string& name,
+                         std::optional<Eigen::Array3d>* out) {
+  const ProblemKey& key = Typed(name, ValueType::kAutoOrTriple);
+  const ConfigNode* node = Find(name);
+  if (node == nullptr || reader_.IsWord(name, "auto")) return;
+  Eigen::Vector3d value;
+  value.setConstant(std::numeric_limits<double>::quiet_NaN());
+  reader_.Triple(name, key.range, /*one_for_all=*/true, &value);
+  if (value.allFinite()) *out = value.array();
 }
 
 void ProblemReader::ReadChoice(const std::string& name, int* index) {

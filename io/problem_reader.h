@@ -37,6 +37,7 @@ class ProblemReader {
   void Read(const std::string& name, Eigen::Array3d* out);
   // The word auto leaves it unset.
   void Read(const std::string& name, std::optional<double>* out);
+  void Read(const std::string& name, std::optional<Eigen::Array3d>* out);
   void Read(const std::string& name, std::optional<int64_t>* out);
   template <typename Enum,
             typename = std::enable_if_t<std::is_enum<Enum>::value>>

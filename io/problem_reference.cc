@@ -125,6 +125,8 @@ std::string RangeText(const ProblemKey& key) {
       return "three numbers" + (interval.empty() ? "" : " " + interval);
     case ValueType::kOneOrTriple:
       return interval + ", one number or three";
+    case ValueType::kAutoOrTriple:
+      return "`auto` or " + interval + ", one number or three";
     case ValueType::kNumberList:
       return "a list of numbers" + (interval.empty() ? "" : " " + interval);
     case ValueType::kPathList:

@@ -67,6 +67,10 @@ class Row {
     key_.range = range;
     return Type(ValueType::kOneOrTriple, default_value);
   }
+  Row& AutoOrTriple(const Range& range) {
+    key_.range = range;
+    return Type(ValueType::kAutoOrTriple, "auto");
+  }
   Row& NumberList(const Range& range) {
     key_.range = range;
     return Type(ValueType::kNumberList, "");
@@ -509,7 +513,15 @@ Keys IlluminationKeys() {
           .UsedBy(kKnownLight),
       Row("illumination.output_frame",
           "The frame of the maps that are written.")
-          .Choice("camera", MapFrames())};
+          .Choice("camera", MapFrames()),
+      Row("illumination.ambient",
+          "Stray light that the known map does not have, the same at every "
+          "pixel. `auto`: it is found with the reflectance where the known "
+          "light leaves pixels dark that are not black. 0: there is none.")
+          .AutoOrTriple(kNotNegative)
+          .Unit("that of the image")
+          .Needs("illumination.known")
+          .UsedBy(kUsedByReflectance)};
 }
 
 Keys SkyKeys() {

@@ -35,7 +35,7 @@ LikelihoodValue EvaluateLikelihood(const std::vector<double>& L_o,
       return value;
     }
     const RadianceInterval interval = observed.Interval(i);
-    const double radiance = std::max(L_o[i], 0.0);
+    const double radiance = std::max(L_o[i], 0.0) + l.ambient[i % 3];
     const bool holds = !interval.IsExact() && interval.Contains(radiance);
     if (holds) {
       counted += interval.IsOneSided() ? 0.0 : 1.0;

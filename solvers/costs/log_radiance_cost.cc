@@ -115,18 +115,17 @@ bool RenderLobeModel(const Transport& transport, const LobeModel& lobes,
   return render(transport, light ? &*light : nullptr, L_o, dL_o);
 }
 
-LobeRadianceCost::LobeRadianceCost(const Transport* transport,
-                                   const LobeModel* lobes,
-                                   std::vector<float> map,
-                                   const Observations* observed,
-                                   const RobustLogLikelihood& likelihood,
-                                   const ReflectanceOperator* stored)
+LobeRadianceCost::LobeRadianceCost(
+    const Transport* transport, const LobeModel* lobes, std::vector<float> map,
+    const Observations* observed, const RobustLogLikelihood& likelihood,
+    const ReflectanceOperator* stored, bool ambient_unknown)
     : transport_(transport),
       lobes_(lobes),
       map_(std::move(map)),
       operator_(stored),
       observed_(observed),
-      likelihood_(likelihood) {
+      likelihood_(likelihood),
+      ambient_unknown_(ambient_unknown) {
   if (operator_ == nullptr && IsStored(*transport)) {
     operator_ = &own_.emplace(transport->ByReflectance(map_.data()));
   }
@@ -134,14 +133,21 @@ LobeRadianceCost::LobeRadianceCost(const Transport* transport,
     CHECK_EQ(transport->num_points(), operator_->num_points());
   }
   mutable_parameter_block_sizes()->push_back(lobes->num_parameters());
+  if (ambient_unknown_) mutable_parameter_block_sizes()->push_back(3);
   set_num_residuals(transport->num_points() * 3);
 }
 
 bool LobeRadianceCost::Evaluate(double const* const* parameters,
                                 double* residuals, double** jacobians) const {
   const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
+  double* const by_ambient =
+      ambient_unknown_ && jacobians != nullptr ? jacobians[1] : nullptr;
   std::vector<double> L_o, dL_o, dr_dE;
   std::vector<double>* const tangents = wanted ? &dL_o : nullptr;
+  RobustLogLikelihood likelihood = likelihood_;
+  if (ambient_unknown_) {
+    likelihood.ambient = Eigen::Map<const Eigen::Array3d>(parameters[1]);
+  }
   const bool finite =
       operator_
           ? CombineLobes(
@@ -153,11 +159,17 @@ bool LobeRadianceCost::Evaluate(double const* const* parameters,
           : RenderLobeModel(*transport_, *lobes_, parameters[0], map_.data(),
                             &L_o, tangents);
   if (!finite) return false;
-  if (!FillResiduals(L_o, *observed_, likelihood_, residuals,
-                     wanted ? &dr_dE : nullptr)) {
+  if (!FillResiduals(L_o, *observed_, likelihood, residuals,
+                     wanted || by_ambient != nullptr ? &dr_dE : nullptr)) {
     return false;
   }
   if (wanted) ScaleRows(dr_dE, dL_o, lobes_->num_parameters(), jacobians[0]);
+  if (by_ambient != nullptr) {
+    std::fill_n(by_ambient, 3 * dr_dE.size(), 0.0);
+    for (size_t i = 0; i < dr_dE.size(); ++i) {
+      by_ambient[3 * i + i % 3] = dr_dE[i];
+    }
+  }
   return true;
 }
 

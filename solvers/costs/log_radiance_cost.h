@@ -39,7 +39,9 @@ class LogRadianceCost final : public ceres::CostFunction {
   const RobustLogLikelihood likelihood_;
 };
 
-// The same residuals for a fixed map [H, W, 3]: one block, the lobes. Of few
+// The same residuals for a fixed map [H, W, 3]: one block, the lobes; with
+// ambient_unknown a second one, the ambient term [3] in place of the
+// likelihood's, radiance >= 0. Of few
 // points, the light that each gathers is stored at the start (some 40 kB per
 // point) and serves every evaluation; `stored`: it was before, for this map.
 class LobeRadianceCost final : public ceres::CostFunction {
@@ -47,7 +49,8 @@ class LobeRadianceCost final : public ceres::CostFunction {
   LobeRadianceCost(const Transport* transport, const LobeModel* lobes,
                    std::vector<float> map, const Observations* observed,
                    const RobustLogLikelihood& likelihood,
-                   const ReflectanceOperator* stored = nullptr);
+                   const ReflectanceOperator* stored = nullptr,
+                   bool ambient_unknown = false);
   // Whether light is worth storing.
   static bool IsStored(const Transport& transport) {
     return transport.bounces() == 0 &&
@@ -67,6 +70,7 @@ class LobeRadianceCost final : public ceres::CostFunction {
   const ReflectanceOperator* operator_;  // null: none is stored
   const Observations* observed_;
   const RobustLogLikelihood likelihood_;
+  const bool ambient_unknown_;
 };
 
 // L_o [points * 3] of the lobes under a map, and with dL_o != nullptr its

@@ -1,5 +1,6 @@
 // The Laplacian likelihood of log radiance as a least-squares residual.
 #pragma once
+#include <Eigen/Core>
 #include <cmath>
 
 namespace ibrdf {
@@ -14,6 +15,9 @@ struct RobustLogLikelihood {
   double scale = 0.02;    // b, natural log
   double epsilon = 1e-6;  // radiance
   double delta = 0.5;     // in units of b
+  // Stray light that every pixel has beside what is rendered, radiance >= 0 by
+  // channel.
+  Eigen::Array3d ambient = Eigen::Array3d::Zero();
 };
 
 // The residual of t and dr/dt; both finite for any finite t.

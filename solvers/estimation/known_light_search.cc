@@ -42,9 +42,12 @@ std::vector<RankedMaterial> RankUnderKnownLight(
         L_o[i] += colours(c, k) *
                   rendered[i / 3 * stride + 3 * (m * num_lobes + k) + c];
       }
-      // A black point, of which no level is right, tells nothing of it.
-      if (observed.valid[i / 3] && L_o[i] + likelihood.epsilon > 0.0) {
-        shift[c] += std::log(observed.radiance[i] + likelihood.epsilon) -
+      // A black point, of which no level is right, tells nothing of it, nor
+      // does one of stray light alone.
+      const double light = observed.radiance[i] - likelihood.ambient[c];
+      if (observed.valid[i / 3] && L_o[i] + likelihood.epsilon > 0.0 &&
+          light > 0.0) {
+        shift[c] += std::log(light + likelihood.epsilon) -
                     std::log(L_o[i] + likelihood.epsilon);
         ++lit[c];
       }

@@ -100,10 +100,12 @@ void SetReference(const SolveSetup& setup, Estimate* estimate) {
   reference->state.light = reference->priors.mean;
 }
 
-RobustLogLikelihood LikelihoodOf(const SolveSetup& setup, double scale) {
+RobustLogLikelihood LikelihoodOf(const SolveSetup& setup, double scale,
+                                 const Eigen::Array3d& ambient) {
   RobustLogLikelihood likelihood;
   likelihood.scale = scale;
   likelihood.epsilon = setup.epsilon;
+  likelihood.ambient = ambient;
   return likelihood;
 }
 

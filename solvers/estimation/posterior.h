@@ -51,6 +51,7 @@ struct Iterate {
   JointState state;
   LightModel light;    // what state.light are the parameters of
   double scale = 0.0;  // b of the likelihood, which scale continuation lowers
+  Eigen::Array3d ambient = Eigen::Array3d::Zero();  // stray light, radiance
 };
 
 // The reflectance as a search leaves it.
@@ -70,6 +71,7 @@ struct ReflectanceEstimate {
 struct Reference {
   JointState state;
   LightPriors priors;
+  Eigen::Array3d ambient = Eigen::Array3d::Zero();
 };
 
 // What the stages of a solve hand to its summary.
@@ -130,6 +132,8 @@ TraceEntry Evaluate(const std::string& stage, const SolveSetup& setup,
                     const SolveContext& context, const Iterate& iterate,
                     ObservedPixels* pixels);
 
-RobustLogLikelihood LikelihoodOf(const SolveSetup& setup, double scale);
+RobustLogLikelihood LikelihoodOf(
+    const SolveSetup& setup, double scale,
+    const Eigen::Array3d& ambient = Eigen::Array3d::Zero());
 
 }  // namespace ibrdf

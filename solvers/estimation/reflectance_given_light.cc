@@ -30,13 +30,18 @@ constexpr int kSteps = 6;
 // it.
 constexpr double kFirstRadius = 10.0;
 constexpr double kRadius = 300.0;
+// A highlight is rendered wrong where a pixel's log radiance is off by so many
+// times the likelihood's scale and by a factor of two.
+constexpr double kWrongScales = 10.0;
+constexpr double kWrongLog = 0.69;
 
 // A reflectance and what the pixels look like in it.
 struct Candidate {
   std::string name;
   JointState state;
+  Eigen::Array3d ambient = Eigen::Array3d::Zero();
   JointCost priors;
-  std::vector<double> radiance;  // [points * 3]
+  std::vector<double> radiance;  // [points * 3], without the ambient term
   double cost = 0.0;             // when candidates were last compared
   double scale = 0.0;            // of the likelihood
   bool settled = false;
@@ -44,13 +49,10 @@ struct Candidate {
 
 class Search {
  public:
-  Search(const SolveSetup& setup, SolveContext* context)
+  Search(const SolveSetup& setup, Observation pixels, SolveContext* context)
       : setup_(setup),
         context_(context),
-        // Pixels as they are: under a known directional light the mean of a bin
-        // is not the radiance of its mean normal.
-        pixels_(std::make_unique<ObservedPixels>(
-            setup, OnePixelPerBin(setup.pixels, kBins))),
+        pixels_(std::make_unique<ObservedPixels>(setup, std::move(pixels))),
         transport_(pixels_->TransportFrom(setup.map_size())),
         scale_(setup.initial_scale) {
     if (LobeRadianceCost::IsStored(transport_)) {
@@ -58,10 +60,12 @@ class Search {
     }
   }
 
-  Estimate Run();
+  // `earlier`, of a search on fewer pixels, is a candidate too; may be null.
+  Estimate Run(const Estimate* earlier);
 
  private:
-  Candidate MakeCandidate(const std::string& name, JointState state);
+  Candidate MakeCandidate(const std::string& name, JointState state,
+                          const Eigen::Array3d& ambient);
   // At the present scale; renders nothing.
   TraceEntry Entry(const std::string& stage, const Candidate& candidate) const;
   // The best materials after some steps each, and the first one as it is.
@@ -74,8 +78,10 @@ class Search {
   void KeepBest(size_t count, std::vector<Candidate>* candidates);
   // Steps at a scale that may fall, unless they do not lower the cost.
   void OuterIteration(Candidate* candidate);
-  // At most so many steps of the lobes, from a trust region of this radius.
-  void Step(int max_steps, double radius, JointState* state) const;
+  // At most so many steps of the lobes and an unknown ambient term, from a
+  // trust region of this radius.
+  void Step(int max_steps, double radius, JointState* state,
+            Eigen::Array3d* ambient) const;
 
   const SolveSetup& setup_;
   SolveContext* const context_;
@@ -85,14 +91,20 @@ class Search {
   double scale_;
 };
 
-Estimate Search::Run() {
+Estimate Search::Run(const Estimate* earlier) {
   const std::vector<RankedMaterial> ranked = RankUnderKnownLight(
       transport_, *setup_.lobes, setup_.materials, setup_.known_map,
-      pixels_->observed(), LikelihoodOf(setup_, scale_));
+      pixels_->observed(), LikelihoodOf(setup_, scale_, setup_.ambient.mean));
   Estimate estimate;
   estimate.reflectance.initial_lobes = ranked.front().parameters;
   estimate.reference.state.lobes = ranked.front().parameters;
+  estimate.reference.ambient = setup_.ambient.mean;
   std::vector<Candidate> candidates = FirstCandidates(ranked);
+  if (earlier != nullptr) {
+    candidates.push_back(MakeCandidate(earlier->reflectance.initial_guess,
+                                       earlier->iterate.state,
+                                       earlier->iterate.ambient));
+  }
   const Candidate best = context_->IterationsLeft()
                              ? BestOf(std::move(candidates))
                              : candidates.front();
@@ -100,6 +112,7 @@ Estimate Search::Run() {
   estimate.reflectance.lobes = best.state.lobes;
   estimate.iterate.state = best.state;
   estimate.iterate.scale = scale_;
+  estimate.iterate.ambient = best.ambient;
   estimate.pixels = std::move(pixels_);
   return estimate;
 }
@@ -110,7 +123,7 @@ std::vector<Candidate> Search::FirstCandidates(
   JointState first;
   first.lobes = ranked.front().parameters;
   std::vector<Candidate> candidates = {
-      MakeCandidate(ranked.front().name, first)};
+      MakeCandidate(ranked.front().name, first, setup_.ambient.mean)};
   context_->Report(Entry("rank " + ranked.front().name, candidates.front()));
   if (!context_->IterationsLeft()) return candidates;
   const std::function<bool()> stop = context_->StopAfter(kCandidateShare);
@@ -118,19 +131,24 @@ std::vector<Candidate> Search::FirstCandidates(
   for (int k = 0; k < count && !(k > 0 && stop()); ++k) {
     JointState next;
     next.lobes = ranked[k].parameters;
-    Step(kFirstSteps, kFirstRadius, &next);
-    candidates.push_back(MakeCandidate(ranked[k].name, std::move(next)));
+    Eigen::Array3d ambient = setup_.ambient.mean;
+    Step(kFirstSteps, kFirstRadius, &next, &ambient);
+    candidates.push_back(
+        MakeCandidate(ranked[k].name, std::move(next), ambient));
     context_->Report(Entry("candidate " + ranked[k].name, candidates.back()));
   }
   return candidates;
 }
 
-Candidate Search::MakeCandidate(const std::string& name, JointState state) {
+Candidate Search::MakeCandidate(const std::string& name, JointState state,
+                                const Eigen::Array3d& ambient) {
   const PosteriorObjective on =
       ObjectiveOn(pixels_.get(), setup_, LightModel(), LightPriors(), scale_);
   Candidate candidate;
   candidate.name = name;
+  candidate.ambient = ambient;
   candidate.priors = on.objective->Evaluate(state);
+  candidate.priors.illumination_prior += setup_.ambient.Cost(ambient);
   candidate.radiance = on.objective->radiance();
   candidate.state = std::move(state);
   candidate.scale = scale_;
@@ -140,9 +158,9 @@ Candidate Search::MakeCandidate(const std::string& name, JointState state) {
 TraceEntry Search::Entry(const std::string& stage,
                          const Candidate& candidate) const {
   JointCost cost = candidate.priors;
-  const LikelihoodValue value =
-      EvaluateLikelihood(candidate.radiance, pixels_->observed(),
-                         LikelihoodOf(setup_, scale_), nullptr);
+  const LikelihoodValue value = EvaluateLikelihood(
+      candidate.radiance, pixels_->observed(),
+      LikelihoodOf(setup_, scale_, candidate.ambient), nullptr);
   cost.likelihood = value.cost;
   cost.misfit = value.misfit;
   return MakeEntry(stage, setup_, *context_, pixels_->observed().num_valid,
@@ -185,8 +203,9 @@ void Search::OuterIteration(Candidate* candidate) {
   candidate->scale = scale_;
   const TraceEntry before = Entry("", *candidate);
   JointState state = candidate->state;
-  Step(kSteps, kRadius, &state);
-  Candidate next = MakeCandidate(candidate->name, std::move(state));
+  Eigen::Array3d ambient = candidate->ambient;
+  Step(kSteps, kRadius, &state, &ambient);
+  Candidate next = MakeCandidate(candidate->name, std::move(state), ambient);
   const TraceEntry after = Entry("refine " + next.name + " iteration " +
                                      std::to_string(context_->iterations() + 1),
                                  next);
@@ -199,9 +218,11 @@ void Search::OuterIteration(Candidate* candidate) {
   candidate->settled = Settled(setup_, scale_, before, after);
 }
 
-void Search::Step(int max_steps, double radius, JointState* state) const {
+void Search::Step(int max_steps, double radius, JointState* state,
+                  Eigen::Array3d* ambient) const {
   ReflectanceStepOptions o;
-  o.likelihood = LikelihoodOf(setup_, scale_);
+  o.likelihood = LikelihoodOf(setup_, scale_, *ambient);
+  if (setup_.ambient.unknown()) o.ambient = &setup_.ambient;
   o.materials = &setup_.materials;
   o.stored = stored_ ? &*stored_ : nullptr;
   o.max_iterations = max_steps;
@@ -209,14 +230,55 @@ void Search::Step(int max_steps, double radius, JointState* state) const {
   o.tolerance = setup_.problem->solver.tolerance;
   o.should_stop = context_->StopAfter(1.0);
   SolveReflectance(transport_, *setup_.lobes, setup_.known_map,
-                   pixels_->observed(), o, &state->lobes);
+                   pixels_->observed(), o, &state->lobes, ambient);
+}
+
+// The pixels in which a bright texel of the known map would be seen if the
+// object were a mirror. One pixel per bin may leave the peak of a lobe that is
+// narrower than a bin without any.
+Observation HighlightsOf(const SolveSetup& setup) {
+  std::vector<Eigen::Vector3d> lights;
+  for (const BrightSample& sample : setup.transport.bright) {
+    lights.push_back(sample.direction);
+  }
+  return Highlights(setup.pixels, lights, 2.0 / kBins);
+}
+
+// Whether an estimate renders a highlight that it was not fitted to far
+// brighter than the image has it.
+bool HasFalsePeak(const Estimate& estimate, const Observation& highlights,
+                  const SolveSetup& setup) {
+  if (highlights.points.empty()) return false;
+  ObservedPixels pixels(setup, highlights);
+  std::vector<double> L_o(3 * highlights.points.size());
+  pixels.TransportFrom(setup.map_size())
+      .Render(setup.lobes->Grid(estimate.iterate.state.lobes.data()),
+              setup.known_map.data(), L_o.data());
+  const double most =
+      std::max(kWrongLog, kWrongScales * estimate.iterate.scale);
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    const double rendered = L_o[i] + estimate.iterate.ambient[i % 3];
+    const double high = highlights.observed.Interval(i).high;
+    if (std::log(rendered / high) > most) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
 Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
                                        SolveContext* context) {
-  return Search(setup, context).Run();
+  // Pixels as they are: under a known directional light the mean of a bin is
+  // not the radiance of its mean normal.
+  const Observation pixels = OnePixelPerBin(setup.pixels, kBins);
+  Estimate estimate = Search(setup, pixels, context).Run(nullptr);
+  const Observation highlights = HighlightsOf(setup);
+  if (!context->IterationsLeft() || context->Interrupted() ||
+      context->Remaining() < 0.0 ||
+      !HasFalsePeak(estimate, highlights, setup)) {
+    return estimate;
+  }
+  return Search(setup, Union(pixels, highlights), context).Run(&estimate);
 }
 
 }  // namespace ibrdf

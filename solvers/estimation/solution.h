@@ -1,5 +1,6 @@
 // What a solve returns: the estimate, how it was found and how far to trust it.
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -59,12 +60,14 @@ struct Solution {
   // resolution of the search; empty where there was none or its end was not
   // kept.
   Image map_std;
-  MerlTable brdf;      // empty if known
-  Image map;           // [H, W]; the known one if known
-  Image render;        // radiance at the object's pixels, else 0
+  MerlTable brdf;  // empty if known
+  Image map;       // [H, W]; the known one if known
+  Image render;    // radiance at the object's pixels, else 0
   // Where the albedo varies: that of what is matte, at the object's pixels,
   // else 0; and the radiance that is gloss. Empty where it does not.
   Image albedo, gloss;
+  // Stray light beside the known map's, in `render` too; 0: none.
+  Eigen::Array3d ambient = Eigen::Array3d::Zero();
   double scale = 0.0;  // b used at the end
   double epsilon = 0.0;
   double misfit = 0.0;

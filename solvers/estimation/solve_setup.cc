@@ -1,6 +1,9 @@
 #include "ibrdf/solvers/estimation/solve_setup.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <utility>
 
 #include "ibrdf/brdf/flow_lobes.h"
@@ -38,6 +41,19 @@ bool AnyHasTwoEnds(const Observations& observed) {
   return false;
 }
 
+// Pixels that the known light does not reach are missing.
+void LeaveOut(const std::vector<char>& unlit, Observation* pixels) {
+  if (unlit.empty()) return;
+  std::vector<double> radiance = pixels->observed.radiance;
+  for (size_t i = 0; i < pixels->points.size(); ++i) {
+    if (unlit[pixels->points[i].pixel] == 0) continue;
+    std::fill_n(&radiance[3 * i], 3, std::numeric_limits<double>::quiet_NaN());
+  }
+  pixels->observed =
+      MakeObservations(std::move(radiance), std::move(pixels->observed.low),
+                       std::move(pixels->observed.high));
+}
+
 void SetKnownLight(const Image& map, SolveSetup* setup) {
   BrightTexels split = SplitBrightTexels(map);
   setup->known_map = std::move(split.rest.rgb);
@@ -67,10 +83,15 @@ StatusOr<SolveSetup> SetUp(const InverseProblem& problem) {
   setup.pixels =
       Observe(problem.image, problem.bounds ? &*problem.bounds : nullptr,
               problem.points);
+  LeaveOut(problem.dark.unlit, &setup.pixels);
+  setup.ambient = {problem.dark.ambient, problem.dark.ambient_deviation};
   if (setup.pixels.observed.num_valid == 0) {
     return InvalidInput("image",
                         "no pixel of the object is finite and positive in "
-                        "all three channels");
+                        "all three channels" +
+                            std::string(problem.dark.unlit.empty()
+                                            ? ""
+                                            : " and lit by the known light"));
   }
   if (!AnyHasTwoEnds(setup.pixels.observed)) {
     return InvalidInput("image",

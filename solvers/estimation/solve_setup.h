@@ -10,6 +10,7 @@
 #include "ibrdf/solvers/illumination/illumination_model.h"
 #include "ibrdf/solvers/joint/joint_method.h"
 #include "ibrdf/solvers/observation/observation.h"
+#include "ibrdf/solvers/priors/ambient_prior.h"
 #include "ibrdf/solvers/priors/material_prior.h"
 #include "ibrdf/solvers/priors/prior_costs.h"
 #include "ibrdf/solvers/problem/inverse_problem.h"
@@ -44,6 +45,7 @@ struct SolveSetup {
   // than the rest, which `transport` samples by themselves.
   std::vector<float> known_map;
   TransportOptions transport;
+  AmbientPrior ambient;  // stray light beside the known map's
 
   bool lobes_unknown() const { return lobes != nullptr; }
   bool light_unknown() const { return !problem->known_map.has_value(); }

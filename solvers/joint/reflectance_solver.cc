@@ -7,6 +7,7 @@
 
 #include "ibrdf/solvers/optim/conditioning.h"
 #include "ibrdf/solvers/optim/stop_callback.h"
+#include "ibrdf/solvers/priors/ambient_prior_cost.h"
 #include "ibrdf/solvers/priors/material_prior_cost.h"
 
 namespace ibrdf {
@@ -35,12 +36,24 @@ double SolveReflectance(const Transport& transport, const LobeModel& lobes,
                         const std::vector<float>& map,
                         const Observations& observed,
                         const ReflectanceStepOptions& options,
-                        std::vector<double>* parameters) {
+                        std::vector<double>* parameters,
+                        Eigen::Array3d* ambient) {
+  const bool ambient_unknown = options.ambient != nullptr;
+  CHECK(!ambient_unknown || ambient != nullptr);
   ceres::Problem problem;
+  std::vector<double*> blocks = {parameters->data()};
+  if (ambient_unknown) blocks.push_back(ambient->data());
   problem.AddResidualBlock(
       new LobeRadianceCost(&transport, &lobes, map, &observed,
-                           options.likelihood, options.stored),
-      nullptr, parameters->data());
+                           options.likelihood, options.stored, ambient_unknown),
+      nullptr, blocks);
+  if (ambient_unknown) {
+    for (int c = 0; c < 3; ++c) {
+      problem.SetParameterLowerBound(ambient->data(), c, 0.0);
+    }
+    problem.AddResidualBlock(new AmbientPriorCost(*options.ambient), nullptr,
+                             ambient->data());
+  }
   ceres::CostFunction* const prior =
       options.materials != nullptr
           ? static_cast<ceres::CostFunction*>(

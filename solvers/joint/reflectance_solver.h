@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ibrdf/solvers/costs/log_radiance_cost.h"
+#include "ibrdf/solvers/priors/ambient_prior.h"
 #include "ibrdf/solvers/priors/material_prior.h"
 #include "ibrdf/solvers/priors/prior_costs.h"
 
@@ -15,6 +16,8 @@ struct ReflectanceStepOptions {
   LobePrior prior;
   // In place of `prior` where it is not null.
   const MaterialPrior* materials = nullptr;
+  // The ambient term's, where it is unknown too; null: it is the likelihood's.
+  const AmbientPrior* ambient = nullptr;
   // The operator of the transport and map, where it is at hand; null: made
   // anew.
   const ReflectanceOperator* stored = nullptr;
@@ -25,12 +28,14 @@ struct ReflectanceStepOptions {
   std::function<bool()> should_stop;
 };
 
-// Lowers likelihood + prior from `parameters` in place; it never rises.
-// Returns the cost at the end.
+// Lowers likelihood + priors from `parameters` in place; it never rises.
+// `ambient` [3] >= 0, with options.ambient alone, likewise. Returns the cost at
+// the end.
 double SolveReflectance(const Transport& transport, const LobeModel& lobes,
                         const std::vector<float>& map,
                         const Observations& observed,
                         const ReflectanceStepOptions& options,
-                        std::vector<double>* parameters);
+                        std::vector<double>* parameters,
+                        Eigen::Array3d* ambient = nullptr);
 
 }  // namespace ibrdf

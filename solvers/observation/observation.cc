@@ -1,7 +1,9 @@
 #include "ibrdf/solvers/observation/observation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "ibrdf/solvers/observation/mean_by_normal.h"
@@ -12,6 +14,7 @@ namespace {
 
 // Points nearer the limb are left out.
 constexpr double kMinCosine = 0.1;
+constexpr size_t kMostHighlights = 240;
 constexpr size_t kThinPoints = 4000;  // about as many are left
 // A pair has squares of so many pixels a side, one of so many each way.
 constexpr int kBlock = 8;
@@ -99,6 +102,55 @@ Observation OnePixelPerBin(const Observation& pixels, int bins_across) {
   std::vector<size_t> chosen;
   for (const ShadingPoint& p : bins.points) chosen.push_back(where.at(p.pixel));
   return Select(pixels, chosen);
+}
+
+Observation Highlights(const Observation& pixels,
+                       const std::vector<Eigen::Vector3d>& lights,
+                       double angle) {
+  const double least = std::cos(angle);
+  const auto mirrors = [&](const ShadingPoint& point) {
+    const Eigen::Vector3d n = point.normal.cast<double>().normalized();
+    const Eigen::Vector3d wo = point.wo.cast<double>().normalized();
+    return std::any_of(lights.begin(), lights.end(),
+                       [&](const Eigen::Vector3d& light) {
+                         const Eigen::Vector3d h = light + wo;
+                         return n.dot(h) > least * h.norm();
+                       });
+  };
+  std::vector<size_t> found;
+  for (size_t i = 0; i < pixels.points.size(); ++i) {
+    if (pixels.observed.valid[i] && mirrors(pixels.points[i])) {
+      found.push_back(i);
+    }
+  }
+  const size_t count = std::min(found.size(), kMostHighlights);
+  std::vector<size_t> kept;
+  for (size_t k = 0; k < count; ++k) {
+    kept.push_back(found[k * found.size() / count]);
+  }
+  return Select(pixels, kept);
+}
+
+Observation Union(const Observation& first, const Observation& second) {
+  std::unordered_set<int> there;  // pixels
+  for (const ShadingPoint& p : first.points) there.insert(p.pixel);
+  std::vector<size_t> more;
+  for (size_t i = 0; i < second.points.size(); ++i) {
+    if (there.count(second.points[i].pixel) == 0) more.push_back(i);
+  }
+  const Observation added = Select(second, more);
+  Observation out = first;
+  out.points.insert(out.points.end(), added.points.begin(), added.points.end());
+  const auto append = [](const std::vector<double>& from,
+                         std::vector<double> to) {
+    to.insert(to.end(), from.begin(), from.end());
+    return to;
+  };
+  out.observed =
+      MakeObservations(append(added.observed.radiance, first.observed.radiance),
+                       append(added.observed.low, first.observed.low),
+                       append(added.observed.high, first.observed.high));
+  return out;
 }
 
 ObservationPair MakePair(const Observation& pixels, int image_width,

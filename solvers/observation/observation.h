@@ -1,6 +1,7 @@
 // The image as points with radiance: every pixel of the object, or fewer that
 // say nearly as much.
 #pragma once
+#include <Eigen/Core>
 #include <vector>
 
 #include "ibrdf/image/image.h"
@@ -32,6 +33,16 @@ Observation Thin(const Observation& pixels, int image_width);
 // One pixel, as it is, of each bin of like normals; all where there is none
 // away from the limb.
 Observation OnePixelPerBin(const Observation& pixels, int bins_across);
+
+// Some of the pixels that mirror one of `lights` (unit, towards them) to the
+// camera: their normals are within `angle`, radians, of the half vector. Of
+// many usable ones some 240, spread over them.
+Observation Highlights(const Observation& pixels,
+                       const std::vector<Eigen::Vector3d>& lights,
+                       double angle);
+
+// Those of the first, then those of the second that the first does not have.
+Observation Union(const Observation& first, const Observation& second);
 
 // A ninth of the image, or less of a large one, binned and pixel by pixel.
 struct ObservationPair {

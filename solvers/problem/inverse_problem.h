@@ -13,6 +13,7 @@
 #include "ibrdf/io/problem.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/effects/effects_plan.h"
+#include "ibrdf/solvers/problem/dark_pixels.h"
 #include "ibrdf/solvers/problem/load_object.h"
 #include "ibrdf/solvers/problem/unknown_curve.h"
 #include "ibrdf/transport/transport.h"
@@ -48,6 +49,8 @@ struct InverseProblem {
   IlluminationPrior illumination_prior = IlluminationPrior::kProcess;
   int unet_channels = 32;
   std::optional<Image> known_map;
+  // Of an unknown reflectance under a known map: what that does not light.
+  DarkPixels dark;
 
   std::optional<double> scale, epsilon;  // of the likelihood
   SolverSpec solver;

@@ -127,6 +127,69 @@ Status PlanAndTraceEffects(const Problem& problem, const Scene& scene,
   return OkStatus();
 }
 
+// An HDR image's bounds are its values.
+RadianceBounds* BoundsOf(InverseProblem* inverse) {
+  if (!inverse->bounds) inverse->bounds = {inverse->image, inverse->image};
+  return &*inverse->bounds;
+}
+
+// Where a pixel shows stray light alone, its value bounds the known light's.
+void BoundDarkPixels(const std::vector<Lighting>& lighting,
+                     const StrayLight& stray, InverseProblem* inverse) {
+  const Image& image = inverse->image;
+  for (size_t i = 0; i < lighting.size(); ++i) {
+    const size_t first = size_t{3} * inverse->points[i].pixel;
+    const Eigen::Array3d radiance =
+        Eigen::Map<const Eigen::Array3f>(&image.rgb[first]).cast<double>();
+    if (lighting[i] != Lighting::kLit || !(radiance > 0.0).all() ||
+        !IsBelowFloor(radiance, stray)) {
+      continue;
+    }
+    ++inverse->dark.num_below_floor;
+    RadianceBounds* const bounds = BoundsOf(inverse);
+    for (size_t c = 0; c < 3; ++c) {
+      float* const high = &bounds->high.rgb[first + c];
+      *high += static_cast<float>(stray.ambient[static_cast<int>(c)]);
+      bounds->low.rgb[first + c] = 0.0f;
+    }
+  }
+}
+
+// Finds what the known light leaves dark, and the stray light there unless it
+// is stated.
+Status FindDarkPixels(const std::optional<Eigen::Array3d>& ambient,
+                      InverseProblem* inverse) {
+  if (inverse->kind != ProblemKind::kReflectance) return OkStatus();
+  DarkPixels* const dark = &inverse->dark;
+  if (ambient) dark->ambient = *ambient;
+  const std::vector<Lighting> lighting =
+      FindLighting(inverse->points, *inverse->known_map, inverse->transport);
+  const auto unlit =
+      std::count_if(lighting.begin(), lighting.end(),
+                    [](Lighting l) { return l != Lighting::kLit; });
+  if (unlit == 0) return OkStatus();
+  if (static_cast<size_t>(unlit) == lighting.size()) {
+    return InvalidInput("illumination.known",
+                        "expected light that reaches the object's pixels, "
+                        "found none that does");
+  }
+  dark->num_unlit = static_cast<int>(unlit);
+  dark->unlit.assign(inverse->image.num_pixels(), 0);
+  for (size_t i = 0; i < lighting.size(); ++i) {
+    if (lighting[i] != Lighting::kLit) {
+      dark->unlit[inverse->points[i].pixel] = 1;
+    }
+  }
+  // Radiance of codes by a curve that is to be found is not known yet.
+  if (ambient || inverse->unknown_curve) return OkStatus();
+  const StrayLight stray =
+      MeasureStrayLight(inverse->image, inverse->points, lighting);
+  dark->ambient = stray.ambient;
+  dark->ambient_deviation = stray.deviation;
+  BoundDarkPixels(lighting, stray, inverse);
+  return OkStatus();
+}
+
 // What the file says without naming another.
 InverseProblem SettingsOf(const Problem& problem, uint64_t default_seed,
                           int num_threads) {
@@ -169,6 +232,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   IBRDF_RETURN_IF_ERROR(LoadReflectance(problem.reflectance, &inverse));
   IBRDF_RETURN_IF_ERROR(LoadIllumination(problem, &inverse));
   IBRDF_RETURN_IF_ERROR(PlanAndTraceEffects(problem, object.scene, &inverse));
+  IBRDF_RETURN_IF_ERROR(FindDarkPixels(problem.illumination.ambient, &inverse));
   return inverse;
 }
 

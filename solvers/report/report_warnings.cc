@@ -46,13 +46,41 @@ std::string MisfitWarning(const SolvedProblem& solved) {
          "radiance.";
 }
 
+// Pixels that the known light reaches and that cannot be used.
 std::string PixelWarning(const SolvedProblem& solved) {
   const auto used = static_cast<double>(solved.solution.pixels_used);
   const auto all = static_cast<double>(solved.inverse.points.size());
-  if (used >= all) return "";
-  return ShortNumber(all - used) + " of the object's " + ShortNumber(all) +
+  const double missing = all - used - solved.inverse.dark.num_unlit;
+  if (missing <= 0.0) return "";
+  return ShortNumber(missing) + " of the object's " + ShortNumber(all) +
          " pixels took no part: they are not finite and positive in all three "
          "channels.";
+}
+
+std::string UnlitWarning(const SolvedProblem& solved) {
+  const int unlit = solved.inverse.dark.num_unlit;
+  if (unlit == 0) return "";
+  return ShortNumber(unlit) + " of the object's " +
+         ShortNumber(static_cast<double>(solved.inverse.points.size())) +
+         " pixels took no part: the known light does not reach them.";
+}
+
+std::string StrayLightWarning(const SolvedProblem& solved) {
+  const DarkPixels& dark = solved.inverse.dark;
+  const Eigen::Array3d& ambient = solved.solution.ambient;
+  if (!(dark.ambient_deviation > 0.0).any()) return "";
+  std::string text =
+      "Pixels in the known light's shadow are not black: stray light of "
+      "radiance " +
+      ShortNumber(ambient[0]) + ", " + ShortNumber(ambient[1]) + ", " +
+      ShortNumber(ambient[2]) +
+      " was estimated for all pixels (illumination.ambient).";
+  if (dark.num_below_floor > 0) {
+    text += " " + ShortNumber(dark.num_below_floor) +
+            " lit pixels hold nothing else, and bound the known light's "
+            "radiance from above.";
+  }
+  return text;
 }
 
 std::string FewPixelsWarning(const SolvedProblem& solved) {
@@ -134,7 +162,8 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
                   solved.truth.warnings.end());
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
-        MisfitWarning(solved), PixelWarning(solved), FewPixelsWarning(solved),
+        MisfitWarning(solved), PixelWarning(solved), UnlitWarning(solved),
+        StrayLightWarning(solved), FewPixelsWarning(solved),
         CurveWarning(solved.solution.curves), UncertainWarning(solved.solution),
         RivalWarning(solved.solution.alternatives)}) {
     if (!warning.empty()) warnings.push_back(std::move(warning));

@@ -28,7 +28,8 @@ Mask ObjectMask(const InverseProblem& inverse) {
 Mask UsedMask(const InverseProblem& inverse) {
   Mask mask(inverse.image.width, inverse.image.height, 0);
   for (const ShadingPoint& p : inverse.points) {
-    bool used = true;
+    const std::vector<char>& unlit = inverse.dark.unlit;
+    bool used = unlit.empty() || unlit[p.pixel] == 0;
     for (size_t k = size_t{3} * p.pixel; k < size_t{3} * p.pixel + 3; ++k) {
       const float v = inverse.image.rgb[k];
       used &=

@@ -13,7 +13,7 @@ namespace ibrdf {
 Mask ObjectMask(const InverseProblem& inverse);
 
 // The pixels that a solution is judged by: those whose radiance is known in all
-// three channels, from one side at least.
+// three channels, from one side at least, and that a known light reaches.
 Mask UsedMask(const InverseProblem& inverse);
 
 // The image; where it bounds radiance alone, what is in the bounds and nearest

@@ -113,6 +113,17 @@ Json TraceJson(const std::vector<TraceEntry>& trace) {
   return out;
 }
 
+// What the known light leaves dark; null where no light is known.
+Json DarkPixelsJson(const SolvedProblem& solved) {
+  if (solved.inverse.kind != ProblemKind::kReflectance) return {};
+  const DarkPixels& dark = solved.inverse.dark;
+  const Eigen::Array3d& ambient = solved.solution.ambient;
+  return {{"unlit", dark.num_unlit},
+          {"below_floor", dark.num_below_floor},
+          {"ambient", {ambient[0], ambient[1], ambient[2]}},
+          {"ambient_estimated", (dark.ambient_deviation > 0.0).any()}};
+}
+
 // The curves that explain the image's codes; empty where it was known.
 Json CurvesJson(const std::vector<CurveEstimate>& curves) {
   Json out = Json::array();
@@ -219,6 +230,7 @@ std::string ResultJson(const SolvedProblem& solved,
                {"seed", inverse.seed},
                {"pixels_used", solution.pixels_used},
                {"pixels_of_object", inverse.points.size()},
+               {"dark_pixels", DarkPixelsJson(solved)},
                {"likelihood",
                 {{"scale", solution.scale}, {"epsilon", solution.epsilon}}},
                {"cost",

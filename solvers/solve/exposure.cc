@@ -40,6 +40,8 @@ InverseProblem InUnitsOf(double exposure, const InverseProblem& problem) {
   }
   if (out.known_map) Scale(1.0 / exposure, &*out.known_map);
   if (out.epsilon) *out.epsilon /= exposure;
+  out.dark.ambient /= exposure;
+  out.dark.ambient_deviation /= exposure;
   return out;
 }
 
@@ -48,6 +50,7 @@ void RestoreUnits(double exposure, Solution* estimate) {
   Scale(exposure, &estimate->render);
   Scale(exposure, &estimate->gloss);
   estimate->epsilon *= exposure;
+  estimate->ambient *= exposure;
 }
 
 }  // namespace ibrdf

@@ -30,18 +30,22 @@ struct View {
   JointCost cost;
   BrdfGrid grid;
   std::vector<float> map;        // [H, W, 3]
-  std::vector<double> radiance;  // [pixels * 3]
+  std::vector<double> radiance;  // [pixels * 3], of the map's light
+  Eigen::Array3d ambient = Eigen::Array3d::Zero();
 };
 
 // All but the likelihood of every pixel, and its radiance.
 View ViewOf(const JointState& state, const LightPriors& priors,
-            const SolveSetup& setup, const Estimate& estimate) {
+            const Eigen::Array3d& ambient, const SolveSetup& setup,
+            const Estimate& estimate) {
   // Priors and map are the same on any pixels.
   const PosteriorObjective on =
       ObjectiveOn(estimate.pixels.get(), setup, estimate.iterate.light, priors,
                   estimate.iterate.scale);
   View view;
   view.cost = on.objective->Evaluate(state);
+  view.cost.illumination_prior += setup.ambient.Cost(ambient);
+  view.ambient = ambient;
   view.map = on.objective->map();
   view.grid = setup.lobes_unknown() ? setup.lobes->Grid(state.lobes.data())
                                     : *setup.problem->known_brdf;
@@ -69,7 +73,7 @@ void RenderPixels(const SolveSetup& setup, const Estimate& estimate,
   for (View* const view : views) {
     const LikelihoodValue value = EvaluateLikelihood(
         view->radiance, setup.pixels.observed,
-        LikelihoodOf(setup, estimate.iterate.scale), nullptr);
+        LikelihoodOf(setup, estimate.iterate.scale, view->ambient), nullptr);
     view->cost.likelihood = value.cost;
     view->cost.misfit = value.misfit;
   }
@@ -79,6 +83,7 @@ void RenderPixels(const SolveSetup& setup, const Estimate& estimate,
 // that was turned down.
 void TurnDown(Estimate* estimate) {
   estimate->iterate.state = estimate->reference.state;
+  estimate->iterate.ambient = estimate->reference.ambient;
   estimate->reflectance.covariance.resize(0, 0);
   estimate->reflectance.light.log_std = Image();
   estimate->reflectance.candidates.clear();
@@ -90,7 +95,7 @@ Image RenderOf(const View& view, const SolveSetup& setup) {
   for (size_t i = 0; i < points.size(); ++i) {
     float* rgb = render.rgb.data() + size_t{3} * points[i].pixel;
     for (int c = 0; c < 3; ++c) {
-      rgb[c] = static_cast<float>(view.radiance[3 * i + c]);
+      rgb[c] = static_cast<float>(view.radiance[3 * i + c] + view.ambient[c]);
     }
   }
   return render;
@@ -169,9 +174,10 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
   const int num_pixels = setup.pixels.observed.num_valid;
   const double scale = estimate.iterate.scale;
   const Reference& reference = estimate.reference;
-  View first = ViewOf(reference.state, reference.priors, setup, estimate);
+  View first = ViewOf(reference.state, reference.priors, reference.ambient,
+                      setup, estimate);
   View last = ViewOf(estimate.iterate.state, estimate.iterate.light.priors,
-                     setup, estimate);
+                     estimate.iterate.ambient, setup, estimate);
   RenderPixels(setup, estimate, {&first, &last});
   const TraceEntry start = MakeEntry("start", setup, *context, num_pixels,
                                      scale, reference.state, first.cost);
@@ -195,6 +201,7 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
   solution.map = Image(problem.map_width, problem.map_height);
   solution.map.rgb = setup.light_unknown() ? last.map : problem.known_map->rgb;
   solution.render = RenderOf(last, setup);
+  solution.ambient = last.ambient;
   if (setup.lobes_unknown()) SummariseReflectance(setup, estimate, &solution);
   solution.map_std = estimate.reflectance.light.log_std;
   solution.scale = scale;

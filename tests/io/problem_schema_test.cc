@@ -79,6 +79,7 @@ std::string OtherValue(const ProblemKey& key) {
     case ValueType::kNumber:
     case ValueType::kAutoOrNumber:
     case ValueType::kOneOrTriple:
+    case ValueType::kAutoOrTriple:
       return std::to_string(InsideOf(key.range));
     case ValueType::kInteger:
       return std::to_string(key.most);
