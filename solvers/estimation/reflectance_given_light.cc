@@ -30,10 +30,9 @@ constexpr int kSteps = 6;
 // it.
 constexpr double kFirstRadius = 10.0;
 constexpr double kRadius = 300.0;
-// A highlight is rendered wrong where a pixel's log radiance is off by so many
-// times the likelihood's scale and by a factor of two.
-constexpr double kWrongScales = 10.0;
-constexpr double kWrongLog = 0.69;
+// A highlight is rendered wrong where it is brighter than the image by this
+// factor more than any pixel that was fitted is.
+constexpr double kWrongFactor = 2.0;
 
 // A reflectance and what the pixels look like in it.
 struct Candidate {
@@ -244,24 +243,30 @@ Observation HighlightsOf(const SolveSetup& setup) {
   return Highlights(setup.pixels, lights, 2.0 / kBins);
 }
 
-// Whether an estimate renders a highlight that it was not fitted to far
-// brighter than the image has it.
+// The largest factor by which an estimate is brighter than the image at some
+// pixels.
+double LargestExcess(const Estimate& estimate, const SolveSetup& setup,
+                     ObservedPixels* pixels) {
+  std::vector<double> L_o(3 * pixels->points().size());
+  pixels->TransportFrom(setup.map_size())
+      .Render(setup.lobes->Grid(estimate.iterate.state.lobes.data()),
+              setup.known_map.data(), L_o.data());
+  double largest = 1.0;
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    if (!pixels->observed().valid[i / 3]) continue;
+    largest = std::max(largest, (L_o[i] + estimate.iterate.ambient[i % 3]) /
+                                    pixels->observed().Interval(i).high);
+  }
+  return largest;
+}
+
+// Whether an estimate has a peak that no pixel it was fitted to shows.
 bool HasFalsePeak(const Estimate& estimate, const Observation& highlights,
                   const SolveSetup& setup) {
   if (highlights.points.empty()) return false;
   ObservedPixels pixels(setup, highlights);
-  std::vector<double> L_o(3 * highlights.points.size());
-  pixels.TransportFrom(setup.map_size())
-      .Render(setup.lobes->Grid(estimate.iterate.state.lobes.data()),
-              setup.known_map.data(), L_o.data());
-  const double most =
-      std::max(kWrongLog, kWrongScales * estimate.iterate.scale);
-  for (size_t i = 0; i < L_o.size(); ++i) {
-    const double rendered = L_o[i] + estimate.iterate.ambient[i % 3];
-    const double high = highlights.observed.Interval(i).high;
-    if (std::log(rendered / high) > most) return true;
-  }
-  return false;
+  return LargestExcess(estimate, setup, &pixels) >
+         kWrongFactor * LargestExcess(estimate, setup, estimate.pixels.get());
 }
 
 }  // namespace
@@ -270,15 +275,18 @@ Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
                                        SolveContext* context) {
   // Pixels as they are: under a known directional light the mean of a bin is
   // not the radiance of its mean normal.
-  const Observation pixels = OnePixelPerBin(setup.pixels, kBins);
-  Estimate estimate = Search(setup, pixels, context).Run(nullptr);
+  const Observation bins = OnePixelPerBin(setup.pixels, kBins);
   const Observation highlights = HighlightsOf(setup);
-  if (!context->IterationsLeft() || context->Interrupted() ||
+  const Observation both = Union(bins, highlights);
+  // Of a lamp and nothing else every pixel shows one angle alone.
+  const bool lamp = setup.problem->dark.num_unlit > 0;
+  Estimate estimate = Search(setup, lamp ? both : bins, context).Run(nullptr);
+  if (lamp || !context->IterationsLeft() || context->Interrupted() ||
       context->Remaining() < 0.0 ||
       !HasFalsePeak(estimate, highlights, setup)) {
     return estimate;
   }
-  return Search(setup, Union(pixels, highlights), context).Run(&estimate);
+  return Search(setup, both, context).Run(&estimate);
 }
 
 }  // namespace ibrdf

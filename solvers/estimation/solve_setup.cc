@@ -94,6 +94,13 @@ StatusOr<SolveSetup> SetUp(const InverseProblem& problem) {
                                             : " and lit by the known light"));
   }
   if (!AnyHasTwoEnds(setup.pixels.observed)) {
+    if (problem.dark.num_below_floor > 0) {
+      return InvalidInput(
+          "illumination.known",
+          "expected a light that the image shows, but the pixels that it "
+          "reaches are no brighter than those in its shadow differ: is it the "
+          "light's direction and frame?");
+    }
     return InvalidInput("image",
                         "every value of the object is clipped or black: the "
                         "radiance of none is known from both sides");

@@ -216,6 +216,45 @@ TEST(LogLikelihood, NoLightAndNoEpsilonIsFiniteWithoutSlope) {
   EXPECT_EQ(0.0, d.d_residual[0]);
 }
 
+// By central differences of the residual in the ambient term.
+TEST(LogLikelihood, SlopeByTheAmbientTermMatchesDifferences) {
+  const double inf = std::numeric_limits<double>::infinity();
+  RobustLogLikelihood likelihood;
+  likelihood.scale = 0.1;
+  for (const double epsilon : {0.0, 1e-5}) {
+    likelihood.epsilon = epsilon;
+    for (const double L_o : {0.0, 1e-9, 0.3, 1e6}) {
+      for (const double ambient : {1e-12, 1e-3, 0.5, 1e7}) {
+        // Values, and an upper end that is exceeded.
+        for (const Observations& observed :
+             {MakeObservations({0.7, 0.7, 0.7}),
+              MakeObservations({1e-14, 1e-14, 1e-14}, {0, 0, 0},
+                               {1e-14, 1e-14, 1e-14}),
+              MakeObservations({1e9, 1e9, 1e9}, {1e9, 1e9, 1e9},
+                               {inf, inf, inf})}) {
+          likelihood.epsilon = epsilon;
+          LikelihoodDerivatives d;
+          const auto residual = [&](double a) {
+            likelihood.ambient = {a, 0.1, 0.2};
+            EvaluateLikelihood({L_o, 1, 1}, observed, likelihood, &d);
+            return d.residual[0];
+          };
+          // The term stays positive.
+          const double h =
+              std::min(1e-5 * (L_o + ambient + epsilon), 0.5 * ambient);
+          const double numeric =
+              (residual(ambient + h) - residual(ambient - h)) / (2 * h);
+          residual(ambient);
+          // Rounding of the logarithms over the step.
+          EXPECT_NEAR(numeric, d.d_residual[0], 1e-5 * numeric + 1e-13 / h)
+              << "L_o " << L_o << " ambient " << ambient;
+          EXPECT_GE(d.d_residual[0], 0.0);
+        }
+      }
+    }
+  }
+}
+
 class RadianceCosts : public ::testing::Test {
  protected:
   RadianceCosts() : map_(SmoothMap(8, 16).rgb) { ObserveUnder(map_); }
@@ -252,6 +291,32 @@ TEST_F(RadianceCosts, RenderLobeModelIsTransportOfTheCombinedGrid) {
   // Float sums of some hundred terms.
   for (size_t i = 0; i < L_o.size(); ++i) {
     EXPECT_NEAR(expected[i], L_o[i], 2e-5 * expected[i]);
+  }
+}
+
+TEST_F(RadianceCosts, AmbientTermIsABlockOfItsOwn) {
+  const LobeRadianceCost cost(&scene_.transport, &scene_.lobes, map_,
+                              &observed_, likelihood_, nullptr,
+                              /*ambient_unknown=*/true);
+  ASSERT_EQ(size_t{2}, cost.parameter_block_sizes().size());
+  const double level = observed_.radiance[0];
+  const std::vector<double> lobes = scene_.Parameters();
+  const std::vector<double> none(3, 0.0);
+  EXPECT_EQ(Evaluate(*Cost(map_), {lobes}).residuals,
+            Evaluate(cost, {lobes, none}).residuals);
+  for (const double share : {0.01, 1.0, 100.0}) {
+    const std::vector<double> ambient = {share * level, 2 * share * level,
+                                         3 * share * level};
+    const Evaluation at = Evaluate(cost, {lobes, ambient});
+    ASSERT_TRUE(at.ok);
+    for (size_t c = 0; c < 3; ++c) {
+      std::vector<double> axis(3, 0.0);
+      axis[c] = share * level;
+      // Steps of some hundredths of the term.
+      ExpectDirection(cost, {lobes, ambient}, at, 1, axis, 0.05,
+                      kJacobianTolerance, "ambient " + std::to_string(share));
+    }
+    ExpectBlock(cost, {lobes, ambient}, 0, kJacobianTolerance, "lobes");
   }
 }
 

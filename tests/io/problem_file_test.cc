@@ -56,6 +56,7 @@ TEST_F(ProblemFile, LeastFileHasTheDocumentedDefaults) {
   EXPECT_EQ(120.0, p.solver.seconds);
   EXPECT_EQ(1e-4, p.solver.tolerance);
   EXPECT_EQ(0.0, p.noise);
+  EXPECT_FALSE(p.illumination.ambient.has_value());
   EXPECT_TRUE(CheckSolvable(p).ok());
   EXPECT_FALSE(CheckRenderable(p).ok());
 }
@@ -99,6 +100,31 @@ truth: {brdf: gt.binary, illumination: gt.exr, frame: cube_cross}
   EXPECT_EQ(9, *p.solver.seed);
   EXPECT_EQ(dir_.File("gt.exr"), p.truth.illumination);
   EXPECT_TRUE(CheckSolvable(p).ok());
+}
+
+TEST_F(ProblemFile, AmbientTermIsAutoOneNumberOrThree) {
+  const auto ambient = [&](const std::string& value) {
+    const StatusOr<Problem> read =
+        Read(kLeast + std::string("illumination: {known: a.exr, ambient: ") +
+             value + "}");
+    EXPECT_TRUE(read.ok()) << read.status().message();
+    return read->illumination.ambient;
+  };
+  EXPECT_FALSE(ambient("auto").has_value());
+  EXPECT_TRUE((*ambient("0") == 0.0).all());
+  EXPECT_TRUE((*ambient("[0.5, 0, 2]") == Eigen::Array3d(0.5, 0, 2)).all());
+  for (const std::string bad :
+       {"-1", "none", "[1, 2]", "[1, 2, -3]", "[1, 2, nan]", "inf", "{}", "[]",
+        "[auto, 1, 1]"}) {
+    const std::string error =
+        ErrorOf(kLeast + std::string("illumination: {known: a.exr, ambient: ") +
+                bad + "}");
+    EXPECT_NE(std::string::npos, error.find("illumination.ambient")) << error;
+  }
+  // No light is known that it could be beside.
+  EXPECT_NE(std::string::npos,
+            ErrorOf(kLeast + std::string("illumination: {ambient: 0.1}"))
+                .find("illumination.known"));
 }
 
 TEST_F(ProblemFile, FramesOfMapsHaveTheLibrarysWords) {

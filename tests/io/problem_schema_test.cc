@@ -203,7 +203,8 @@ TEST(ProblemSchema, NumbersEndWhereItSays) {
   for (const ProblemKey& key : AllKeys()) {
     if (key.type != ValueType::kNumber &&
         key.type != ValueType::kAutoOrNumber &&
-        key.type != ValueType::kOneOrTriple) {
+        key.type != ValueType::kOneOrTriple &&
+        key.type != ValueType::kAutoOrTriple) {
       continue;
     }
     const auto accepted = [&](double value) {

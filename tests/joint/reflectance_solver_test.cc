@@ -65,6 +65,31 @@ class ReflectanceSolverTest : public ::testing::Test {
   ReflectanceStepOptions options_;
 };
 
+TEST_F(ReflectanceSolverTest, FindsStrayLightWithTheLobes) {
+  const std::vector<double> L_o = scene_.Render(truth_, map_);
+  double level = 0.0;
+  for (const double v : L_o) level += v / static_cast<double>(L_o.size());
+  const Eigen::Array3d truth = level * Eigen::Array3d(0.3, 0.1, 0.0);
+  std::vector<double> radiance = L_o;
+  for (size_t i = 0; i < L_o.size(); ++i) radiance[i] += truth[i % 3];
+  const Observations observed = MakeObservations(radiance);
+  AmbientPrior prior;
+  prior.mean = truth + 0.05 * level;
+  prior.deviation.setConstant(0.1 * level);
+  options_.ambient = &prior;
+  options_.likelihood.scale = 0.003;
+  options_.max_iterations = 50;
+  std::vector<double> p = truth_;
+  Eigen::Array3d ambient = prior.mean;
+  SolveReflectance(scene_.transport, scene_.lobes, map_, observed, options_, &p,
+                   &ambient);
+  EXPECT_TRUE((ambient >= 0.0).all());
+  for (int c = 0; c < 3; ++c) {
+    // Darker lobes in more stray light differ by little.
+    EXPECT_NEAR(truth[c], ambient[c], 0.02 * level) << c;
+  }
+}
+
 // Two float renders of one model, by fields and by their sum, over b = 0.02.
 constexpr double kCostRounding = 1e-3;
 

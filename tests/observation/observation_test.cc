@@ -93,6 +93,51 @@ TEST(OnePixelPerBin, KeepsPixelsAsTheyAre) {
   }
 }
 
+// A normal per degree along a great circle through the view.
+Observation GreatCircle() {
+  Observation o;
+  std::vector<double> radiance;
+  for (int k = -80; k <= 80; ++k) {
+    ShadingPoint p;
+    const double theta = k * M_PI / 180;
+    p.normal =
+        Eigen::Vector3d(std::sin(theta), 0, std::cos(theta)).cast<float>();
+    p.wo = Eigen::Vector3f::UnitZ();
+    p.pixel = 1000 + k;
+    p.coverage = 1.0f;
+    o.points.push_back(p);
+    for (int c = 0; c < 3; ++c) radiance.push_back(2000.0 + k);
+  }
+  o.observed = MakeObservations(std::move(radiance));
+  return o;
+}
+
+TEST(Highlights, MirrorALight) {
+  const Observation all = GreatCircle();
+  const double degree = M_PI / 180;
+  const Eigen::Vector3d light(std::sin(60 * degree), 0, std::cos(60 * degree));
+  const Observation found = Highlights(all, {light}, 3.5 * degree);
+  ASSERT_EQ(size_t{7}, found.points.size());  // 27 to 33 degrees
+  EXPECT_EQ(1027, found.points.front().pixel);
+  EXPECT_EQ(2033.0, found.observed.radiance.back());
+  EXPECT_TRUE(Highlights(all, {}, 1.0).points.empty());
+}
+
+TEST(Union, TakesEachPixelOnce) {
+  const Observation all = GreatCircle();
+  const Observation some =
+      Highlights(all, {Eigen::Vector3d::UnitZ()}, 2.5 * M_PI / 180);
+  ASSERT_EQ(size_t{5}, some.points.size());
+  const Observation both = Union(some, all);
+  EXPECT_EQ(all.points.size(), both.points.size());
+  EXPECT_EQ(static_cast<int>(all.points.size()), both.observed.num_valid);
+  EXPECT_EQ(some.points[0].pixel, both.points[0].pixel);
+  for (size_t i = 0; i < both.points.size(); ++i) {
+    EXPECT_EQ(1000.0 + both.points[i].pixel, both.observed.radiance[3 * i]);
+  }
+  EXPECT_EQ(some.points.size(), Union(some, some).points.size());
+}
+
 TEST(Thin, KeepsEveryFewRowsAndColumnsOfALargeImage) {
   Image image(300, 300);
   std::fill(image.rgb.begin(), image.rgb.end(), 1.0f);

@@ -200,6 +200,11 @@ Problem AnyProblem() {
     p.illumination.height = *rc::gen::inRange(4, 8193);
   }
   p.illumination.output_frame = AnyOf<MapFrame>(kMapFrames.size());
+  const bool known =
+      map_file || rendered || p.kind == ProblemKind::kReflectance;
+  if (!rendered && known && *rc::gen::arbitrary<bool>()) {
+    p.illumination.ambient = AnyTriple<Eigen::Array3d>(0.0, 1e9);
+  }
   if (map_file) {
     p.illumination.known_file = AnyPath();
     p.illumination.frame = AnyFrame();
@@ -300,6 +305,11 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
     AssertSame(*p.illumination.sky, *q.illumination.sky);
   }
   RC_ASSERT(p.illumination.frame == q.illumination.frame);
+  RC_ASSERT(p.illumination.ambient.has_value() ==
+            q.illumination.ambient.has_value());
+  if (p.illumination.ambient.has_value()) {
+    RC_ASSERT((*p.illumination.ambient == *q.illumination.ambient).all());
+  }
   RC_ASSERT(p.illumination.output_frame == q.illumination.output_frame);
   RC_ASSERT(p.truth.frame == q.truth.frame);
   RC_ASSERT(p.likelihood.scale == q.likelihood.scale);
