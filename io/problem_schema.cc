@@ -515,9 +515,8 @@ Keys IlluminationKeys() {
           "The frame of the maps that are written.")
           .Choice("camera", MapFrames()),
       Row("illumination.ambient",
-          "Stray light that the known map does not have, the same at every "
-          "pixel. `auto`: it is found with the reflectance where the known "
-          "light leaves pixels dark that are not black. 0: there is none.")
+          "Stray light beside the known map's. `auto`: found with the "
+          "reflectance where pixels without light are not black. 0: none.")
           .AutoOrTriple(kNotNegative)
           .Unit("that of the image")
           .Needs("illumination.known")

@@ -297,6 +297,20 @@ TEST(ResultWarnings, NameEachCause) {
   warned([](Example* e) { e->metrics.seconds = 55.0; }, "time limit");
   warned([](Example* e) { e->solution.pixels_used = 90; },
          "10 of the object's 100");
+  warned(
+      [](Example* e) {
+        e->inverse.dark.num_unlit = 10;
+        e->solution.pixels_used = 90;
+      },
+      "10 of the object's 100 pixels took no part: the known light");
+  warned(
+      [](Example* e) {
+        e->inverse.dark.ambient_deviation.setConstant(0.1);
+        e->inverse.dark.num_below_floor = 7;
+        e->solution.ambient = {0.5, 0.25, 0.125};
+      },
+      "0.5, 0.25, 0.125 was estimated for all pixels (illumination.ambient). "
+      "7 lit pixels");
   warned([](Example* e) { e->solution.alternatives[1].cost = 1.0; },
          "<chrome>");
   // An expected error of 0.9.

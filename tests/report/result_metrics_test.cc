@@ -76,6 +76,11 @@ TEST(LogResidual, IsZeroWhereAPixelTookNoPart) {
     EXPECT_EQ(0.0f, residual.rgb[3 + c]);
     EXPECT_EQ(0.0f, residual.rgb[6 + c]);  // outside
   }
+  // In the shadow of a known light.
+  example.inverse.dark.unlit.assign(example.inverse.image.num_pixels(), 1);
+  for (const float v : LogResidual(example.inverse, example.solution).rgb) {
+    EXPECT_EQ(0.0f, v);
+  }
 }
 
 }  // namespace

@@ -254,6 +254,51 @@ TEST_P(InverseRenderingTest, OnePixelAndWildPixelsGiveFiniteEstimates) {
   ExpectWhole(Solve());
 }
 
+// Pixels that the known light does not reach, whatever they hold, and an
+// ambient term that all others have.
+TEST_F(InverseRenderingTest, KnownLightWithDarkPixels) {
+  SetKind(ProblemKind::kReflectance);
+  problem_.solver.max_iterations = 12;
+  const Image clean = problem_.image;
+  const double level = clean.At(6, 6)[1];
+  const Eigen::Array3d ambient = level * Eigen::Array3d(0.5, 0.2, 0.1);
+  problem_.dark.unlit.assign(problem_.image.num_pixels(), 0);
+  for (size_t i = 0; i < problem_.points.size(); ++i) {
+    float* rgb = &problem_.image.rgb[3 * problem_.points[i].pixel];
+    const bool unlit = i % 4 == 0;
+    problem_.dark.unlit[problem_.points[i].pixel] = unlit ? 1 : 0;
+    for (int c = 0; c < 3; ++c) {
+      rgb[c] = unlit ? 1e6f : static_cast<float>(rgb[c] + ambient[c]);
+    }
+  }
+  problem_.dark.ambient = 1.1 * ambient;
+  problem_.dark.ambient_deviation = 0.2 * ambient;
+  const Solution e = Solve();
+  ExpectWhole(e);
+  const size_t unlit = (problem_.points.size() + 3) / 4;
+  EXPECT_EQ(static_cast<int64_t>(problem_.points.size() - unlit),
+            e.pixels_used);
+  EXPECT_LT(e.misfit, 0.1);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_GE(e.ambient[c], 0.0);
+    EXPECT_NEAR(ambient[c], e.ambient[c], 0.5 * ambient[c]) << c;
+  }
+  // The render has the ambient term; a unit of radiance changes nothing.
+  for (size_t i = 0; i < problem_.points.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      ASSERT_GT(e.render.rgb[3 * problem_.points[i].pixel + c],
+                0.999f * static_cast<float>(e.ambient[c]));
+    }
+  }
+  for (float& v : problem_.image.rgb) v *= 1024.0f;
+  for (float& v : problem_.known_map->rgb) v *= 1024.0f;
+  problem_.dark.ambient *= 1024.0;
+  problem_.dark.ambient_deviation *= 1024.0;
+  const Solution brighter = Solve();
+  EXPECT_EQ(e.lobe_parameters, brighter.lobe_parameters);
+  EXPECT_TRUE((brighter.ambient == 1024.0 * e.ambient).all());
+}
+
 INSTANTIATE_TEST_SUITE_P(Problems, InverseRenderingTest,
                          ::testing::Values(ProblemKind::kJoint,
                                            ProblemKind::kReflectance,
