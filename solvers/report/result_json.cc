@@ -113,9 +113,10 @@ Json TraceJson(const std::vector<TraceEntry>& trace) {
   return out;
 }
 
-// What the known light leaves dark; null where no light is known.
+// What the known light leaves dark; empty where no light is known or no
+// reflectance sought.
 Json DarkPixelsJson(const SolvedProblem& solved) {
-  if (solved.inverse.kind != ProblemKind::kReflectance) return {};
+  if (solved.inverse.kind != ProblemKind::kReflectance) return Json::object();
   const DarkPixels& dark = solved.inverse.dark;
   const Eigen::Array3d& ambient = solved.solution.ambient;
   return {{"unlit", dark.num_unlit},
