@@ -429,6 +429,7 @@ Keys ReflectanceKeys() {
                    {"albedo",
                     "One gloss over paint: the albedo of what is matte is "
                     "found at every pixel."}})
+          .Needs("solver.estimator: marginal")
           .UsedBy(kUsedByJoint),
       Row("reflectance.known",
           "The known BRDF: a MERL table, or one of `lambertian` and "

@@ -110,7 +110,14 @@ StatusOr<Solution> SolvePainted(const InverseProblem& problem,
   context->Reserve(PredictSummarySeconds(*setup, *context));
   const StatusOr<ReflectanceEstimate> found =
       EstimateReflectance(*setup, context);
-  if (!found.ok()) return found.status();
+  if (!found.ok() || found->light.mode.num_texels() == 0) {
+    if (found.status().code() == StatusCode::kInvalidInput) {
+      return found.status();
+    }
+    LOG(WARNING) << "no paint is told from the light: " << found.status().message();
+    return Summarise(*setup, ConstantLight(*setup, MeanMaterial(*setup)),
+                     context);
+  }
   const std::vector<ShadingPoint>& points = setup->pixels.points;
   const Unpainted reflectance = UnpaintedOf(*setup->lobes, found->lobes.data());
   MapSize size = found->light.mode.size();
