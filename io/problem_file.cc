@@ -375,6 +375,11 @@ void ReadKeys(ProblemReader root, Problem* problem) {
   ReadLikelihood(root.Below("likelihood"), &problem->likelihood);
   ReadEffects(&root, &problem->effects);
   ReadSolver(root.Below("solver"), problem->kind, &problem->solver);
+  if (problem->reflectance.variation != ReflectanceVariation::kNone &&
+      problem->solver.estimator == SolverEstimator::kMaximum) {
+    root.Below("reflectance")
+        .Fail("variation", "expected none with solver.estimator: maximum");
+  }
   SettlePrior(problem->solver, &problem->illumination);
   ReadTruth(root.Below("truth"), &problem->truth);
   root.Read("noise", &problem->noise);

@@ -428,8 +428,8 @@ Keys ReflectanceKeys() {
                   {{"none", "One material."},
                    {"albedo",
                     "One gloss over paint: the albedo of what is matte is "
-                    "found at every pixel."}})
-          .Needs("solver.estimator: marginal")
+                    "found at every pixel, in `albedo.exr`. An experiment yet: "
+                    "a lone lamp is not told from paint."}})
           .UsedBy(kUsedByJoint),
       Row("reflectance.known",
           "The known BRDF: a MERL table, or one of `lambertian` and "

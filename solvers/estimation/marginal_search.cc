@@ -182,6 +182,7 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
   const InverseProblem& problem = *setup.problem;
   ReflectanceSearchOptions o = SearchOptions(kSearchShare, setup, context);
   o.covariance = problem.solver.max_iterations > 0;
+  if (problem.variation == ReflectanceVariation::kAlbedo) o.paint.emplace();
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       FlowLobes::Factory(*problem.model, problem.lobes, problem.num_threads),
       setup.materials, problem.points, SearchedPixels(setup), o);

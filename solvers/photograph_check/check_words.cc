@@ -105,16 +105,18 @@ std::vector<std::string> CheckLines(const PhotographCheck& check) {
 
 std::vector<std::string> CheckWarnings(const PhotographCheck& check,
                                        const std::string& image_file,
-                                       const std::string& normals_file) {
+                                       const std::string& normals_file,
+                                       bool one_material) {
   std::vector<std::string> warnings;
-  if (check.SeveralMaterials()) {
+  if (one_material && check.SeveralMaterials()) {
     warnings.push_back(
         image_file +
         ": the object looks painted or of several materials: pixels of like "
         "normals far apart differ in colour by " +
         Three(check.colours.excess) +
         " (log of a ratio of channels, noise taken off). One material explains "
-        "that as mirrored light. Mask one material alone");
+        "that as mirrored light. Mask one material alone, or look for paint: "
+        "reflectance.variation: albedo");
   }
   if (const NormalScore* better = check.BetterNormals()) {
     warnings.push_back(normals_file +

@@ -103,7 +103,8 @@ StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
   IBRDF_RETURN_IF_ERROR(CheckSilhouette(problem, silhouette, &object.warnings));
   object.look = Look(problem, *observed, object, std::move(silhouette));
   for (std::string& warning : CheckWarnings(
-           object.look->check, problem.image.file, problem.geometry.file)) {
+           object.look->check, problem.image.file, problem.geometry.file,
+           problem.reflectance.variation == ReflectanceVariation::kNone)) {
     object.warnings.push_back(std::move(warning));
   }
   object.radiance = std::move(observed->radiance);

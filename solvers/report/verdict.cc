@@ -382,6 +382,10 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
   n.object_pixels = static_cast<int64_t>(solved.inverse.points.size());
   n.used_pixels = solution.pixels_used;
   if (solved.inverse.look != nullptr) TakeLook(solved.inverse.look->check, &n);
+  // Paint that is sought is not taken for light.
+  if (solved.inverse.variation != ReflectanceVariation::kNone) {
+    n.several_materials = false;
+  }
   if (std::isfinite(solution.spread)) {
     n.reflectance_error = ExpectError(solution.spread).median;
   }

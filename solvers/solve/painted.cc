@@ -21,6 +21,8 @@ namespace {
 constexpr size_t kPaintedPointsAtOnce = 4096;
 // Light and paint in turns.
 constexpr int kTurns = 2;
+// Another turn is taken where this many times the last one's time is left.
+constexpr double kTurnMargin = 1.5;
 
 // Matte and gloss of lobes, a = 1.
 struct Unpainted {
@@ -78,7 +80,7 @@ Image AtPixels(const std::vector<double>& values,
 
 // Radiance divided by, or times, factors > 0 [points * 3].
 void ScalePixels(const std::vector<double>& factors, bool divide,
-           const std::vector<ShadingPoint>& points, Image* image) {
+                 const std::vector<ShadingPoint>& points, Image* image) {
   for (size_t i = 0; i < points.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
       float& v = image->rgb[size_t{3} * points[i].pixel + c];
@@ -100,6 +102,33 @@ InverseProblem WithoutPaint(const InverseProblem& problem,
   return out;
 }
 
+// The paint under a map, and the light and the rest given that paint.
+StatusOr<Solution> TakeTurn(const SolveSetup& setup,
+                            const ReflectanceEstimate& found,
+                            const Unpainted& reflectance,
+                            const std::vector<float>& map, MapSize size,
+                            SolveContext* context) {
+  const std::vector<ShadingPoint>& points = setup.pixels.points;
+  const UnpaintedRadiance unpainted = Render(setup, reflectance, map, size);
+  const std::vector<double> log_albedo =
+      FitAlbedo(unpainted, setup.pixels.observed, AlbedoFitOptions());
+  const std::vector<double> gain = PaintGain(unpainted, log_albedo);
+  const InverseProblem without = WithoutPaint(*setup.problem, gain, points);
+  const StatusOr<SolveSetup> of_light = SetUp(without);
+  if (!of_light.ok()) return of_light.status();
+  StatusOr<Estimate> estimate = EstimateLight(*of_light, found, context);
+  if (!estimate.ok()) return estimate.status();
+  Solution solution = Summarise(*of_light, *std::move(estimate), context);
+  ScalePixels(gain, false, points, &solution.render);
+  std::vector<double> albedo(log_albedo.size());
+  for (size_t i = 0; i < albedo.size(); ++i) {
+    albedo[i] = reflectance.albedo[i % 3] * std::exp(log_albedo[i]);
+  }
+  solution.albedo = AtPixels(albedo, points, setup.problem->image);
+  solution.gloss = AtPixels(unpainted.gloss, points, setup.problem->image);
+  return solution;
+}
+
 }  // namespace
 
 StatusOr<Solution> SolvePainted(const InverseProblem& problem,
@@ -110,41 +139,30 @@ StatusOr<Solution> SolvePainted(const InverseProblem& problem,
   context->Reserve(PredictSummarySeconds(*setup, *context));
   const StatusOr<ReflectanceEstimate> found =
       EstimateReflectance(*setup, context);
+  if (!found.ok() && found.status().code() != StatusCode::kNoImprovement) {
+    return found.status();
+  }
   if (!found.ok() || found->light.mode.num_texels() == 0) {
-    if (found.status().code() == StatusCode::kInvalidInput) {
-      return found.status();
-    }
-    LOG(WARNING) << "no paint is told from the light: " << found.status().message();
+    LOG(WARNING) << "no paint was told from the light";
     return Summarise(*setup, ConstantLight(*setup, MeanMaterial(*setup)),
                      context);
   }
-  const std::vector<ShadingPoint>& points = setup->pixels.points;
   const Unpainted reflectance = UnpaintedOf(*setup->lobes, found->lobes.data());
-  MapSize size = found->light.mode.size();
   std::vector<float> map;
   found->light.mode.Exp(&map);
-  StatusOr<Solution> solution = Status(StatusCode::kInternal, "no turn");
-  for (int turn = 0; turn < kTurns; ++turn) {
-    const UnpaintedRadiance unpainted = Render(*setup, reflectance, map, size);
-    const std::vector<double> log_albedo =
-        FitAlbedo(unpainted, setup->pixels.observed, AlbedoFitOptions());
-    const std::vector<double> gain = PaintGain(unpainted, log_albedo);
-    const InverseProblem without = WithoutPaint(problem, gain, points);
-    const StatusOr<SolveSetup> of_light = SetUp(without);
-    if (!of_light.ok()) return of_light.status();
-    StatusOr<Estimate> estimate = EstimateLight(*of_light, *found, context);
-    if (!estimate.ok()) return estimate.status();
-    solution = Summarise(*of_light, *std::move(estimate), context);
-    if (!solution.ok()) return solution;
-    ScalePixels(gain, false, points, &solution->render);
-    std::vector<double> albedo(log_albedo.size());
-    for (size_t i = 0; i < albedo.size(); ++i) {
-      albedo[i] = reflectance.albedo[i % 3] * std::exp(log_albedo[i]);
-    }
-    solution->albedo = AtPixels(albedo, points, problem.image);
-    solution->gloss = AtPixels(unpainted.gloss, points, problem.image);
-    map = solution->map.rgb;
-    size = {solution->map.width, solution->map.height};
+  double began = context->Elapsed();
+  StatusOr<Solution> solution = TakeTurn(*setup, *found, reflectance, map,
+                                         found->light.mode.size(), context);
+  for (int turn = 1; turn < kTurns && solution.ok(); ++turn) {
+    // A turn that is cut short would undo the last.
+    const double seconds = context->Elapsed() - began;
+    if (context->Remaining() < kTurnMargin * seconds) break;
+    began = context->Elapsed();
+    const MapSize size = {solution->map.width, solution->map.height};
+    StatusOr<Solution> next =
+        TakeTurn(*setup, *found, reflectance, solution->map.rgb, size, context);
+    if (!next.ok()) return next;
+    if (next->misfit < solution->misfit) solution = std::move(next);
   }
   return solution;
 }

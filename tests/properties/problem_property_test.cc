@@ -190,6 +190,11 @@ Problem AnyProblem() {
     if (*rc::gen::arbitrary<bool>()) p.reflectance.model = AnyPath();
     p.reflectance.lobes = *rc::gen::inRange(1, 9);
     p.reflectance.prior_sigma = AnyNumber(kLeast, kMost);
+    if (p.kind == ProblemKind::kJoint &&
+        p.solver.estimator == SolverEstimator::kMarginal) {
+      p.reflectance.variation =
+          AnyOf<ReflectanceVariation>(kNumReflectanceVariations);
+    }
   }
   const bool map_file = (rendered || p.kind == ProblemKind::kReflectance) &&
                         *rc::gen::arbitrary<bool>();
@@ -288,6 +293,7 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
   RC_ASSERT(p.reflectance.model == q.reflectance.model);
   RC_ASSERT(p.reflectance.lobes == q.reflectance.lobes);
   RC_ASSERT(p.reflectance.prior_sigma == q.reflectance.prior_sigma);
+  RC_ASSERT(p.reflectance.variation == q.reflectance.variation);
   RC_ASSERT(p.reflectance.known_file == q.reflectance.known_file);
   RC_ASSERT(p.reflectance.analytic.has_value() ==
             q.reflectance.analytic.has_value());
