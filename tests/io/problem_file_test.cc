@@ -204,7 +204,8 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {least + "reflectance: {prior_sigma: nan}", "found 'nan'"},
       {least + "reflectance: {prior_sigma: '1'}", "expected a number > 0"},
       {least + "reflectance: [1]",
-       "reflectance: expected a map of model, lobes, prior_sigma, variation or known, "
+       "reflectance: expected a map of model, lobes, prior_sigma, variation or "
+       "known, "
        "found a list of 1"},
       {least + "solver: {method: newton}",
        "solver.method: expected auto, alternating, gauss_newton, lbfgs, adam "
