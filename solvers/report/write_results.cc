@@ -80,6 +80,9 @@ std::vector<std::string> ResultPaths(const Problem& problem,
   if (!problem.illumination.known()) {
     paths.emplace_back("illumination_log_std.exr");
   }
+  if (problem.reflectance.variation != ReflectanceVariation::kNone) {
+    paths.insert(paths.end(), {"albedo.exr", "gloss.exr"});
+  }
   for (std::string& path : paths) path.insert(0, folder + "/");
   return paths;
 }

@@ -10,15 +10,13 @@
 #include "ibrdf/brdf/matte_split.h"
 #include "ibrdf/solvers/estimation/light_given_reflectance.h"
 #include "ibrdf/solvers/estimation/marginal_search.h"
-#include "ibrdf/solvers/estimation/solve_setup.h"
+#include "ibrdf/solvers/estimation/pixel_renders.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
 #include "ibrdf/solvers/solve/summary.h"
-#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr size_t kPaintedPointsAtOnce = 4096;
 // Light and paint in turns.
 constexpr int kTurns = 2;
 // Another turn is taken where this many times the last one's time is left.
@@ -44,38 +42,14 @@ Unpainted UnpaintedOf(const LobeModel& lobes, const double* parameters) {
 
 UnpaintedRadiance Render(const SolveSetup& setup, const Unpainted& reflectance,
                          const std::vector<float>& map, MapSize size) {
-  const std::vector<ShadingPoint>& points = setup.pixels.points;
   UnpaintedRadiance out;
-  out.matte.resize(3 * points.size());
-  out.gloss.resize(3 * points.size());
-  const size_t at_once = setup.transport.patches != nullptr
-                             ? kPointsAtOnceWithBounces
-                             : kPaintedPointsAtOnce;
-  for (size_t begin = 0; begin < points.size(); begin += at_once) {
-    const size_t end = std::min(begin + at_once, points.size());
-    const Transport transport(
-        std::vector<ShadingPoint>(points.begin() + begin, points.begin() + end),
-        size.height, size.width, setup.transport);
-    transport.Render(reflectance.matte, map.data(), &out.matte[3 * begin]);
-    transport.Render(reflectance.whole, map.data(), &out.gloss[3 * begin]);
-  }
+  RenderPixels(setup, size,
+               {{&reflectance.matte, map.data(), &out.matte},
+                {&reflectance.whole, map.data(), &out.gloss}});
   for (size_t i = 0; i < out.gloss.size(); ++i) {
     out.gloss[i] = std::max(out.gloss[i] - out.matte[i], 0.0);
   }
   return out;
-}
-
-// Values [points * 3] at the object's pixels, 0 elsewhere.
-Image AtPixels(const std::vector<double>& values,
-               const std::vector<ShadingPoint>& points, const Image& like) {
-  Image image(like.width, like.height);
-  for (size_t i = 0; i < points.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      image.rgb[size_t{3} * points[i].pixel + c] =
-          static_cast<float>(values[3 * i + c]);
-    }
-  }
-  return image;
 }
 
 // Radiance divided by, or times, factors > 0 [points * 3].
@@ -124,34 +98,29 @@ StatusOr<Solution> TakeTurn(const SolveSetup& setup,
   for (size_t i = 0; i < albedo.size(); ++i) {
     albedo[i] = reflectance.albedo[i % 3] * std::exp(log_albedo[i]);
   }
-  solution.albedo = AtPixels(albedo, points, setup.problem->image);
-  solution.gloss = AtPixels(unpainted.gloss, points, setup.problem->image);
+  solution.albedo = AtPixels(setup, albedo);
+  solution.gloss = AtPixels(setup, unpainted.gloss);
   return solution;
 }
 
 }  // namespace
 
-StatusOr<Solution> SolvePainted(const InverseProblem& problem,
+StatusOr<Solution> SolvePainted(const SolveSetup& setup,
                                 SolveContext* context) {
-  const StatusOr<SolveSetup> setup = SetUp(problem);
-  if (!setup.ok()) return setup.status();
-  IBRDF_RETURN_IF_ERROR(CheckMethod(*setup));
-  context->Reserve(PredictSummarySeconds(*setup, *context));
   const StatusOr<ReflectanceEstimate> found =
-      EstimateReflectance(*setup, context);
+      EstimateReflectance(setup, context);
   if (!found.ok() && found.status().code() != StatusCode::kNoImprovement) {
     return found.status();
   }
   if (!found.ok() || found->light.mode.num_texels() == 0) {
     LOG(WARNING) << "no paint was told from the light";
-    return Summarise(*setup, ConstantLight(*setup, MeanMaterial(*setup)),
-                     context);
+    return Summarise(setup, ConstantLight(setup, MeanMaterial(setup)), context);
   }
-  const Unpainted reflectance = UnpaintedOf(*setup->lobes, found->lobes.data());
+  const Unpainted reflectance = UnpaintedOf(*setup.lobes, found->lobes.data());
   std::vector<float> map;
   found->light.mode.Exp(&map);
   double began = context->Elapsed();
-  StatusOr<Solution> solution = TakeTurn(*setup, *found, reflectance, map,
+  StatusOr<Solution> solution = TakeTurn(setup, *found, reflectance, map,
                                          found->light.mode.size(), context);
   for (int turn = 1; turn < kTurns && solution.ok(); ++turn) {
     // A turn that is cut short would undo the last.
@@ -160,7 +129,7 @@ StatusOr<Solution> SolvePainted(const InverseProblem& problem,
     began = context->Elapsed();
     const MapSize size = {solution->map.width, solution->map.height};
     StatusOr<Solution> next =
-        TakeTurn(*setup, *found, reflectance, solution->map.rgb, size, context);
+        TakeTurn(setup, *found, reflectance, solution->map.rgb, size, context);
     if (!next.ok()) return next;
     if (next->misfit < solution->misfit) solution = std::move(next);
   }

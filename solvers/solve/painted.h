@@ -3,7 +3,7 @@
 #include "ibrdf/base/status.h"
 #include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/estimation/solve_context.h"
-#include "ibrdf/solvers/problem/inverse_problem.h"
+#include "ibrdf/solvers/estimation/solve_setup.h"
 
 namespace ibrdf {
 
@@ -12,7 +12,6 @@ namespace ibrdf {
 // and paint are found in turns, the light from the image with its paint divided
 // out. The solution's lobes are of the unpainted object, whose log albedo is
 // that of a = 1; its render is of the painted one.
-StatusOr<Solution> SolvePainted(const InverseProblem& problem,
-                                SolveContext* context);
+StatusOr<Solution> SolvePainted(const SolveSetup& setup, SolveContext* context);
 
 }  // namespace ibrdf

@@ -54,13 +54,13 @@ StatusOr<Estimate> EstimateUnknowns(const SolveSetup& setup,
 
 // In units in which radiance is near 1.
 StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
-  if (problem.variation == ReflectanceVariation::kAlbedo) {
-    return SolvePainted(problem, context);
-  }
   const StatusOr<SolveSetup> setup = SetUp(problem);
   if (!setup.ok()) return setup.status();
   IBRDF_RETURN_IF_ERROR(CheckMethod(*setup));
   context->Reserve(PredictSummarySeconds(*setup, *context));
+  if (problem.variation == ReflectanceVariation::kAlbedo) {
+    return SolvePainted(*setup, context);
+  }
   StatusOr<Estimate> estimate = EstimateUnknowns(*setup, context);
   if (!estimate.ok()) return estimate.status();
   return Summarise(*setup, *std::move(estimate), context);

@@ -8,14 +8,12 @@
 #include <vector>
 
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/solvers/estimation/pixel_renders.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
 namespace {
 
-// Pixels that are transported at once: the lists of pairs of all of them would
-// take gigabytes.
-constexpr size_t kPointsAtOnce = 4096;
 constexpr int kSpreadSamples = 64;
 // The time of a summary over that of a transport of all pixels, which it builds
 // and renders by; and that of the table and the samples of the posterior.
@@ -52,24 +50,14 @@ View ViewOf(const JointState& state, const LightPriors& priors,
   return view;
 }
 
-// Radiance and likelihood of the views at every pixel, slice by slice.
-void RenderPixels(const SolveSetup& setup, const Estimate& estimate,
-                  const std::vector<View*>& views) {
-  const std::vector<ShadingPoint>& points = setup.pixels.points;
-  for (View* const view : views) view->radiance.resize(3 * points.size());
-  const bool bounces = setup.transport.patches != nullptr;
-  const size_t at_once = bounces ? kPointsAtOnceWithBounces : kPointsAtOnce;
-  const MapSize size = SizeOf(estimate.iterate.light, setup);
-  for (size_t begin = 0; begin < points.size(); begin += at_once) {
-    const size_t end = std::min(begin + at_once, points.size());
-    const Transport transport(
-        std::vector<ShadingPoint>(points.begin() + begin, points.begin() + end),
-        size.height, size.width, setup.transport);
-    for (View* const view : views) {
-      transport.Render(view->grid, view->map.data(),
-                       &view->radiance[3 * begin]);
-    }
+// Radiance and likelihood of the views at every pixel.
+void RenderViews(const SolveSetup& setup, const Estimate& estimate,
+                 const std::vector<View*>& views) {
+  std::vector<PixelRender> renders;
+  for (View* const view : views) {
+    renders.push_back({&view->grid, view->map.data(), &view->radiance});
   }
+  RenderPixels(setup, SizeOf(estimate.iterate.light, setup), renders);
   for (View* const view : views) {
     const LikelihoodValue value = EvaluateLikelihood(
         view->radiance, setup.pixels.observed,
@@ -90,15 +78,11 @@ void TurnDown(Estimate* estimate) {
 }
 
 Image RenderOf(const View& view, const SolveSetup& setup) {
-  Image render(setup.problem->image.width, setup.problem->image.height);
-  const std::vector<ShadingPoint>& points = setup.pixels.points;
-  for (size_t i = 0; i < points.size(); ++i) {
-    float* rgb = render.rgb.data() + size_t{3} * points[i].pixel;
-    for (int c = 0; c < 3; ++c) {
-      rgb[c] = static_cast<float>(view.radiance[3 * i + c] + view.ambient[c]);
-    }
+  std::vector<double> radiance = view.radiance;
+  for (size_t i = 0; i < radiance.size(); ++i) {
+    radiance[i] += view.ambient[i % 3];
   }
-  return render;
+  return AtPixels(setup, radiance);
 }
 
 // Other candidates, with their distances from the estimate.
@@ -178,7 +162,7 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
                       setup, estimate);
   View last = ViewOf(estimate.iterate.state, estimate.iterate.light.priors,
                      estimate.iterate.ambient, setup, estimate);
-  RenderPixels(setup, estimate, {&first, &last});
+  RenderViews(setup, estimate, {&first, &last});
   const TraceEntry start = MakeEntry("start", setup, *context, num_pixels,
                                      scale, reference.state, first.cost);
   TraceEntry end = MakeEntry("end", setup, *context, num_pixels, scale,

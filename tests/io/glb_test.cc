@@ -10,6 +10,7 @@
 #include "ibrdf/io/mesh.h"
 #include "tests/support/corruption.h"
 #include "tests/support/mesh_files.h"
+#include "tests/support/signed_volume.h"
 
 namespace ibrdf {
 namespace {
@@ -34,17 +35,6 @@ TriangleMesh Decoded(const std::string& bytes) {
   const StatusOr<TriangleMesh> mesh = DecodeMesh("a.glb", bytes);
   EXPECT_TRUE(mesh.ok()) << mesh.status().message();
   return mesh.ok() ? *mesh : TriangleMesh();
-}
-
-double SignedVolume(const TriangleMesh& mesh) {
-  double volume = 0.0;
-  for (const auto& t : mesh.triangles) {
-    const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
-    const Eigen::Vector3d b = mesh.vertices[t[1]].cast<double>();
-    const Eigen::Vector3d c = mesh.vertices[t[2]].cast<double>();
-    volume += a.dot(b.cross(c)) / 6.0;
-  }
-  return volume;
 }
 
 void ExpectRefused(const std::string& bytes, const std::string& says) {

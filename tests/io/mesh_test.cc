@@ -14,6 +14,7 @@
 #include "ibrdf/base/format.h"
 #include "tests/support/corruption.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/signed_volume.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -66,17 +67,6 @@ bool IsClosed(const TriangleMesh& mesh) {
     if (edges.count({b, a}) != edges.count({a, b})) return false;
   }
   return true;
-}
-
-double SignedVolume(const TriangleMesh& mesh) {
-  double volume = 0.0;
-  for (const auto& t : mesh.triangles) {
-    const Eigen::Vector3d a = mesh.vertices[t[0]].cast<double>();
-    const Eigen::Vector3d b = mesh.vertices[t[1]].cast<double>();
-    const Eigen::Vector3d c = mesh.vertices[t[2]].cast<double>();
-    volume += a.dot(b.cross(c)) / 6.0;
-  }
-  return volume;
 }
 
 TEST(Mesh, ObjCubeIsJoinedAcrossGroupsAndSeams) {

@@ -55,16 +55,11 @@ TEST(MarginalIntervals, GradientMatchesDifferences) {
 TEST(MarginalIntervals, AreTheIntegralWhereLightVariesLittle) {
   const int points = 2;
   const std::array<RowMatrix, 3> T = Lobes(0.8, points);
-  LightProcess process = Proper();
-  process.level_variance = 0.01;
-  process.level_chroma_variance = 0.002;
-  process.horizon_share = 0.02;
+  const LightProcess process = LittleVariance();
   const double log_amplitude = std::log(0.02), sigma = 0.15;
   const auto evidence = [&](const LogRadianceData& data) {
     const MarginalLikelihood likelihood = Likelihood(data, process);
-    LightMode mode;
-    mode.l = mode.representers =
-        Eigen::VectorXd::Zero(3 * likelihood.num_sources());
+    LightMode mode = ZeroMode(likelihood);
     const MarginalValue value = likelihood.Evaluate(
         T, Noise(sigma, points), {log_amplitude}, kTight, &mode, nullptr);
     EXPECT_TRUE(value.ok);

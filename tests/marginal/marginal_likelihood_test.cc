@@ -50,19 +50,14 @@ TEST(MarginalLikelihood, ModeIsWhereThePosteriorIsFlat) {
 TEST(MarginalLikelihood, IsTheIntegralWhereLightVariesLittle) {
   const int points = 2, directional_lights = 1;
   const std::array<RowMatrix, 3> T = Lobes(0.8, points, directional_lights);
-  LightProcess process = Proper();
+  LightProcess process = LittleVariance();
   process.directional_light_variance = 0.02;
   process.directional_light_chroma_variance = 0.005;
-  process.level_variance = 0.01;
-  process.level_chroma_variance = 0.002;
-  process.horizon_share = 0.02;
   const double log_amplitude = std::log(0.02), sigma = 0.15;
   const auto evidence = [&](const std::vector<double>& y) {
     const MarginalLikelihood likelihood({y, {}, {}}, process, kHeight, kWidth,
                                         directional_lights, 1);
-    LightMode mode;
-    mode.l = mode.representers =
-        Eigen::VectorXd::Zero(3 * likelihood.num_sources());
+    LightMode mode = ZeroMode(likelihood);
     return -likelihood
                 .Evaluate(T, Noise(sigma, points), {log_amplitude}, kTight,
                           &mode, nullptr)

@@ -72,8 +72,7 @@ TEST(MarginalPaint, WithoutCorrelationIsNoise) {
   Paint paint = SomePaint();
   paint.covariance = 0.09 * Eigen::MatrixXd::Identity(3 * kPoints, 3 * kPoints);
   const MarginalLikelihood likelihood = Likelihood(Values(y), Proper());
-  LightMode mode;
-  mode.l = mode.representers = Eigen::VectorXd::Zero(likelihood.num_latents());
+  LightMode mode = ZeroMode(likelihood);
   DataErrors errors = Noise(0.1);
   errors.noise += 0.09 * paint.matte_share.cwiseAbs2();
   const MarginalValue noisy =
@@ -86,10 +85,7 @@ TEST(MarginalPaint, WithoutCorrelationIsNoise) {
 TEST(MarginalPaint, IsTheIntegralWhereLightVariesLittle) {
   const int points = 2;
   const std::array<RowMatrix, 3> T = Lobes(0.8, points);
-  LightProcess process = Proper();
-  process.level_variance = 0.01;
-  process.level_chroma_variance = 0.002;
-  process.horizon_share = 0.02;
+  const LightProcess process = LittleVariance();
   const double log_amplitude = std::log(0.02), sigma = 0.15;
   const Paint paint = SomePaint(0.5, points);
   const Eigen::MatrixXd factor = paint.covariance.llt().matrixL();
@@ -106,8 +102,7 @@ TEST(MarginalPaint, IsTheIntegralWhereLightVariesLittle) {
   const std::vector<double> y = draw(5);
   const MarginalLikelihood likelihood =
       Likelihood(Values(y), process, 0, paint.covariance);
-  LightMode mode;
-  mode.l = mode.representers = Eigen::VectorXd::Zero(likelihood.num_latents());
+  LightMode mode = ZeroMode(likelihood);
   DataErrors errors = Noise(sigma, points);
   errors.matte_share = paint.matte_share;
   const MarginalValue value =
@@ -143,9 +138,7 @@ TEST(MarginalPaint, TakesWhatColourTellsFromTheLight) {
   const auto spread_of_light = [&](const Paint& with) {
     const MarginalLikelihood likelihood =
         Likelihood(Values(y), Proper(), 0, with.covariance);
-    LightMode mode;
-    mode.l = mode.representers =
-        Eigen::VectorXd::Zero(likelihood.num_latents());
+    LightMode mode = ZeroMode(likelihood);
     DataErrors errors = Noise(0.03, 24);
     errors.matte_share = with.matte_share;
     EXPECT_TRUE(likelihood.Evaluate(T, errors, {}, 1e-9, &mode, nullptr).ok);

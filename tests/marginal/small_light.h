@@ -94,6 +94,22 @@ inline LightProcess Proper() {
   return process;
 }
 
+// Light of which a drawn sample says nearly all.
+inline LightProcess LittleVariance() {
+  LightProcess process = Proper();
+  process.level_variance = 0.01;
+  process.level_chroma_variance = 0.002;
+  process.horizon_share = 0.02;
+  return process;
+}
+
+// Constant light of radiance 1, unpainted: where a search may begin.
+inline LightMode ZeroMode(const MarginalLikelihood& likelihood) {
+  LightMode mode;
+  mode.l = mode.representers = Eigen::VectorXd::Zero(likelihood.num_latents());
+  return mode;
+}
+
 // No band is like another.
 inline LightHyperparameters Rough() { return {0.3, {-1.5, 0.4, -0.3, 0.8}}; }
 
@@ -131,8 +147,7 @@ inline double Cost(const LogRadianceData& data,
                    double sigma = 0.1, const Paint& paint = {}) {
   const MarginalLikelihood likelihood =
       Likelihood(data, Proper(), directional_lights, paint.covariance);
-  LightMode mode;
-  mode.l = mode.representers = Eigen::VectorXd::Zero(likelihood.num_latents());
+  LightMode mode = ZeroMode(likelihood);
   DataErrors errors = Noise(sigma, static_cast<int>(data.value.size() / 3));
   errors.matte_share = paint.matte_share;
   const MarginalValue value =
