@@ -12,6 +12,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/brdf/table_lobes.h"
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
+#include "ibrdf/solvers/paint/shading_light.h"
 #include "ibrdf/solvers/priors/embedding_prior.h"
 #include "ibrdf/solvers/problem/quadrature_level.h"
 
@@ -182,7 +183,11 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
   const InverseProblem& problem = *setup.problem;
   ReflectanceSearchOptions o = SearchOptions(kSearchShare, setup, context);
   o.covariance = problem.solver.max_iterations > 0;
-  if (problem.variation == ReflectanceVariation::kAlbedo) o.paint.emplace();
+  if (problem.variation == ReflectanceVariation::kAlbedo) {
+    o.paint.emplace();
+    const auto lamp = FindShadingLight(problem.points, setup.pixels.observed);
+    if (lamp) o.directional_lights = {lamp->direction};
+  }
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       FlowLobes::Factory(*problem.model, problem.lobes, problem.num_threads),
       setup.materials, problem.points, SearchedPixels(setup), o);

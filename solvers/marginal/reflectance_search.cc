@@ -11,6 +11,7 @@
 
 #include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/solvers/marginal/marginal_descent.h"
 #include "ibrdf/solvers/marginal/marginal_objective.h"
 #include "ibrdf/solvers/optim/conditioning.h"
@@ -23,6 +24,8 @@ namespace {
 constexpr double kRankingTolerance = 0.5;
 // Every candidate takes so many steps at the fine resolution.
 constexpr int kTrialIterations = 3;
+// Two directional lights within this angle, degrees, are one.
+constexpr double kReach = 20.0;
 
 // Radiance divided by factors > 0 [points * 3].
 Observations Quotient(const Observations& observed,
@@ -44,6 +47,26 @@ std::vector<char> ClippedPoints(const Observations& observed) {
                     [](double high) { return std::isinf(high); }));
   }
   return clipped;
+}
+
+// The lights that the caller knows, and others that highlights show.
+std::vector<Eigen::Vector3d> DirectionalLights(
+    const std::vector<ShadingPoint>& points, const Observations& observed,
+    const ReflectanceSearchOptions& options) {
+  std::vector<Eigen::Vector3d> lights = options.directional_lights;
+  const double reach = std::cos(kReach * kDegree);
+  for (const Eigen::Vector3d& found : FindDirectionalLights(
+           points, observed.radiance, options.most_directional_lights,
+           ClippedPoints(observed))) {
+    const bool known =
+        std::any_of(lights.begin(), lights.end(),
+                    [&](const auto& d) { return d.dot(found) >= reach; });
+    if (!known) lights.push_back(found);
+  }
+  if (static_cast<int>(lights.size()) > options.most_directional_lights) {
+    lights.resize(options.most_directional_lights);
+  }
+  return lights;
 }
 
 // Where a refinement at one resolution ended.
@@ -154,9 +177,7 @@ class Search {
       : options_(options),
         image_(observed),
         unbounced_(observed),
-        directional_lights_(FindDirectionalLights(
-            points, observed.radiance, options.most_directional_lights,
-            ClippedPoints(observed))),
+        directional_lights_(DirectionalLights(points, observed, options)),
         level_at_([&](const MarginalResolution& resolution) {
           return std::make_unique<SearchLevel>(lobes, prior, points, unbounced_,
                                                resolution, directional_lights_,

@@ -38,8 +38,11 @@ struct ReflectanceSearchOptions {
   double coarse_margin = 40.0;
   double margin = 12.0;
   int fine_iterations = 20;
-  int most_directional_lights =
-      3;  // that the image's highlights make (FindDirectionalLights)
+  // Where directional lights are that the caller knows of: unit directions.
+  std::vector<Eigen::Vector3d> directional_lights;
+  // With those that the image's highlights make beside them
+  // (FindDirectionalLights).
+  int most_directional_lights = 3;
   // Standard deviation of log radiance between model and image, of a bin. Not
   // the pixels' noise, which a bin averages out, but what no lobes of the
   // model can render: were it free to fall to the noise, light and reflectance

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "ibrdf/solvers/paint/chroma_plane.h"
+
 namespace ibrdf {
 namespace {
 
@@ -96,14 +98,6 @@ class MeanByColour {
   double width_;
 };
 
-// Coordinates of the plane of chroma: an orthonormal basis of the log colours
-// whose channels sum to 0.
-Eigen::Array2d InPlane(const Eigen::Array3d& log_colour) {
-  return {
-      (log_colour[0] - log_colour[2]) / std::sqrt(2.0),
-      (log_colour[0] - 2.0 * log_colour[1] + log_colour[2]) / std::sqrt(6.0)};
-}
-
 }  // namespace
 
 std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
@@ -123,7 +117,7 @@ std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
                   .max(1e-30)
                   .min(1e30)
                   .log();
-    chroma.push_back(InPlane(log_colour));
+    chroma.push_back(ChromaPlane(log_colour));
     luminance.push_back(apparent[i].seen ? apparent[i].log_albedo.mean() : 0.0);
     seen.push_back(apparent[i].seen ? 1.0 : 0.0);
   }

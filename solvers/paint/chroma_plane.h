@@ -1,0 +1,16 @@
+// Colours without their luminance, as points of a plane.
+#pragma once
+#include <Eigen/Core>
+#include <cmath>
+
+namespace ibrdf {
+
+// Coordinates of a log colour's chroma: in an orthonormal basis of the log
+// colours whose channels sum to 0.
+inline Eigen::Array2d ChromaPlane(const Eigen::Array3d& log_colour) {
+  return {
+      (log_colour[0] - log_colour[2]) / std::sqrt(2.0),
+      (log_colour[0] - 2.0 * log_colour[1] + log_colour[2]) / std::sqrt(6.0)};
+}
+
+}  // namespace ibrdf
