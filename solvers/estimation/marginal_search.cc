@@ -12,7 +12,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/brdf/table_lobes.h"
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
-#include "ibrdf/solvers/paint/shading_light.h"
+#include "ibrdf/solvers/paint/first_paint.h"
 #include "ibrdf/solvers/priors/embedding_prior.h"
 #include "ibrdf/solvers/problem/quadrature_level.h"
 
@@ -32,6 +32,11 @@ constexpr double kDarkest = 1e-8;
 // Where nearly all of a point's light comes from the object the map's says
 // little of it.
 constexpr double kMostBounceGain = 10.0;
+// Of a painted object: the deviations of paint that FindFirstPaint leaves, in
+// the prior's, and the variance of the light's chroma.
+const double kLeftOfPaint = getenv("IB_LEFT") ? atof(getenv("IB_LEFT")) : 0.5;
+const double kPaintedLightChroma =
+    getenv("IB_LC") ? atof(getenv("IB_LC")) : 0.1;
 
 // Radiance [points][3] with bounces over that without, under a map of log
 // radiance [3][texels].
@@ -176,6 +181,22 @@ LightPosterior LightOf(const ReflectanceSearchResult& found, double level) {
   return light;
 }
 
+// Before the light is known, pixels tell paint and a lamp by themselves; what
+// is left is small, and its chroma hardly the light's, which else would explain
+// paint at no cost.
+void AddPaint(const SolveSetup& setup, ReflectanceSearchOptions* o) {
+  const InverseProblem& problem = *setup.problem;
+  FirstPaint first =
+      FindFirstPaint(problem.points, setup.pixels.observed,
+                     NeighboursOf(problem.points, problem.image.width));
+  if (first.light) o->directional_lights = {first.light->direction};
+  o->paint.emplace();
+  o->paint->albedo = AlbedoPrior().Scaled(kLeftOfPaint);
+  o->paint->mean = std::move(first.log_albedo);
+  o->process.chroma_variance *= kPaintedLightChroma;
+  o->process.directional_light_chroma_variance *= kPaintedLightChroma;
+}
+
 }  // namespace
 
 StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
@@ -183,11 +204,7 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
   const InverseProblem& problem = *setup.problem;
   ReflectanceSearchOptions o = SearchOptions(kSearchShare, setup, context);
   o.covariance = problem.solver.max_iterations > 0;
-  if (problem.variation == ReflectanceVariation::kAlbedo) {
-    o.paint.emplace();
-    const auto lamp = FindShadingLight(problem.points, setup.pixels.observed);
-    if (lamp) o.directional_lights = {lamp->direction};
-  }
+  if (problem.variation == ReflectanceVariation::kAlbedo) AddPaint(setup, &o);
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       FlowLobes::Factory(*problem.model, problem.lobes, problem.num_threads),
       setup.materials, problem.points, SearchedPixels(setup), o);

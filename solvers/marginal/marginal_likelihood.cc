@@ -35,7 +35,8 @@ MarginalLikelihood::MarginalLikelihood(LogRadianceData data,
                                        const LightProcess& process,
                                        int map_height, int map_width,
                                        int num_directional_lights,
-                                       int num_threads, Eigen::MatrixXd paint)
+                                       int num_threads, Eigen::MatrixXd paint,
+                                       Eigen::VectorXd mean_paint)
     : num_points_(static_cast<int>(data.value.size() / 3)),
       y_(ToEigen(data.value)),
       low_(ToEigen(data.low)),
@@ -55,9 +56,11 @@ MarginalLikelihood::MarginalLikelihood(LogRadianceData data,
       rough_share_(process.rough_share),
       texel_variance_(process.VarianceWithin(180.0 / map_height)),
       paint_(std::move(paint)),
+      mean_paint_(std::move(mean_paint)),
       num_threads_(num_threads) {
   CHECK_GT(num_points_, 0);
   CHECK(paint_.size() == 0 || paint_.rows() == 3 * num_points_);
+  CHECK(mean_paint_.size() == 0 || mean_paint_.size() == paint_.rows());
   CHECK_EQ(y_.size() % 3, 0);
   CHECK(low_.size() == high_.size());
   CHECK(low_.size() == 0 || low_.size() == y_.size());
@@ -74,8 +77,13 @@ MarginalLikelihood::Given MarginalLikelihood::GivenBy(
     const LightHyperparameters& hyperparameters) const {
   CHECK_EQ(errors.noise.size(), y_.size());
   CHECK_EQ(errors.matte_share.size(), has_paint() ? y_.size() : 0);
-  return {matrices, errors.noise, errors.matte_share,
-          errors.noise.cwiseInverse(), LightAt(hyperparameters)};
+  CHECK(errors.mean_paint.size() == 0 || has_paint());
+  return {matrices,
+          errors.noise,
+          errors.matte_share,
+          errors.mean_paint,
+          errors.noise.cwiseInverse(),
+          LightAt(hyperparameters)};
 }
 
 double MarginalLikelihood::LevelFor(
@@ -120,11 +128,19 @@ Eigen::VectorXd MarginalLikelihood::NoiseVariance(
   return noise;
 }
 
-Eigen::VectorXd MarginalLikelihood::MatteShare(
-    const std::array<RowMatrix, 3>& matrices,
-    const std::array<RowMatrix, 3>& matte, const LightMode& mode) const {
+void MarginalLikelihood::SetPaint(const std::array<RowMatrix, 3>& matrices,
+                                  const std::array<RowMatrix, 3>& matte,
+                                  const LightMode& mode,
+                                  DataErrors* errors) const {
   const Eigen::VectorXd L = Radiance(mode.level, mode.l);
-  return Transported(matte, L).cwiseQuotient(Transported(matrices, L));
+  errors->matte_share =
+      Transported(matte, L).cwiseQuotient(Transported(matrices, L));
+  if (mean_paint_.size() == 0) return;
+  const Eigen::ArrayXd share = errors->matte_share;
+  const Eigen::ArrayXd painted =
+      1.0 + share * (mean_paint_.array().exp() - 1.0);
+  errors->mean_paint = painted.log();
+  errors->matte_share = share * mean_paint_.array().exp() / painted;
 }
 
 DataErrors MarginalLikelihood::FindErrors(
@@ -138,11 +154,11 @@ DataErrors MarginalLikelihood::FindErrors(
   if (has_paint()) {
     LightMode constant;
     constant.l = Eigen::VectorXd::Zero(3 * num_sources());
-    errors.matte_share = MatteShare(matrices, matte, constant);
+    SetPaint(matrices, matte, constant, &errors);
   }
   Evaluate(matrices, errors, hyperparameters, tolerance, mode, nullptr);
   errors.noise = NoiseVariance(matrices, sigma, *mode);
-  if (has_paint()) errors.matte_share = MatteShare(matrices, matte, *mode);
+  if (has_paint()) SetPaint(matrices, matte, *mode, &errors);
   return errors;
 }
 
@@ -213,6 +229,7 @@ MarginalLikelihood::Point MarginalLikelihood::At(
   point.log_L_o = point.unpainted.array().log();
   if (has_paint()) {
     point.log_L_o += given.matte_share.cwiseProduct(PaintOf(l));
+    if (given.mean_paint.size() > 0) point.log_L_o += given.mean_paint;
   }
   point.residual = y_ - point.log_L_o;
   for (Eigen::Index p = 0; p < low_.size(); ++p) {

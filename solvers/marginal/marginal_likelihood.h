@@ -32,9 +32,9 @@ struct LightMode {
 // What separates an image from the radiance that a reflectance gives.
 struct DataErrors {
   Eigen::VectorXd noise;  // diagonal of D [3 * points], > 0
-  // The share of the radiance that paint scales, m [3 * points] in [0, 1];
-  // empty where there is no paint.
-  Eigen::VectorXd matte_share;
+  // The share of the radiance that paint scales, m [3 * points] in [0, 1], and
+  // what the paint's mean adds to log radiance; empty where there is no paint.
+  Eigen::VectorXd matte_share, mean_paint;
 };
 
 // What an image says of log radiance [3 * points], channel by channel.
@@ -68,9 +68,11 @@ struct MarginalValue {
 // D is diagonal and the caller's, see NoiseVariance.
 //
 // With paint, log L_o is log(T exp(m + l)) + matte_share * a, a the log albedo
-// of the points relative to their material's: a ~ N(0, K_a) is integrated out
-// with the light, as more of l. The share is held where it was found, so a is
-// linear here, and A gets matte_share K_a matte_share.
+// of the points relative to their material's and to its prior mean a0: a ~ N(0,
+// K_a) is integrated out with the light, as more of l. The share is held where
+// it was found, so a is linear here, and A gets matte_share K_a matte_share.
+// With u the share without paint, m = u e^a0 / (1 + u (e^a0 - 1)), and the mean
+// adds log(1 + u (e^a0 - 1)) to log L_o.
 //
 // A datum of which an interval is known has -log of the probability that N(log
 // L_o, D) lies in it in place of (y - log L_o)^2 / (2 D): IntervalLikelihood,
@@ -82,10 +84,11 @@ struct MarginalValue {
 class MarginalLikelihood {
  public:
   // paint: K_a [3 * points]^2, channel by channel, positive semidefinite;
-  // empty: none.
+  // empty: none. mean_paint: a0 [3 * points]; empty: 0.
   MarginalLikelihood(LogRadianceData data, const LightProcess& process,
                      int map_height, int map_width, int num_directional_lights,
-                     int num_threads, Eigen::MatrixXd paint = {});
+                     int num_threads, Eigen::MatrixXd paint = {},
+                     Eigen::VectorXd mean_paint = {});
 
   int num_points() const { return num_points_; }
   int num_texels() const { return map_height_ * map_width_; }
@@ -135,12 +138,12 @@ class MarginalLikelihood {
                                 double sigma, const LightMode& mode) const;
 
   // The share of T L [3 * points] under the light of `mode` that is matte's,
-  // the matrices of the part that paint scales.
-  Eigen::VectorXd MatteShare(const std::array<RowMatrix, 3>& matrices,
-                             const std::array<RowMatrix, 3>& matte,
-                             const LightMode& mode) const;
+  // the matrices of the part that paint scales, and what a0 makes of it.
+  void SetPaint(const std::array<RowMatrix, 3>& matrices,
+                const std::array<RowMatrix, 3>& matte, const LightMode& mode,
+                DataErrors* errors) const;
 
-  // NoiseVariance and, with paint, MatteShare where no mode is known yet: at
+  // NoiseVariance and, with paint, SetPaint where no mode is known yet: at
   // the one found, to `tolerance` nats, with independent deviations of 0.15 and
   // the share under constant light. matte: not read without paint. `mode` as in
   // Evaluate.
@@ -185,6 +188,7 @@ class MarginalLikelihood {
     const std::array<RowMatrix, 3>& matrices;  // T_c
     const Eigen::VectorXd& noise;              // D [3 * points]
     const Eigen::VectorXd& matte_share;        // [3 * points] or empty
+    const Eigen::VectorXd& mean_paint;         // likewise
     Eigen::VectorXd weight;                    // D^-1
     Light light;
   };
@@ -336,8 +340,9 @@ class MarginalLikelihood {
   Eigen::VectorXd horizon_;  // [texels]
   int map_height_, map_width_, num_directional_lights_;
   double smooth_share_, rough_share_;
-  double texel_variance_;  // at amplitude and roughness 1
-  Eigen::MatrixXd paint_;  // K_a [3 * points]^2 or empty
+  double texel_variance_;       // at amplitude and roughness 1
+  Eigen::MatrixXd paint_;       // K_a [3 * points]^2 or empty
+  Eigen::VectorXd mean_paint_;  // a0 [3 * points] or empty
   int num_threads_;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/brdf/matte_split.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/light/log_map.h"
@@ -40,6 +41,34 @@ std::vector<bool> LitCells(const NormalBins& bins, const Transport& transport) {
   return lit;
 }
 
+// log mean I - log mean(I / e^a) of the bins' points [3 * bins]: the paint of
+// a bin, of which it need not hold one alone.
+Eigen::VectorXd MeanPaint(const std::vector<ShadingPoint>& points,
+                          const Observations& observed,
+                          const std::vector<double>& log_albedo,
+                          const MarginalResolution& resolution,
+                          const NormalBins& binned) {
+  if (log_albedo.empty()) return {};
+  std::vector<double> unpainted = observed.radiance;
+  for (size_t i = 0; i < unpainted.size(); ++i) {
+    unpainted[i] *= std::exp(-log_albedo[i]);
+  }
+  Observations without = MakeObservations(std::move(unpainted));
+  without.valid = observed.valid;
+  return ToEigen(binned.log_radiance) -
+         ToEigen(BinByNormal(points, without, resolution.bins).log_radiance);
+}
+
+// Of values [3 * bins] or none, those of the bins to keep.
+Eigen::VectorXd KeepRows(const Eigen::VectorXd& values,
+                         const std::vector<bool>& keep) {
+  std::vector<double> kept;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    if (keep[k % keep.size()]) kept.push_back(values[k]);
+  }
+  return ToEigen(kept);
+}
+
 }  // namespace
 
 MarginalReflectance::MarginalReflectance(
@@ -47,7 +76,7 @@ MarginalReflectance::MarginalReflectance(
     const Observations& observed, const LightProcess& process,
     const MarginalResolution& resolution, int num_threads,
     std::vector<Eigen::Vector3d> directional_lights,
-    const std::optional<AlbedoPrior>& paint)
+    const std::optional<PaintPrior>& paint)
     : resolution_(resolution),
       binned_(BinByNormal(points, observed, resolution.bins)),
       directional_lights_(std::move(directional_lights)) {
@@ -62,22 +91,31 @@ MarginalReflectance::MarginalReflectance(
                                        resolution.map_width, options);
   };
   transport_ = transport();
+  Eigen::VectorXd mean_paint;
+  if (paint) {
+    mean_paint = MeanPaint(points, observed, paint->mean, resolution, binned_);
+  }
   if (resolution.visibility != nullptr) {
     // No light explains radiance where none of the map is seen.
     const std::vector<bool> lit = LitCells(binned_, *transport_);
     const auto count = std::count(lit.begin(), lit.end(), true);
     if (count > 0 && count < binned_.num_bins()) {
       binned_ = KeepBins(binned_, lit);
+      mean_paint = KeepRows(mean_paint, lit);
       transport_ = transport();
     }
   }
   lobes_ = lobes(resolution.grid);
+  Eigen::MatrixXd covariance;
+  if (paint) {
+    covariance =
+        AlbedoCovariance(paint->albedo, LogChroma(binned_.log_radiance));
+  }
   likelihood_ = std::make_unique<MarginalLikelihood>(
       LogRadianceData{binned_.log_radiance, binned_.log_low, binned_.log_high},
       process, resolution.map_height, resolution.map_width,
       static_cast<int>(directional_lights_.size()), num_threads,
-      paint ? AlbedoCovariance(*paint, LogChroma(binned_.log_radiance))
-            : Eigen::MatrixXd());
+      std::move(covariance), std::move(mean_paint));
 }
 
 Eigen::VectorXd MarginalReflectance::WithDirectionalLights(

@@ -30,13 +30,14 @@ struct MarginalResolution {
 class MarginalReflectance {
  public:
   // CHECKs that at least one point can be used. paint: the albedo varies over
-  // the points, as this prior says; unset: it does not.
+  // the points, as this prior says, and a bin's mean is that of its points'
+  // radiance without it; unset: it does not.
   MarginalReflectance(const LobeFactory& lobes,
                       const std::vector<ShadingPoint>& points,
                       const Observations& observed, const LightProcess& process,
                       const MarginalResolution& resolution, int num_threads,
                       std::vector<Eigen::Vector3d> directional_lights = {},
-                      const std::optional<AlbedoPrior>& paint = std::nullopt);
+                      const std::optional<PaintPrior>& paint = std::nullopt);
 
   const LobeModel& lobes() const { return *lobes_; }
   const MarginalLikelihood& likelihood() const { return *likelihood_; }

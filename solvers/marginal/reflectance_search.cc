@@ -116,6 +116,7 @@ class SearchLevel {
     const MarginalValue value = likelihood.Evaluate(
         matrices, errors, hyperparameters, kRankingTolerance, &mode, nullptr);
     if (!value.ok) return std::numeric_limits<double>::infinity();
+    if (HidesPaint(errors)) return std::numeric_limits<double>::infinity();
     *misfit = value.misfit;
     double of_hyperparameters = 0.0;
     for (const double y : hyperparameters.Whitened())
@@ -138,7 +139,7 @@ class SearchLevel {
     o.max_iterations = iterations;
     o.should_stop = options_.should_stop;
     const MarginalDescent descent = Descend(objective, o, &optimum.y);
-    optimum.ok = descent.ok;
+    optimum.ok = descent.ok && !HidesPaint(optimum.errors);
     optimum.cost = descent.cost;
     optimum.value = objective.last_value();
     return optimum;
@@ -162,6 +163,12 @@ class SearchLevel {
   }
 
  private:
+  // Whether the object is painted and a reflectance would hardly show it.
+  bool HidesPaint(const DataErrors& errors) const {
+    return options_.paint &&
+           errors.matte_share.mean() < options_.paint->least_matte_share;
+  }
+
   const MaterialPrior& prior_;
   const ReflectanceSearchOptions& options_;
   MarginalReflectance reflectance_;

@@ -49,7 +49,7 @@ struct ReflectanceSearchOptions {
   // would bend to every error of the model.
   double sigma = 0.03;
   // The prior of albedo that varies over the surface; unset: it does not.
-  std::optional<AlbedoPrior> paint;
+  std::optional<PaintPrior> paint;
   bool covariance = true;
   int num_threads = 0;
   // Light that the object throws on itself, of which the search knows nothing:

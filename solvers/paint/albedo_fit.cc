@@ -3,11 +3,14 @@
 #include <glog/logging.h>
 
 #include <Eigen/Core>
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/solvers/paint/chroma_plane.h"
 
 namespace ibrdf {
@@ -19,6 +22,12 @@ constexpr double kStudentDegrees = 3.0;
 // Cells of chroma are this wide, in colour lengths; the kernel reaches so many.
 constexpr double kCellWidth = 0.5;
 constexpr int kReach = 6;
+// Where normals turn by more from pixel to pixel, radians, neighbours say
+// little of each other.
+constexpr double kCrease = 0.05;
+constexpr double kLeastAnchor = 1e-9, kSeenAnchor = 1e3;
+constexpr double kTolerance = 1e-5;
+constexpr int kMostIterations = 1000;
 
 double Square(double x) { return x * x; }
 
@@ -98,54 +107,158 @@ class MeanByColour {
   double width_;
 };
 
+// What the image says of each point's paint, if the light is right.
+struct ApparentPaint {
+  std::vector<Eigen::Array2d> chroma;
+  std::vector<double> luminance;  // 0 where it is not seen
+  std::vector<double> seen;       // 1 or 0
+};
+
+ApparentPaint ApparentPaintOf(const UnpaintedRadiance& unpainted,
+                              const Observations& observed) {
+  ApparentPaint out;
+  for (size_t i = 0; i < observed.valid.size(); ++i) {
+    const Apparent apparent = ApparentAlbedo(unpainted, observed, i);
+    out.chroma.push_back(ChromaPlane(apparent.log_albedo));
+    out.luminance.push_back(apparent.log_albedo.mean());
+    out.seen.push_back(apparent.seen ? 1.0 : 0.0);
+  }
+  return out;
+}
+
+// The luminance of points of like chroma, outliers aside.
+std::vector<double> LuminanceOfColour(const ApparentPaint& apparent,
+                                      const AlbedoFitOptions& options) {
+  const MeanByColour mean(apparent.chroma, options.prior.colour_length);
+  std::vector<double> weights = apparent.seen, of_colour;
+  for (int k = 0; k < options.iterations; ++k) {
+    of_colour = mean.Of(apparent.luminance, weights);
+    for (size_t i = 0; i < weights.size(); ++i) {
+      const double r =
+          (apparent.luminance[i] - of_colour[i]) / options.shading_std;
+      weights[i] = apparent.seen[i] * (kStudentDegrees + 1.0) /
+                   (kStudentDegrees + r * r);
+    }
+  }
+  return of_colour;
+}
+
+// x of the least sum over points of anchor_weight (x - anchor)^2 and over pairs
+// of weight (x_second - x_first - step)^2; kLeastAnchor keeps it unique.
+class SteppedField {
+ public:
+  explicit SteppedField(const std::vector<double>& anchor_weights)
+      : weights_(anchor_weights.size()) {
+    for (size_t i = 0; i < anchor_weights.size(); ++i) {
+      weights_[i] = anchor_weights[i] + kLeastAnchor;
+    }
+  }
+
+  std::vector<double> Solve(const std::vector<NeighbourPair>& pairs,
+                            const std::vector<double>& pair_weights,
+                            const std::vector<double>& steps,
+                            const std::vector<double>& anchors) const {
+    const auto count = static_cast<Eigen::Index>(weights_.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    Eigen::VectorXd right = weights_.cwiseProduct(ToEigen(anchors));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      entries.emplace_back(i, i, weights_[i]);
+    }
+    for (size_t k = 0; k < pairs.size(); ++k) {
+      const int a = pairs[k].first, b = pairs[k].second;
+      const double w = pair_weights[k];
+      entries.emplace_back(a, a, w);
+      entries.emplace_back(b, b, w);
+      entries.emplace_back(a, b, -w);
+      entries.emplace_back(b, a, -w);
+      right[a] -= w * steps[k];
+      right[b] += w * steps[k];
+    }
+    Eigen::SparseMatrix<double> A(count, count);
+    A.setFromTriplets(entries.begin(), entries.end());
+    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>,
+                             Eigen::Lower | Eigen::Upper>
+        solver(A);
+    solver.setTolerance(kTolerance);
+    solver.setMaxIterations(kMostIterations);
+    return ToVector(solver.solveWithGuess(right, ToEigen(anchors)));
+  }
+
+ private:
+  Eigen::VectorXd weights_;
+};
+
+// Of each pair: how much of its step is paint's, 0 to 1, smoothly from one to
+// the other about the edges of the options.
+double PaintShare(double step, double chroma_step, double turn,
+                  const AlbedoFitOptions& options) {
+  const double x =
+      std::max(Square(step / (options.edge + options.edge_by_turn * turn)),
+               Square(chroma_step / options.chroma_edge));
+  return x * x / (1.0 + x * x);
+}
+
+// Chroma where it is seen, filled in from around where it is not.
+std::vector<Eigen::Array2d> FilledChroma(
+    const ApparentPaint& apparent,
+    const std::vector<NeighbourPair>& neighbours) {
+  const size_t count = apparent.seen.size();
+  if (std::count(apparent.seen.begin(), apparent.seen.end(), 0.0) == 0) {
+    return apparent.chroma;
+  }
+  std::vector<double> weights = apparent.seen;
+  for (double& w : weights) w *= kSeenAnchor;
+  const SteppedField field(weights);
+  std::vector<Eigen::Array2d> filled = apparent.chroma;
+  const std::vector<double> even(neighbours.size(), 1.0),
+      none(neighbours.size(), 0.0);
+  for (int axis = 0; axis < 2; ++axis) {
+    std::vector<double> anchors(count);
+    for (size_t i = 0; i < count; ++i) anchors[i] = apparent.chroma[i][axis];
+    const std::vector<double> x = field.Solve(neighbours, even, none, anchors);
+    for (size_t i = 0; i < count; ++i) {
+      if (apparent.seen[i] == 0.0) filled[i][axis] = x[i];
+    }
+  }
+  return filled;
+}
+
 }  // namespace
 
 std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
                               const Observations& observed,
+                              const std::vector<NeighbourPair>& neighbours,
                               const AlbedoFitOptions& options) {
   const size_t count = observed.valid.size();
   CHECK_EQ(unpainted.matte.size(), 3 * count);
-  std::vector<Apparent> apparent;
-  std::vector<Eigen::Array2d> chroma;
-  std::vector<double> luminance, seen;
-  for (size_t i = 0; i < count; ++i) {
-    apparent.push_back(ApparentAlbedo(unpainted, observed, i));
-    const Eigen::Array3d log_colour =
-        apparent[i].seen
-            ? apparent[i].log_albedo
-            : Eigen::Map<const Eigen::Array3d>(&observed.radiance[3 * i])
-                  .max(1e-30)
-                  .min(1e30)
-                  .log();
-    chroma.push_back(ChromaPlane(log_colour));
-    luminance.push_back(apparent[i].seen ? apparent[i].log_albedo.mean() : 0.0);
-    seen.push_back(apparent[i].seen ? 1.0 : 0.0);
-  }
-  const MeanByColour mean(chroma, options.prior.colour_length);
-  std::vector<double> weights = seen, of_colour;
-  for (int k = 0; k < options.iterations; ++k) {
-    of_colour = mean.Of(luminance, weights);
-    for (size_t i = 0; i < count; ++i) {
-      const double r = (luminance[i] - of_colour[i]) / options.shading_std;
-      weights[i] =
-          seen[i] * (kStudentDegrees + 1.0) / (kStudentDegrees + r * r);
+  const ApparentPaint apparent = ApparentPaintOf(unpainted, observed);
+  const std::vector<double> of_colour = LuminanceOfColour(apparent, options);
+  std::vector<double> pair_weights, steps;
+  for (const NeighbourPair& pair : neighbours) {
+    const int a = pair.first, b = pair.second;
+    if (apparent.seen[a] == 0.0 || apparent.seen[b] == 0.0) {
+      pair_weights.push_back(1.0);
+      steps.push_back(0.0);
+      continue;
     }
+    const double step = apparent.luminance[b] - apparent.luminance[a];
+    const double chroma_step =
+        (apparent.chroma[b] - apparent.chroma[a]).matrix().norm();
+    pair_weights.push_back(1.0 / (1.0 + Square(pair.turn / kCrease)));
+    steps.push_back(step * PaintShare(step, chroma_step, pair.turn, options));
   }
+  std::vector<double> anchor_weights = apparent.seen;
+  for (double& w : anchor_weights) {
+    w /= Square(options.reach) * static_cast<double>(count);
+  }
+  const std::vector<double> luminance =
+      SteppedField(anchor_weights)
+          .Solve(neighbours, pair_weights, steps, of_colour);
+  const std::vector<Eigen::Array2d> chroma = FilledChroma(apparent, neighbours);
   std::vector<double> out(3 * count);
   for (size_t i = 0; i < count; ++i) {
-    const double r = luminance[i] - of_colour[i];
-    // The variance of a point's own, of which the reweighting makes more where
-    // what is left is large.
-    const double own =
-        (kStudentDegrees * Square(options.prior.own_luminance) + r * r) /
-        (kStudentDegrees + 1.0);
-    const double share = own / (own + Square(options.shading_std));
-    const double l = of_colour[i] + share * r * seen[i];
-    for (int c = 0; c < 3; ++c) {
-      out[3 * i + c] =
-          l +
-          (apparent[i].seen ? apparent[i].log_albedo[c] - luminance[i] : 0.0);
-    }
+    const Eigen::Array3d log_colour = FromChromaPlane(chroma[i]);
+    for (int c = 0; c < 3; ++c) out[3 * i + c] = luminance[i] + log_colour[c];
   }
   return out;
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "ibrdf/solvers/costs/observations.h"
+#include "ibrdf/solvers/paint/neighbours.h"
 #include "ibrdf/solvers/priors/albedo_prior.h"
 
 namespace ibrdf {
@@ -17,18 +18,27 @@ struct AlbedoFitOptions {
   AlbedoPrior prior;
   // Deviation of log radiance between image and render that is not paint's: of
   // the reflectance, the light and the normals.
-  double shading_std = 0.1;
+  double shading_std = 0.15;
   int iterations = 5;
+  // From pixel to pixel, a step of log luminance above `edge` and what the
+  // normals' turn allows, or one of log chroma above `chroma_edge`, is paint's.
+  double edge = 0.1, edge_by_turn = 5.0, chroma_edge = 0.1;
+  // Over this share of the object's size, the square root of its pixels, paint
+  // may leave the albedo of its colour.
+  double reach = 0.15;
 };
 
-// Log albedo a [points * 3], I = e^a matte + gloss. Luminance is drawn to that
-// of points of like colour, as far as a deviation of shading_std explains what
-// is left; what is more is the point's own, as a sharp print is (a Student-t
-// prior of three degrees, by reweighting). Chroma is the image's. Where the
-// gloss alone is as bright as the image, or nothing was observed, the albedo is
-// that of its colour's.
+// Log albedo a [points * 3], I = e^a matte + gloss. Chroma is the image's.
+// Luminance has two cues. Points of like colour have like albedo, wherever they
+// are, but for outliers. And beside each other, pixels differ by paint where
+// they differ sharply (Retinex), by shading where they do not: shading drifts
+// with the normals, paint has edges. So a is the least squares' solution of
+// sharp steps (a print's, of the same chroma too), drawn over `reach` to what
+// its colour has. Where the gloss is nearly all of the image, or nothing was
+// observed, paint is filled in from around.
 std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
                               const Observations& observed,
+                              const std::vector<NeighbourPair>& neighbours,
                               const AlbedoFitOptions& options);
 
 // (e^a matte + gloss) / (matte + gloss) [points * 3].

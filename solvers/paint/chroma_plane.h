@@ -13,4 +13,10 @@ inline Eigen::Array2d ChromaPlane(const Eigen::Array3d& log_colour) {
       (log_colour[0] - 2.0 * log_colour[1] + log_colour[2]) / std::sqrt(6.0)};
 }
 
+// The log colour of that chroma and no luminance.
+inline Eigen::Array3d FromChromaPlane(const Eigen::Array2d& chroma) {
+  const double x = chroma[0] / std::sqrt(2.0), y = chroma[1] / std::sqrt(6.0);
+  return {x + y, -2.0 * y, y - x};
+}
+
 }  // namespace ibrdf

@@ -12,95 +12,108 @@ namespace {
 
 constexpr double kMinCosine = 0.2;
 // Colours are alike within this deviation of log chroma; of pairs, those that
-// differ by less than 1.5 of it take part.
-constexpr double kColourLength = 0.06;
+// differ by less than 1.5 of it take part. First to find a lamp by luminance;
+// then wider, as the lamp's colour moves a paint's chroma between light and
+// shade.
+constexpr double kLikeColour = 0.06, kLikePaint = 0.15;
 constexpr size_t kPairs = 5000, kFewestPairs = 200, kTries = 400000;
-// Of log luminance: what shadows, bounces and a paint's own variation make is
-// beyond it.
-constexpr double kRobust = 0.15;
+// Of log luminance and log chroma: what shadows, bounces and a paint's own
+// variation make is beyond it.
+constexpr double kRobustLuminance = 0.15, kRobustChroma = 0.05;
 // The lamp must explain this share of what it costs to have none.
-constexpr double kLeastExplained = 0.25;
+constexpr double kLeastExplained = 0.1;
 constexpr int kDirections = 300;
 constexpr double kStrengths[] = {1.0, 4.0, 16.0, 64.0};
+// Beyond it the room is black; and deviation of the lamp's log chroma, a prior
+// as strong as so many pairs.
+constexpr double kMostStrength = 100.0, kChromaStd = 0.2, kPriorPairs = 20.0;
 // Half the width, in cosine, in which a lamp sets.
 constexpr double kSoftness = 0.015;
-constexpr double kFirstStep = 0.1, kLastStep = 0.005;
+constexpr double kFirstStep = 0.1, kLastStep = 0.003;
 
 struct Pair {
   int first, second;
   double weight;
 };
 
-// What takes part: normals, log luminances and pairs of like colour.
+// What takes part: normals, log radiances and pairs of like colour.
 struct Shading {
   std::vector<Eigen::Vector3d> normals;
-  std::vector<double> luminance;
+  std::vector<Eigen::Array3d> log_radiance;
   std::vector<Pair> pairs;
 };
 
-Shading PairsOfLikeColour(const std::vector<ShadingPoint>& points,
-                          const Observations& observed) {
+Shading Facing(const std::vector<ShadingPoint>& points,
+               const Observations& observed) {
   Shading all;
-  std::vector<Eigen::Array2d> chroma;
   for (size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d n = points[i].normal.cast<double>();
     if (!observed.valid[i] || n.dot(points[i].wo.cast<double>()) < kMinCosine) {
       continue;
     }
-    const Eigen::Array3d log_radiance =
-        Eigen::Map<const Eigen::Array3d>(&observed.radiance[3 * i]).log();
     all.normals.push_back(n);
-    all.luminance.push_back(log_radiance.mean());
-    chroma.push_back(ChromaPlane(log_radiance));
-  }
-  if (all.normals.empty()) return all;
-  std::mt19937_64 bits(1);
-  const auto draw = [&] {
-    return static_cast<int>(bits() % all.normals.size());
-  };
-  for (size_t k = 0; k < kTries && all.pairs.size() < kPairs; ++k) {
-    const int first = draw(), second = draw();
-    const double distance = (chroma[first] - chroma[second]).matrix().norm();
-    if (first == second || distance > 1.5 * kColourLength) continue;
-    const double lengths = distance / kColourLength;
-    all.pairs.push_back({first, second, std::exp(-0.5 * lengths * lengths)});
+    all.log_radiance.push_back(
+        Eigen::Map<const Eigen::Array3d>(&observed.radiance[3 * i]).log());
   }
   return all;
 }
 
-// The part of the pixels that pairs hold.
-Shading Compact(const Shading& all) {
+// Pairs whose colours under the light at hand differ little, and the pixels
+// that they hold.
+Shading PairsOfLikeColour(const Shading& all, const ShadingLight& light,
+                          double like) {
   Shading used;
+  if (all.normals.empty()) return used;
+  std::vector<Eigen::Array2d> chroma;
+  for (size_t i = 0; i < all.normals.size(); ++i) {
+    chroma.push_back(ChromaPlane(all.log_radiance[i] -
+                                 Irradiance(light, all.normals[i]).log()));
+  }
   std::vector<int> place(all.normals.size(), -1);
-  const auto take = [&](int i) {
+  const auto take = [&](size_t i) {
     if (place[i] < 0) {
       place[i] = static_cast<int>(used.normals.size());
       used.normals.push_back(all.normals[i]);
-      used.luminance.push_back(all.luminance[i]);
+      used.log_radiance.push_back(all.log_radiance[i]);
     }
     return place[i];
   };
-  for (const Pair& pair : all.pairs) {
-    const int first = take(pair.first);
-    used.pairs.push_back({first, take(pair.second), pair.weight});
+  std::mt19937_64 bits(1);
+  for (size_t k = 0; k < kTries && used.pairs.size() < kPairs; ++k) {
+    const size_t first = bits() % all.normals.size();
+    const size_t second = bits() % all.normals.size();
+    const double lengths =
+        (chroma[first] - chroma[second]).matrix().norm() / like;
+    if (first == second || lengths > 1.5) continue;
+    const int a = take(first), b = take(second);
+    used.pairs.push_back({a, b, std::exp(-0.5 * lengths * lengths)});
   }
   return used;
 }
 
-double Cost(const Shading& shading, const ShadingLight& light) {
-  std::vector<double> left;
+// with_chroma: of both, else of luminance alone.
+double Cost(const Shading& shading, const ShadingLight& light,
+            bool with_chroma) {
+  std::vector<Eigen::Array3d> left;
   left.reserve(shading.normals.size());
   for (size_t i = 0; i < shading.normals.size(); ++i) {
-    const double cosine = shading.normals[i].dot(light.direction);
-    const double lit = 0.5 * (cosine + std::hypot(cosine, 2.0 * kSoftness));
-    left.push_back(shading.luminance[i] - std::log1p(light.strength * lit));
+    left.push_back(shading.log_radiance[i] -
+                   Irradiance(light, shading.normals[i]).log());
   }
   double cost = 0.0;
   for (const Pair& pair : shading.pairs) {
-    const double r = (left[pair.first] - left[pair.second]) / kRobust;
-    cost += pair.weight * std::log1p(r * r);
+    const Eigen::Array3d r = left[pair.first] - left[pair.second];
+    const double luminance = r.mean();
+    double misfit = std::log1p(luminance * luminance /
+                               (kRobustLuminance * kRobustLuminance));
+    if (with_chroma) {
+      misfit += std::log1p((r - luminance).square().sum() /
+                           (kRobustChroma * kRobustChroma));
+    }
+    cost += pair.weight * misfit;
   }
-  return cost;
+  return cost + 0.5 * kPriorPairs * light.chroma.square().sum() /
+                    (kChromaStd * kChromaStd);
 }
 
 // Spread evenly over the sphere.
@@ -116,20 +129,31 @@ std::vector<Eigen::Vector3d> Directions() {
   return out;
 }
 
-// Steps along the tangent plane and in log strength while they gain.
-ShadingLight Improve(const Shading& shading, ShadingLight best, double cost) {
+// The light after a step along one of its five parameters.
+ShadingLight Stepped(const ShadingLight& light, int parameter, double step) {
+  ShadingLight next = light;
+  const Eigen::Vector3d axis = light.direction.unitOrthogonal();
+  if (parameter == 0) next.direction += step * axis;
+  if (parameter == 1) next.direction += step * light.direction.cross(axis);
+  if (parameter == 2) {
+    next.strength =
+        std::min(light.strength * std::exp(5.0 * step), kMostStrength);
+  }
+  if (parameter >= 3) next.chroma[parameter - 3] += step;
+  next.direction.normalize();
+  return next;
+}
+
+// Steps while they gain, ever smaller ones.
+ShadingLight Improve(const Shading& shading, ShadingLight best) {
+  double cost = Cost(shading, best, true);
   for (double step = kFirstStep; step > kLastStep; step *= 0.5) {
     for (bool gained = true; gained;) {
       gained = false;
-      for (int k = 0; k < 6; ++k) {
-        ShadingLight next = best;
-        const double by = k % 2 == 0 ? step : -step;
-        const Eigen::Vector3d axis = best.direction.unitOrthogonal();
-        if (k / 2 == 0) next.direction += by * axis;
-        if (k / 2 == 1) next.direction += by * best.direction.cross(axis);
-        if (k / 2 == 2) next.strength *= std::exp(5.0 * by);
-        next.direction.normalize();
-        const double of_next = Cost(shading, next);
+      for (int k = 0; k < 10; ++k) {
+        const ShadingLight next =
+            Stepped(best, k / 2, k % 2 == 0 ? step : -step);
+        const double of_next = Cost(shading, next, true);
         if (of_next >= cost) continue;
         best = next;
         cost = of_next;
@@ -142,24 +166,34 @@ ShadingLight Improve(const Shading& shading, ShadingLight best, double cost) {
 
 }  // namespace
 
+Eigen::Array3d Irradiance(const ShadingLight& light,
+                          const Eigen::Vector3d& normal) {
+  const double cosine = normal.dot(light.direction);
+  const double lit = 0.5 * (cosine + std::hypot(cosine, 2.0 * kSoftness));
+  return 1.0 + light.strength * lit * FromChromaPlane(light.chroma).exp();
+}
+
 std::optional<ShadingLight> FindShadingLight(
     const std::vector<ShadingPoint>& points, const Observations& observed) {
-  const Shading shading = Compact(PairsOfLikeColour(points, observed));
-  if (shading.pairs.size() < kFewestPairs) return std::nullopt;
-  const double flat = Cost(shading, ShadingLight());
+  const Shading all = Facing(points, observed);
+  const Shading alike = PairsOfLikeColour(all, ShadingLight(), kLikeColour);
+  if (alike.pairs.size() < kFewestPairs) return std::nullopt;
+  const double flat = Cost(alike, ShadingLight(), false);
   ShadingLight best;
   double least = flat;
   for (const Eigen::Vector3d& direction : Directions()) {
     for (const double strength : kStrengths) {
-      const ShadingLight light = {direction, strength};
-      const double cost = Cost(shading, light);
+      ShadingLight light;
+      light.direction = direction;
+      light.strength = strength;
+      const double cost = Cost(alike, light, false);
       if (cost >= least) continue;
       least = cost;
       best = light;
     }
   }
   if (!(least < (1.0 - kLeastExplained) * flat)) return std::nullopt;
-  return Improve(shading, best, least);
+  return Improve(PairsOfLikeColour(all, best, kLikePaint), best);
 }
 
 }  // namespace ibrdf

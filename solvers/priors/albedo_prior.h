@@ -23,6 +23,16 @@ struct AlbedoPrior {
   AlbedoPrior Scaled(double factor) const;
 };
 
+// What is known of an object's paint before its light is.
+struct PaintPrior {
+  AlbedoPrior albedo;
+  // Its mean, log albedo [points * 3] of all points of the image; empty: 0.
+  std::vector<double> mean;
+  // Of the light that a painted object reflects: paint hides where less than
+  // this share is of the part that it scales.
+  double least_matte_share = 0.5;
+};
+
 // Colours of points: log radiance [3 * points], channel by channel, less the
 // mean of its channels.
 Eigen::MatrixX3d LogChroma(const std::vector<double>& log_radiance);

@@ -84,8 +84,9 @@ StatusOr<Solution> TakeTurn(const SolveSetup& setup,
                             SolveContext* context) {
   const std::vector<ShadingPoint>& points = setup.pixels.points;
   const UnpaintedRadiance unpainted = Render(setup, reflectance, map, size);
-  const std::vector<double> log_albedo =
-      FitAlbedo(unpainted, setup.pixels.observed, AlbedoFitOptions());
+  const std::vector<double> log_albedo = FitAlbedo(
+      unpainted, setup.pixels.observed,
+      NeighboursOf(points, setup.problem->image.width), AlbedoFitOptions());
   const std::vector<double> gain = PaintGain(unpainted, log_albedo);
   const InverseProblem without = WithoutPaint(*setup.problem, gain, points);
   const StatusOr<SolveSetup> of_light = SetUp(without);

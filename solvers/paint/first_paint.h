@@ -1,0 +1,27 @@
+// What pixels say of an object's paint before its light and its lobes are
+// known.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "ibrdf/scene/scene.h"
+#include "ibrdf/solvers/costs/observations.h"
+#include "ibrdf/solvers/paint/neighbours.h"
+#include "ibrdf/solvers/paint/shading_light.h"
+
+namespace ibrdf {
+
+struct FirstPaint {
+  std::optional<ShadingLight> light;
+  // Log albedo [points * 3], its mean over the points 0 in each channel.
+  std::vector<double> log_albedo;
+};
+
+// The albedo (FitAlbedo) of a matte object under the light of
+// FindShadingLight, or under even light where there is none. Highlights say
+// nothing of paint and are filled in from around.
+FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
+                          const Observations& observed,
+                          const std::vector<NeighbourPair>& neighbours);
+
+}  // namespace ibrdf
