@@ -102,9 +102,11 @@ struct GeometrySpec {
 };
 
 // How the reflectance varies over the object, in the order of the schema.
-enum class ReflectanceVariation { kNone, kAlbedo };
-inline constexpr int kNumReflectanceVariations = 2;
-// "none", "albedo".
+// kAuto: kAlbedo where the photograph shows several materials
+// (photograph_check).
+enum class ReflectanceVariation { kAuto, kNone, kAlbedo };
+inline constexpr int kNumReflectanceVariations = 3;
+// "auto", "none", "albedo".
 const char* ReflectanceVariationName(ReflectanceVariation variation);
 
 struct ReflectanceSpec {
@@ -112,7 +114,7 @@ struct ReflectanceSpec {
   std::string model;         // trained model; empty: the default one
   int lobes = 2;             // [1, 8]
   double prior_sigma = 0.5;  // of the codes, > 0
-  ReflectanceVariation variation = ReflectanceVariation::kNone;
+  ReflectanceVariation variation = ReflectanceVariation::kAuto;
   // Known reflectance: at most one is set.
   std::string known_file;                // MERL .binary
   std::optional<CookTorrance> analytic;  // `lambertian` too: specular 0

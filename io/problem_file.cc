@@ -375,10 +375,13 @@ void ReadKeys(ProblemReader root, Problem* problem) {
   ReadLikelihood(root.Below("likelihood"), &problem->likelihood);
   ReadEffects(&root, &problem->effects);
   ReadSolver(root.Below("solver"), problem->kind, &problem->solver);
-  if (problem->reflectance.variation != ReflectanceVariation::kNone &&
-      problem->solver.estimator == SolverEstimator::kMaximum) {
-    root.Below("reflectance")
-        .Fail("variation", "expected none with solver.estimator: maximum");
+  if (problem->solver.estimator == SolverEstimator::kMaximum) {
+    ReflectanceVariation& variation = problem->reflectance.variation;
+    if (variation == ReflectanceVariation::kAlbedo) {
+      root.Below("reflectance")
+          .Fail("variation", "expected none with solver.estimator: maximum");
+    }
+    variation = ReflectanceVariation::kNone;
   }
   SettlePrior(problem->solver, &problem->illumination);
   ReadTruth(root.Below("truth"), &problem->truth);

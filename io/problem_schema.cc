@@ -424,12 +424,16 @@ Keys ReflectanceKeys() {
           .UsedBy(kUnknownReflectance),
       Row("reflectance.variation",
           "How the reflectance varies over the object.")
-          .Choice("none",
-                  {{"none", "One material."},
+          .Choice("auto",
+                  {{"auto",
+                    "`albedo` where pixels of like normals far apart differ in "
+                    "colour, by the look before the solve; else `none`. It "
+                    "cannot see the paint of a convex object, which shows "
+                    "every normal once."},
+                   {"none", "One material."},
                    {"albedo",
                     "One gloss over paint: the albedo of what is matte is "
-                    "found at every pixel, in `albedo.exr`. An experiment yet: "
-                    "a lone lamp is not told from paint."}})
+                    "found at every pixel, in `albedo.exr`."}})
           .UsedBy(kUsedByJoint),
       Row("reflectance.known",
           "The known BRDF: a MERL table, or one of `lambertian` and "

@@ -32,11 +32,10 @@ constexpr double kDarkest = 1e-8;
 // Where nearly all of a point's light comes from the object the map's says
 // little of it.
 constexpr double kMostBounceGain = 10.0;
-// Of a painted object: the deviations of paint that FindFirstPaint leaves, in
-// the prior's, and the variance of the light's chroma.
-const double kLeftOfPaint = getenv("IB_LEFT") ? atof(getenv("IB_LEFT")) : 0.5;
-const double kPaintedLightChroma =
-    getenv("IB_LC") ? atof(getenv("IB_LC")) : 0.1;
+// Of a painted object, in the priors' own: the deviations of what
+// FindFirstPaint leaves of paint, and the variance of the light's chroma.
+constexpr double kLeftOfPaint = 0.3;
+constexpr double kPaintedLightChroma = 0.1;
 
 // Radiance [points][3] with bounces over that without, under a map of log
 // radiance [3][texels].
@@ -192,6 +191,8 @@ void AddPaint(const SolveSetup& setup, ReflectanceSearchOptions* o) {
   if (first.light) o->directional_lights = {first.light->direction};
   o->paint.emplace();
   o->paint->albedo = AlbedoPrior().Scaled(kLeftOfPaint);
+  o->paint->albedo.own_luminance =
+      std::max(o->paint->albedo.own_luminance, first.deviation);
   o->paint->mean = std::move(first.log_albedo);
   o->process.chroma_variance *= kPaintedLightChroma;
   o->process.directional_light_chroma_variance *= kPaintedLightChroma;

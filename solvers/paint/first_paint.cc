@@ -3,8 +3,11 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "ibrdf/base/pi.h"
+#include "ibrdf/solvers/observation/normal_bins.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
 #include "ibrdf/solvers/priors/directional_lights.h"
 
@@ -12,6 +15,12 @@ namespace ibrdf {
 namespace {
 
 constexpr int kMostHighlights = 3;
+// Bins of like normals: of the disc of visible ones, and of points in each.
+constexpr int kBinsAcross = 24;
+constexpr size_t kFewestOfBin = 8;
+constexpr double kLeastCosine = 0.2;
+// Of a normal distribution, over the median of its absolute values.
+constexpr double kDeviationOfMedian = 1.4826;
 // About a highlight's middle, of mirrored directions: where its light shows.
 constexpr double kHighlight = 15.0 * kDegree;
 // A highlight is by so much brighter than the median about it, and no larger
@@ -68,6 +77,41 @@ Observations WithoutHighlights(const std::vector<ShadingPoint>& points,
   return out.num_valid > 0 ? out : observed;
 }
 
+double Median(std::vector<double>* values) {
+  const auto middle = values->begin() + values->size() / 2;
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
+// Of log luminance between image and painted matte object, about the median of
+// each bin of normals: what no light explains. A deviation from the median of
+// absolutes.
+double DeviationAtLikeNormals(const std::vector<ShadingPoint>& points,
+                              const Observations& observed,
+                              const UnpaintedRadiance& unpainted,
+                              const std::vector<double>& log_albedo) {
+  std::map<std::pair<int, int>, std::vector<double>> bins;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const auto normal = NormalInView(points[i], kLeastCosine);
+    if (!observed.valid[i] || !normal) continue;
+    double left = 0.0;
+    for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
+      left +=
+          std::log(observed.radiance[k] / unpainted.matte[k]) - log_albedo[k];
+    }
+    const Eigen::Vector2i bin =
+        (*normal * (0.5 * kBinsAcross)).array().floor().cast<int>();
+    bins[{bin.x(), bin.y()}].push_back(left / 3.0);
+  }
+  std::vector<double> deviations;
+  for (auto& [bin, left] : bins) {
+    if (left.size() < kFewestOfBin) continue;
+    const double middle = Median(&left);
+    for (const double l : left) deviations.push_back(std::abs(l - middle));
+  }
+  return deviations.empty() ? 0.0 : kDeviationOfMedian * Median(&deviations);
+}
+
 }  // namespace
 
 FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
@@ -91,6 +135,8 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
                                  static_cast<Eigen::Index>(points.size()));
   const Eigen::Vector3d mean = a.rowwise().mean();
   a.colwise() -= mean;
+  out.deviation =
+      DeviationAtLikeNormals(points, observed, unpainted, out.log_albedo);
   return out;
 }
 

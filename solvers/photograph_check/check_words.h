@@ -10,12 +10,12 @@ namespace ibrdf {
 // A short block for a terminal, a line each, without line ends.
 std::vector<std::string> CheckLines(const PhotographCheck& check);
 
-// What makes the inputs doubtful: sentences that name the files. one_material:
-// the estimate holds a single one, which paint would mislead.
+// What makes the inputs doubtful: sentences that name the files.
+// paint_is_sought: the estimate holds it; a single material is misled by paint.
 std::vector<std::string> CheckWarnings(const PhotographCheck& check,
                                        const std::string& image_file,
                                        const std::string& normals_file,
-                                       bool one_material = true);
+                                       bool paint_is_sought = false);
 
 // "as given", or "as given or x and y flipped, not told apart", or "y flipped".
 std::string NormalsVerdict(const PhotographCheck& check);

@@ -41,7 +41,7 @@ struct InverseProblem {
   std::shared_ptr<const NeuralBrdfModel> model;
   int lobes = 2;
   double prior_sigma = 0.5;
-  ReflectanceVariation variation = ReflectanceVariation::kNone;
+  ReflectanceVariation variation = ReflectanceVariation::kNone;  // not kAuto
   std::optional<BrdfGrid> known_brdf;
 
   // Size of the map; known: its radiance at that size.

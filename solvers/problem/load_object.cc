@@ -104,13 +104,24 @@ StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
   object.look = Look(problem, *observed, object, std::move(silhouette));
   for (std::string& warning : CheckWarnings(
            object.look->check, problem.image.file, problem.geometry.file,
-           problem.reflectance.variation == ReflectanceVariation::kNone)) {
+           ChosenVariation(problem, object.look->check) ==
+               ReflectanceVariation::kAlbedo)) {
     object.warnings.push_back(std::move(warning));
   }
   object.radiance = std::move(observed->radiance);
   object.bounds = std::move(observed->bounds);
   object.unknown_curve = std::move(observed->unknown_curve);
   return object;
+}
+
+ReflectanceVariation ChosenVariation(const Problem& problem,
+                                     const PhotographCheck& check) {
+  if (problem.kind != ProblemKind::kJoint) return ReflectanceVariation::kNone;
+  if (problem.reflectance.variation != ReflectanceVariation::kAuto) {
+    return problem.reflectance.variation;
+  }
+  return check.SeveralMaterials() ? ReflectanceVariation::kAlbedo
+                                  : ReflectanceVariation::kNone;
 }
 
 }  // namespace ibrdf

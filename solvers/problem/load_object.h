@@ -38,6 +38,10 @@ struct PhotographedObject {
   std::vector<std::string> warnings;  // sentences that name the file
 };
 
+// What reflectance.variation comes to, auto by the look: kNone or kAlbedo.
+ReflectanceVariation ChosenVariation(const Problem& problem,
+                                     const PhotographCheck& check);
+
 // Reads image, mask and geometry of a problem that CheckSolvable passes, which
 // is called first. Takes about a second for a megapixel.
 StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,

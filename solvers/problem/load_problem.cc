@@ -197,7 +197,6 @@ InverseProblem SettingsOf(const Problem& problem, uint64_t default_seed,
   inverse.kind = problem.kind;
   inverse.lobes = problem.reflectance.lobes;
   inverse.prior_sigma = problem.reflectance.prior_sigma;
-  inverse.variation = problem.reflectance.variation;
   inverse.map_width = problem.illumination.width;
   inverse.map_height = problem.illumination.height;
   inverse.illumination_prior = problem.illumination.prior;
@@ -229,6 +228,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   inverse.unknown_curve = std::move(object.unknown_curve);
   inverse.points = std::move(object.points);
   inverse.look = std::move(object.look);
+  inverse.variation = ChosenVariation(problem, inverse.look->check);
   IBRDF_RETURN_IF_ERROR(LoadReflectance(problem.reflectance, &inverse));
   IBRDF_RETURN_IF_ERROR(LoadIllumination(problem, &inverse));
   IBRDF_RETURN_IF_ERROR(PlanAndTraceEffects(problem, object.scene, &inverse));

@@ -105,6 +105,13 @@ constexpr char kMapNote[] =
     "These pictures are in the frame camera; result.json says under "
     "illumination_frame which frame the .exr files have.";
 
+constexpr char kPaintNote[] =
+    "What varies over the object, albedo.exr, and what lies over it, "
+    "gloss.exr. "
+    "The image does not tell the paint's colour from the light's: a change of "
+    "hue over the object is taken for paint. In the grey render only shading "
+    "and gloss should be left. Paint that shows there was taken for light.";
+
 constexpr char kDeviationNote[] =
     " The standard deviation is that of the light given the reflectance. Where "
     "it is large, the image says nothing and the map shows the prior.";
@@ -138,6 +145,9 @@ std::vector<ReportGroup> MakeReportGroups(const ResultPanels& panels,
   std::vector<ReportGroup> groups;
   if (!panels.images.empty()) {
     groups.push_back(Group("Image", kImageNote, panels.images));
+  }
+  if (!panels.paint.empty()) {
+    groups.push_back(Group("Paint", kPaintNote, panels.paint));
   }
   if (!panels.maps.empty()) {
     groups.push_back(Group("Light", kMapNote, panels.maps));

@@ -69,6 +69,42 @@ Row ImagePanels(const ResultPreviewInput& input) {
   return row;
 }
 
+// The render with its matte part in the paint's mean colour, grey.
+Image RepaintedGrey(const ResultPreviewInput& input) {
+  double sum = 0.0, count = 0.0;
+  for (const float a : input.albedo.rgb) {
+    if (!(a > 0.0f)) continue;
+    sum += a;
+    count += 1.0;
+  }
+  const double grey = count > 0.0 ? sum / count : 0.0;
+  Image out = input.gloss;
+  for (size_t i = 0; i < out.rgb.size(); ++i) {
+    const double albedo = input.albedo.rgb[i];
+    if (!(albedo > 0.0)) continue;
+    const double matte =
+        std::max(input.render.rgb[i] - input.gloss.rgb[i], 0.f);
+    out.rgb[i] += static_cast<float>(matte * grey / albedo);
+  }
+  return out;
+}
+
+Row PaintPanels(const ResultPreviewInput& input) {
+  if (input.albedo.empty() || input.render.empty()) return {};
+  const PixelBox box =
+      BoxAround(input.mask, input.input.width, input.input.height);
+  const Mask mask = Crop(input.mask, box);
+  const double of_albedo = ExposureOf(input.albedo, input.mask, kImageWhite);
+  const double of_input = ExposureOf(input.input, input.mask, kImageWhite);
+  return {Picture("Albedo of the paint (" + White(of_albedo) +
+                      ", its 99th percentile)",
+                  Crop(input.albedo, box), mask, of_albedo),
+          Picture("Gloss over it (the input's exposure)",
+                  Crop(input.gloss, box), mask, of_input),
+          Picture("Render repainted grey (the input's exposure)",
+                  Crop(RepaintedGrey(input), box), mask, of_input)};
+}
+
 // Factor that brings the estimate to the reference's mean logarithm, over the
 // values of both that are > 0; 1 where there is none.
 class MeanLogRatio {
@@ -202,11 +238,13 @@ Row RelitPanels(const ResultPreviewInput& input, const Spheres& estimate) {
   const int width = input.input.width, height = input.input.height;
   const PixelBox box = BoxAround(input.mask, width, height);
   const Mask mask = Crop(input.mask, box);
+  const std::string what =
+      input.albedo.empty() ? "The object" : "The object, unpainted,";
   Row row;
   const auto add = [&](const Image& sphere, const std::string& light) {
     const Image relit =
         Crop(RelitObject(sphere, *input.points, width, height), box);
-    row.push_back(Picture("The object relit: " + light + ", without shadows",
+    row.push_back(Picture(what + " relit: " + light + ", without shadows",
                           relit, mask, ExposureOf(relit, mask, kImageWhite)));
   };
   add(estimate.directional, "directional lights");
@@ -282,6 +320,11 @@ Status CheckInput(const ResultPreviewInput& input) {
     return InvalidInput("preview: residual mask",
                         "expected the size of the input");
   }
+  for (const Image* of_paint : {&input.albedo, &input.gloss}) {
+    if (!input.albedo.empty() && differs(of_paint->width, of_paint->height)) {
+      return InvalidInput("preview: paint", "expected the size of the input");
+    }
+  }
   const size_t entries = size_t{3} * kMerlBins;
   for (const MerlTable* table : {&input.brdf, &input.reference_brdf}) {
     if (!table->raw.empty() && table->raw.size() != entries) {
@@ -294,6 +337,7 @@ Status CheckInput(const ResultPreviewInput& input) {
 ResultPanels MakeRows(const ResultPreviewInput& input) {
   ResultPanels panels;
   panels.images = ImagePanels(input);
+  panels.paint = PaintPanels(input);
   panels.maps = MapPanels(input);
   if (input.brdf.raw.empty()) return panels;
   const Spheres estimate = RenderSpheres(input.brdf, input.num_threads);
@@ -306,13 +350,15 @@ ResultPanels MakeRows(const ResultPreviewInput& input) {
 Rgb8Image ComposeOverview(const ResultPanels& rows,
                           const ResultPreviewInput& input) {
   std::vector<Row> shown;
-  for (const Row* row :
-       {&rows.images, &rows.maps, &rows.spheres, &rows.alternatives}) {
+  size_t of_spheres = 0;
+  for (const Row* row : {&rows.images, &rows.paint, &rows.maps, &rows.spheres,
+                         &rows.alternatives}) {
+    if (row == &rows.spheres) of_spheres = shown.size();
     if (!row->empty()) shown.push_back(*row);
   }
   // Two spheres leave room for the object in their lights.
   if (rows.spheres.size() == 2) {
-    Row& spheres = shown[rows.maps.empty() ? 1 : 2];
+    Row& spheres = shown[of_spheres];
     spheres.insert(spheres.end(), rows.relit.begin(), rows.relit.end());
   } else if (!rows.relit.empty()) {
     shown.push_back(rows.relit);
@@ -338,6 +384,8 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   input.render = solved.solution.render;
   input.residual = LogResidual(solved.inverse, solved.solution);
   input.residual_mask = UsedMask(solved.inverse);
+  input.albedo = solved.solution.albedo;
+  input.gloss = solved.solution.gloss;
   input.illumination = solved.solution.map;
   input.illumination_known = solved.inverse.known_map.has_value();
   input.reference_illumination = solved.truth.illumination;
@@ -369,6 +417,12 @@ Status WriteResultPreviews(const ResultPanels& rows,
   for (size_t i = 0; i < rows.images.size(); ++i) {
     IBRDF_RETURN_IF_ERROR(WritePng(ComposePanels({{rows.images[i]}}, ""),
                                    out_dir + "/" + names[i]));
+  }
+  if (!rows.paint.empty()) {
+    IBRDF_RETURN_IF_ERROR(WritePng(ComposePanels({{rows.paint[0]}}, ""),
+                                   out_dir + "/albedo.png"));
+    IBRDF_RETURN_IF_ERROR(
+        WritePng(ComposePanels({{rows.paint[1]}}, ""), out_dir + "/gloss.png"));
   }
   if (!rows.maps.empty()) {
     std::vector<Row> below;  // the maps one below the other

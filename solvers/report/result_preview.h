@@ -25,6 +25,8 @@ struct ResultPreviewInput {
   // which did (empty: as `mask`).
   Image residual;
   Mask residual_mask;
+  // Of a painted object, of their size: what Solution has; empty: unpainted.
+  Image albedo, gloss;
   Image illumination;               // in the library's frame
   bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;
@@ -54,6 +56,7 @@ Rgb8Image MakeOverview(const ResultPreviewInput& input);
 // The overview's rows of panels; empty where there is nothing to show.
 struct ResultPanels {
   std::vector<PreviewPanel> images;   // input, render, residual
+  std::vector<PreviewPanel> paint;    // albedo, gloss, repainted grey
   std::vector<PreviewPanel> maps;     // estimate, reference; or known
   std::vector<PreviewPanel> spheres;  // of each light, estimate and reference
   std::vector<PreviewPanel> relit;    // the object, under each light
@@ -63,9 +66,10 @@ struct ResultPanels {
 // Refuses an empty input and sizes that disagree.
 StatusOr<ResultPanels> MakeResultPanels(const ResultPreviewInput& input);
 
-// Writes overview.png, input.png, render.png, residual.png, illumination.png
-// and brdf.png into `out_dir`, which exists; each whole or absent, and none for
-// what is empty. Of the input, title and metrics are read.
+// Writes overview.png, input.png, render.png, residual.png, albedo.png,
+// gloss.png, illumination.png and brdf.png into `out_dir`, which exists; each
+// whole or absent, and none for what is empty. Of the input, title and metrics
+// are read.
 Status WriteResultPreviews(const ResultPanels& panels,
                            const ResultPreviewInput& input,
                            const std::string& out_dir);

@@ -385,6 +385,7 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
   // Paint that is sought is not taken for light.
   if (solved.inverse.variation != ReflectanceVariation::kNone) {
     n.several_materials = false;
+    n.floor = 0.0;
   }
   if (std::isfinite(solution.spread)) {
     n.reflectance_error = ExpectError(solution.spread).median;

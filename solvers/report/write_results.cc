@@ -30,7 +30,8 @@ std::vector<std::string> EarlierNames(const Solution& solution) {
     names.emplace_back("illumination_log_std.exr");
   }
   if (solution.albedo.rgb.empty()) {
-    names.insert(names.end(), {"albedo.exr", "gloss.exr"});
+    names.insert(names.end(),
+                 {"albedo.exr", "gloss.exr", "albedo.png", "gloss.png"});
   }
   return names;
 }
@@ -81,7 +82,8 @@ std::vector<std::string> ResultPaths(const Problem& problem,
     paths.emplace_back("illumination_log_std.exr");
   }
   if (problem.reflectance.variation != ReflectanceVariation::kNone) {
-    paths.insert(paths.end(), {"albedo.exr", "gloss.exr"});
+    paths.insert(paths.end(),
+                 {"albedo.exr", "gloss.exr", "albedo.png", "gloss.png"});
   }
   for (std::string& path : paths) path.insert(0, folder + "/");
   return paths;
