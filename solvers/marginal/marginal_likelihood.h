@@ -34,7 +34,7 @@ struct DataErrors {
   Eigen::VectorXd noise;  // diagonal of D [3 * points], > 0
   // The share of the radiance that paint scales, m [3 * points] in [0, 1], and
   // what the paint's mean adds to log radiance; empty where there is no paint.
-  Eigen::VectorXd matte_share, mean_paint;
+  Eigen::VectorXd matte_share = {}, mean_paint = {};
 };
 
 // What an image says of log radiance [3 * points], channel by channel.

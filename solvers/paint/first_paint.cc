@@ -22,41 +22,74 @@ constexpr double kLeastCosine = 0.2;
 // Of a normal distribution, over the median of its absolute values.
 constexpr double kDeviationOfMedian = 1.4826;
 // About a highlight's middle, of mirrored directions: where its light shows.
-constexpr double kHighlight = 15.0 * kDegree;
-// A highlight is by so much brighter than the median about it, and no larger
+constexpr double kHighlight = 15.0 * kDegree, kRim = 25.0 * kDegree;
+// A highlight is by so much brighter than the median of its rim, and no larger
 // share of the object.
 constexpr double kContrast = 1.3, kMostOfObject = 0.03;
+// Of log radiance from pixel to pixel, at this share of the edge of paint.
+constexpr double kSharpStep = 0.15, kSharpShare = 0.5;
+
+double Median(std::vector<double>* values) {
+  const auto middle = values->begin() + values->size() / 2;
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
+// Whether radiance steps at the edge of the points that are set, as paint does
+// and a highlight, whose flank is soft, does not.
+bool HasSharpEdge(const std::vector<char>& set,
+                  const std::vector<double>& radiance,
+                  const std::vector<NeighbourPair>& neighbours) {
+  const auto log_sum = [&](int i) {
+    return std::log(radiance[3 * i] + radiance[3 * i + 1] +
+                    radiance[3 * i + 2]);
+  };
+  double sharp = 0.0, all = 0.0;
+  for (const NeighbourPair& pair : neighbours) {
+    if (set[pair.first] == set[pair.second]) continue;
+    const double step = std::abs(log_sum(pair.first) - log_sum(pair.second));
+    if (!std::isfinite(step)) continue;
+    all += 1.0;
+    if (step > kSharpStep) sharp += 1.0;
+  }
+  return sharp > kSharpShare * all;
+}
 
 // The points about each highlight, and which of them are brighter than most.
 std::vector<char> Highlights(const std::vector<ShadingPoint>& points,
-                             const std::vector<double>& unshaded) {
+                             const std::vector<double>& unshaded,
+                             const std::vector<NeighbourPair>& neighbours) {
   std::vector<char> highlights(points.size(), 0);
   for (const Eigen::Vector3d& light :
        FindDirectionalLights(points, unshaded, kMostHighlights)) {
-    std::vector<size_t> around;
-    std::vector<double> luminance;
+    std::vector<size_t> near;
+    std::vector<double> luminance, rim;
     for (size_t i = 0; i < points.size(); ++i) {
       const Eigen::Vector3d n = points[i].normal.cast<double>();
       const Eigen::Vector3d wo = points[i].wo.cast<double>();
       const double cosine = light.dot(2.0 * n.dot(wo) * n - wo);
       const double sum =
           unshaded[3 * i] + unshaded[3 * i + 1] + unshaded[3 * i + 2];
-      if (cosine < std::cos(kHighlight) || !std::isfinite(sum)) continue;
-      around.push_back(i);
-      luminance.push_back(sum);
+      if (cosine < std::cos(kRim) || !std::isfinite(sum)) continue;
+      if (cosine < std::cos(kHighlight)) {
+        rim.push_back(sum);
+      } else {
+        near.push_back(i);
+        luminance.push_back(sum);
+      }
     }
-    if (around.empty()) continue;
-    std::vector<double> sorted = luminance;
-    const auto middle = sorted.begin() + sorted.size() / 2;
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    const double bright = kContrast * *middle;
+    if (near.empty() || rim.empty()) continue;
+    const double bright = kContrast * Median(&rim);
     const auto count = std::count_if(luminance.begin(), luminance.end(),
                                      [&](double l) { return l > bright; });
     // What is large is paint.
     if (count > kMostOfObject * static_cast<double>(points.size())) continue;
-    for (size_t k = 0; k < around.size(); ++k) {
-      if (luminance[k] > bright) highlights[around[k]] = 1;
+    std::vector<char> found(points.size(), 0);
+    for (size_t k = 0; k < near.size(); ++k) {
+      if (luminance[k] > bright) found[near[k]] = 1;
     }
+    if (HasSharpEdge(found, unshaded, neighbours)) continue;
+    for (size_t i = 0; i < found.size(); ++i) highlights[i] |= found[i];
   }
   return highlights;
 }
@@ -64,10 +97,11 @@ std::vector<char> Highlights(const std::vector<ShadingPoint>& points,
 // The image without its highlights. shading: of a matte object [points * 3].
 Observations WithoutHighlights(const std::vector<ShadingPoint>& points,
                                const Observations& observed,
-                               const std::vector<double>& shading) {
+                               const std::vector<double>& shading,
+                               const std::vector<NeighbourPair>& neighbours) {
   std::vector<double> unshaded = observed.radiance;
   for (size_t i = 0; i < unshaded.size(); ++i) unshaded[i] /= shading[i];
-  const std::vector<char> highlights = Highlights(points, unshaded);
+  const std::vector<char> highlights = Highlights(points, unshaded, neighbours);
   Observations out = observed;
   out.num_valid = 0;
   for (size_t i = 0; i < points.size(); ++i) {
@@ -75,12 +109,6 @@ Observations WithoutHighlights(const std::vector<ShadingPoint>& points,
     out.num_valid += out.valid[i];
   }
   return out.num_valid > 0 ? out : observed;
-}
-
-double Median(std::vector<double>* values) {
-  const auto middle = values->begin() + values->size() / 2;
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
 }
 
 // Of log luminance between image and painted matte object, about the median of
@@ -128,9 +156,10 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
     unpainted.matte.insert(unpainted.matte.end(), irradiance.begin(),
                            irradiance.end());
   }
-  out.log_albedo =
-      FitAlbedo(unpainted, WithoutHighlights(points, observed, unpainted.matte),
-                neighbours, AlbedoFitOptions());
+  out.log_albedo = FitAlbedo(
+      unpainted,
+      WithoutHighlights(points, observed, unpainted.matte, neighbours),
+      neighbours, AlbedoFitOptions());
   Eigen::Map<Eigen::Matrix3Xd> a(out.log_albedo.data(), 3,
                                  static_cast<Eigen::Index>(points.size()));
   const Eigen::Vector3d mean = a.rowwise().mean();

@@ -29,6 +29,25 @@ TEST(MattePart, IsWhatLiesUnderAHighlight) {
   }
 }
 
+// Light that cloth throws back whence it came is the paint's too.
+TEST(MattePart, RisesWhereAllHalfVectorsDo) {
+  const BrdfGrid brdf = BrdfGrid::FromFunction(
+      [](double theta_h, double theta_d, double) -> Eigen::Array3d {
+        const double back = 0.3 * std::exp(-theta_d * theta_d / 0.1);
+        const double gloss = std::exp(-theta_h * theta_h / 0.02);
+        return Eigen::Array3d::Constant(0.2 + back + gloss);
+      },
+      kShape);
+  const BrdfGrid matte = MattePart(brdf);
+  for (int i = 0; i < kShape.num_nodes(); ++i) {
+    const double theta_d = kShape.NodeAngles(i)[1];
+    if (theta_d > 0.4) continue;
+    EXPECT_NEAR(matte.Channel(0)[i],
+                0.2 + 0.3 * std::exp(-theta_d * theta_d / 0.1), 0.01)
+        << theta_d;
+  }
+}
+
 TEST(MattePart, NeverExceedsTheWhole) {
   const BrdfGrid brdf = GlossOn(0.0, 1e6);
   const BrdfGrid matte = MattePart(brdf);

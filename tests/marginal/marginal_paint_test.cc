@@ -48,6 +48,43 @@ TEST(MarginalPaint, GradientMatchesDifferences) {
   ExpectGradientMatches(SomeIntervals, SomePaint());
 }
 
+// A mean that is known is as good as an image without it.
+TEST(MarginalPaint, OfAMeanIsThatOfAnImageWithoutIt) {
+  const std::array<RowMatrix, 3> T = Lobes(0.4);
+  const std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 4));
+  Paint paint = SomePaint();
+  const double without = Cost(Values(y), T, Rough(), nullptr, 0, 0.1, paint);
+  std::vector<double> painted = y;
+  paint.mean = Eigen::VectorXd(y.size());
+  for (size_t i = 0; i < y.size(); ++i) {
+    painted[i] += paint.mean[i] = 0.5 * std::sin(3.0 * i);
+  }
+  EXPECT_NEAR(without,
+              Cost(Values(painted), T, Rough(), nullptr, 0, 0.1, paint), 1e-6);
+  EXPECT_GT(Cost(Values(painted), T, Rough(), nullptr, 0, 0.1, SomePaint()),
+            without + 1.0);
+}
+
+// Of a share u without paint, log(1 + u (e^a0 - 1)) is added, and the painted
+// share is u e^a0 / (1 + u (e^a0 - 1)).
+TEST(MarginalPaint, FindsTheShareOfPaintOfAMean) {
+  const std::array<RowMatrix, 3> T = Lobes(0.4);
+  std::array<RowMatrix, 3> matte = T;
+  for (RowMatrix& m : matte) m *= 0.25;
+  const std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 4));
+  const Eigen::VectorXd mean = Eigen::VectorXd::LinSpaced(y.size(), -2.0, 2.0);
+  const MarginalLikelihood likelihood(Values(y), Proper(), kHeight, kWidth, 0,
+                                      1, SomePaint().covariance, mean);
+  LightMode mode = ZeroMode(likelihood);
+  const DataErrors errors =
+      likelihood.FindErrors(T, matte, 0.1, Rough(), kTight, &mode);
+  for (Eigen::Index i = 0; i < mean.size(); ++i) {
+    const double painted = 0.25 * std::exp(mean[i]);
+    EXPECT_NEAR(errors.mean_paint[i], std::log(0.75 + painted), 1e-9);
+    EXPECT_NEAR(errors.matte_share[i], painted / (0.75 + painted), 1e-9);
+  }
+}
+
 TEST(MarginalPaint, OfNoVarianceOrNoMatteIsNone) {
   const std::array<RowMatrix, 3> T = Lobes(0.4);
   std::vector<double> y = LogRadiance(T, DrawLight(Proper(), 1.0, 4));

@@ -133,6 +133,7 @@ inline MarginalLikelihood Likelihood(LogRadianceData data,
 struct Paint {
   Eigen::MatrixXd covariance;   // [3 * points]^2
   Eigen::VectorXd matte_share;  // [3 * points]
+  Eigen::VectorXd mean = {};    // [3 * points] or empty
 };
 
 // Nats, of the mode: its last steps shrink slowly, and the log determinant
@@ -150,6 +151,7 @@ inline double Cost(const LogRadianceData& data,
   LightMode mode = ZeroMode(likelihood);
   DataErrors errors = Noise(sigma, static_cast<int>(data.value.size() / 3));
   errors.matte_share = paint.matte_share;
+  errors.mean_paint = paint.mean;
   const MarginalValue value =
       likelihood.Evaluate(T, errors, hyperparameters, kTight, &mode, gradient);
   EXPECT_TRUE(value.ok);
