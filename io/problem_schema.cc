@@ -427,9 +427,8 @@ Keys ReflectanceKeys() {
           .Choice("auto",
                   {{"auto",
                     "`albedo` where pixels of like normals far apart differ in "
-                    "colour, by the look before the solve; else `none`. It "
-                    "cannot see the paint of a convex object, which shows "
-                    "every normal once."},
+                    "colour, else `none`. A convex object shows every normal "
+                    "once: its paint is not seen."},
                    {"none", "One material."},
                    {"albedo",
                     "One gloss over paint: the albedo of what is matte is "

@@ -23,11 +23,11 @@ constexpr double kLeastCosine = 0.2;
 constexpr double kDeviationOfMedian = 1.4826;
 // About a highlight's middle, of mirrored directions: where its light shows.
 constexpr double kHighlight = 15.0 * kDegree, kRim = 25.0 * kDegree;
-// A highlight is by so much brighter than the median of its rim, and no larger
-// share of the object.
+// A highlight is by so much brighter than the median of its rim and than the
+// object's brightest paint, and no larger share of the object.
 constexpr double kContrast = 1.3, kMostOfObject = 0.03;
-// Of log radiance from pixel to pixel, at this share of the edge of paint.
-constexpr double kSharpStep = 0.15, kSharpShare = 0.5;
+// Of the object's points, so many are no brighter than its brightest paint.
+constexpr double kBrightest = 0.95;
 
 double Median(std::vector<double>* values) {
   const auto middle = values->begin() + values->size() / 2;
@@ -35,79 +35,72 @@ double Median(std::vector<double>* values) {
   return *middle;
 }
 
-// Whether radiance steps at the edge of the points that are set, as paint does
-// and a highlight, whose flank is soft, does not.
-bool HasSharpEdge(const std::vector<char>& set,
-                  const std::vector<double>& radiance,
-                  const std::vector<NeighbourPair>& neighbours) {
-  const auto log_sum = [&](int i) {
-    return std::log(radiance[3 * i] + radiance[3 * i + 1] +
-                    radiance[3 * i + 2]);
-  };
-  double sharp = 0.0, all = 0.0;
-  for (const NeighbourPair& pair : neighbours) {
-    if (set[pair.first] == set[pair.second]) continue;
-    const double step = std::abs(log_sum(pair.first) - log_sum(pair.second));
-    if (!std::isfinite(step)) continue;
-    all += 1.0;
-    if (step > kSharpStep) sharp += 1.0;
-  }
-  return sharp > kSharpShare * all;
+double SumAt(const std::vector<double>& radiance, size_t point) {
+  return radiance[3 * point] + radiance[3 * point + 1] +
+         radiance[3 * point + 2];
 }
 
-// The points about each highlight, and which of them are brighter than most.
-std::vector<char> Highlights(const std::vector<ShadingPoint>& points,
-                             const std::vector<double>& unshaded,
-                             const std::vector<NeighbourPair>& neighbours) {
-  std::vector<char> highlights(points.size(), 0);
-  for (const Eigen::Vector3d& light :
-       FindDirectionalLights(points, unshaded, kMostHighlights)) {
-    std::vector<size_t> near;
-    std::vector<double> luminance, rim;
-    for (size_t i = 0; i < points.size(); ++i) {
-      const Eigen::Vector3d n = points[i].normal.cast<double>();
-      const Eigen::Vector3d wo = points[i].wo.cast<double>();
-      const double cosine = light.dot(2.0 * n.dot(wo) * n - wo);
-      const double sum =
-          unshaded[3 * i] + unshaded[3 * i + 1] + unshaded[3 * i + 2];
-      if (cosine < std::cos(kRim) || !std::isfinite(sum)) continue;
-      if (cosine < std::cos(kHighlight)) {
-        rim.push_back(sum);
-      } else {
-        near.push_back(i);
-        luminance.push_back(sum);
-      }
-    }
-    if (near.empty() || rim.empty()) continue;
-    const double bright = kContrast * Median(&rim);
-    const auto count = std::count_if(luminance.begin(), luminance.end(),
-                                     [&](double l) { return l > bright; });
-    // What is large is paint.
-    if (count > kMostOfObject * static_cast<double>(points.size())) continue;
-    std::vector<char> found(points.size(), 0);
-    for (size_t k = 0; k < near.size(); ++k) {
-      if (luminance[k] > bright) found[near[k]] = 1;
-    }
-    if (HasSharpEdge(found, unshaded, neighbours)) continue;
-    for (size_t i = 0; i < found.size(); ++i) highlights[i] |= found[i];
+// Brighter than so much of the object, one is no paint of it.
+double BrightestPaint(const std::vector<double>& unshaded) {
+  std::vector<double> sums;
+  for (size_t i = 0; i < unshaded.size() / 3; ++i) {
+    const double sum = SumAt(unshaded, i);
+    if (std::isfinite(sum)) sums.push_back(sum);
   }
-  return highlights;
+  if (sums.empty()) return 0.0;
+  const auto at =
+      sums.begin() + static_cast<ptrdiff_t>(kBrightest * (sums.size() - 1));
+  std::nth_element(sums.begin(), at, sums.end());
+  return *at;
+}
+
+// The points about a highlight that are brighter than any paint; empty where
+// they are too many to be one.
+std::vector<size_t> HighlightOf(const Eigen::Vector3d& light,
+                                const std::vector<ShadingPoint>& points,
+                                const std::vector<double>& unshaded,
+                                double brightest) {
+  std::vector<size_t> near;
+  std::vector<double> rim;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d n = points[i].normal.cast<double>();
+    const Eigen::Vector3d wo = points[i].wo.cast<double>();
+    const double cosine = light.dot(2.0 * n.dot(wo) * n - wo);
+    const double sum = SumAt(unshaded, i);
+    if (cosine < std::cos(kRim) || !std::isfinite(sum)) continue;
+    if (cosine < std::cos(kHighlight)) {
+      rim.push_back(sum);
+    } else {
+      near.push_back(i);
+    }
+  }
+  if (rim.empty()) return {};
+  const double bright = kContrast * std::max(Median(&rim), brightest);
+  near.erase(
+      std::remove_if(near.begin(), near.end(),
+                     [&](size_t i) { return SumAt(unshaded, i) <= bright; }),
+      near.end());
+  const bool large = static_cast<double>(near.size()) >
+                     kMostOfObject * static_cast<double>(points.size());
+  return large ? std::vector<size_t>() : near;
 }
 
 // The image without its highlights. shading: of a matte object [points * 3].
 Observations WithoutHighlights(const std::vector<ShadingPoint>& points,
                                const Observations& observed,
-                               const std::vector<double>& shading,
-                               const std::vector<NeighbourPair>& neighbours) {
+                               const std::vector<double>& shading) {
   std::vector<double> unshaded = observed.radiance;
   for (size_t i = 0; i < unshaded.size(); ++i) unshaded[i] /= shading[i];
-  const std::vector<char> highlights = Highlights(points, unshaded, neighbours);
+  const double brightest = BrightestPaint(unshaded);
   Observations out = observed;
-  out.num_valid = 0;
-  for (size_t i = 0; i < points.size(); ++i) {
-    if (highlights[i] != 0) out.valid[i] = 0;
-    out.num_valid += out.valid[i];
+  for (const Eigen::Vector3d& light :
+       FindDirectionalLights(points, unshaded, kMostHighlights)) {
+    for (const size_t i : HighlightOf(light, points, unshaded, brightest)) {
+      out.valid[i] = 0;
+    }
   }
+  out.num_valid =
+      static_cast<int>(std::count(out.valid.begin(), out.valid.end(), char{1}));
   return out.num_valid > 0 ? out : observed;
 }
 
@@ -156,10 +149,9 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
     unpainted.matte.insert(unpainted.matte.end(), irradiance.begin(),
                            irradiance.end());
   }
-  out.log_albedo = FitAlbedo(
-      unpainted,
-      WithoutHighlights(points, observed, unpainted.matte, neighbours),
-      neighbours, AlbedoFitOptions());
+  out.log_albedo =
+      FitAlbedo(unpainted, WithoutHighlights(points, observed, unpainted.matte),
+                neighbours, AlbedoFitOptions());
   Eigen::Map<Eigen::Matrix3Xd> a(out.log_albedo.data(), 3,
                                  static_cast<Eigen::Index>(points.size()));
   const Eigen::Vector3d mean = a.rowwise().mean();

@@ -5,8 +5,10 @@
 #include "ibrdf/io/image_file.h"
 #include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
+#include "ibrdf/io/photo_file.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/light/convert_map.h"
+#include "ibrdf/metrics/albedo_map_metrics.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/metrics/illumination_metrics.h"
 #include "ibrdf/metrics/image_metrics.h"
@@ -27,6 +29,22 @@ Status NameFile(const Status& status,
 
 int Rows(const StoredMap& map) {
   return RowsForSize(map.frame, {map.image.width, map.image.height});
+}
+
+// Empty without a path: all pixels.
+StatusOr<Mask> ReadOptionalMask(const std::string& path) {
+  if (path.empty()) return Mask();
+  return ReadMask(path);
+}
+
+StatusOr<Image> ReadAlbedo(const std::string& path) {
+  StatusOr<Photo> photo = ReadPhoto(path);
+  if (!photo.ok()) return photo.status();
+  if (photo->bits > 0) {
+    const auto white = static_cast<float>((1u << photo->bits) - 1u);
+    for (float& v : photo->image.rgb) v /= white;
+  }
+  return std::move(photo->image);
 }
 
 }  // namespace
@@ -86,13 +104,9 @@ StatusOr<NamedMetrics> EvaluateImageFiles(const std::string& estimate,
   if (!a.ok()) return a.status();
   const StatusOr<Image> b = ReadImage(reference);
   if (!b.ok()) return b.status();
-  Mask inside;
-  if (!mask.empty()) {
-    StatusOr<Mask> read = ReadMask(mask);
-    if (!read.ok()) return read.status();
-    inside = *std::move(read);
-  }
-  const StatusOr<ImageMetrics> metrics = CompareImages(*a, *b, inside);
+  const StatusOr<Mask> inside = ReadOptionalMask(mask);
+  if (!inside.ok()) return inside.status();
+  const StatusOr<ImageMetrics> metrics = CompareImages(*a, *b, *inside);
   if (!metrics.ok()) {
     return NameFile(
         metrics.status(),
@@ -102,6 +116,28 @@ StatusOr<NamedMetrics> EvaluateImageFiles(const std::string& estimate,
                       {"image_mean_abs_log", metrics->mean_abs_log},
                       {"psnr", metrics->psnr},
                       {"dssim", metrics->dssim}};
+}
+
+StatusOr<NamedMetrics> EvaluateAlbedoFiles(const std::string& estimate,
+                                           const std::string& reference,
+                                           const std::string& mask) {
+  const StatusOr<Image> a = ReadAlbedo(estimate);
+  if (!a.ok()) return a.status();
+  const StatusOr<Image> b = ReadAlbedo(reference);
+  if (!b.ok()) return b.status();
+  const StatusOr<Mask> inside = ReadOptionalMask(mask);
+  if (!inside.ok()) return inside.status();
+  const StatusOr<AlbedoMapMetrics> metrics = CompareAlbedoMaps(*a, *b, *inside);
+  if (!metrics.ok()) {
+    return NameFile(
+        metrics.status(),
+        {{"estimate", estimate}, {"reference", reference}, {"mask", mask}});
+  }
+  return NamedMetrics{{"albedo_log_rmse", metrics->log_rmse},
+                      {"albedo_log_rmse_aligned", metrics->log_rmse_aligned},
+                      {"albedo_psnr", metrics->psnr},
+                      {"albedo_dssim", metrics->dssim},
+                      {"albedo_lmse", metrics->lmse}};
 }
 
 }  // namespace ibrdf

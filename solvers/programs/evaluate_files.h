@@ -44,4 +44,11 @@ StatusOr<NamedMetrics> EvaluateImageFiles(const std::string& estimate,
                                           const std::string& reference,
                                           const std::string& mask);
 
+// Albedo at an object's pixels: .exr, or any file that ReadPhoto reads, whose
+// whole numbers are linear and 1 at the largest. albedo_log_rmse, the same with
+// _aligned, albedo_psnr, albedo_dssim, albedo_lmse (AlbedoMapMetrics).
+StatusOr<NamedMetrics> EvaluateAlbedoFiles(const std::string& estimate,
+                                           const std::string& reference,
+                                           const std::string& mask);
+
 }  // namespace ibrdf

@@ -142,6 +142,15 @@ int Main(int argc, char** argv) {
       "image, .exr or .hdr, both of one size", &arguments);
   image->add_option("--mask", arguments.mask,
                     "PNG, nonzero = compared; default: all pixels");
+  CLI::App* albedo = AddComparison(
+      &app, "albedo",
+      "of an object's pixels: log-RMSE as is and after the best scale per "
+      "channel (aligned); aligned PSNR in dB and DSSIM; local mean squared "
+      "error (LMSE, Grosse et al. 2009). Pixels without an albedo > 0 are left "
+      "out",
+      "albedo, .exr, or codes that are linear, both of one size", &arguments);
+  albedo->add_option("--mask", arguments.mask,
+                     "PNG, nonzero = compared; default: all pixels");
   const CLI::App* frame = AddFrame(&app, &arguments);
 
   return RunProgram(&app, argc, argv, [&]() -> Status {
@@ -149,6 +158,10 @@ int Main(int argc, char** argv) {
     if (brdf->parsed()) {
       return PrintMetrics(
           EvaluateBrdfFiles(arguments.estimate, arguments.reference));
+    }
+    if (albedo->parsed()) {
+      return PrintMetrics(EvaluateAlbedoFiles(
+          arguments.estimate, arguments.reference, arguments.mask));
     }
     if (illumination->parsed()) {
       const StatusOr<Json> json = EvaluateIllumination(arguments);

@@ -26,7 +26,7 @@ TEST(FirstPaint, IsThePaintWithoutTheShading) {
   const PaintedBall ball = MakePaintedBall(SomeLamp());
   const FirstPaint found = Find(ball);
   EXPECT_TRUE(found.light.has_value());
-  EXPECT_LT(AlignedRmse(found.log_albedo, ball.log_albedo), 0.08);
+  EXPECT_LT(AlignedRmse(found.log_albedo, ball.log_albedo), 0.03);
   EXPECT_LT(found.deviation, 0.03);
   double sum = 0.0;
   for (size_t i = 0; i < found.log_albedo.size(); i += 3) {
@@ -43,7 +43,7 @@ TEST(FirstPaint, TakesNoHighlightForPaint) {
   std::vector<size_t> shiny;
   for (size_t i = 0; i < ball.points.size(); ++i) {
     const double sine = ball.points[i].normal.cast<double>().cross(half).norm();
-    const double gloss = 20.0 * std::exp(-sine * sine / 0.005);
+    const double gloss = 20.0 * std::exp(-sine * sine / 0.004);
     for (int c = 0; c < 3; ++c) ball.radiance[3 * i + c] += gloss;
     if (gloss > 4.0) shiny.push_back(i);
   }

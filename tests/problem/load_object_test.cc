@@ -99,6 +99,28 @@ TEST_F(LoadObjectTest, CountsClippedCodesAndSaysWhichCurve) {
               *check.overlap, 1e-12);
 }
 
+// The look decides only what nobody said, and of what a joint problem can use.
+TEST(ChosenVariation, IsWhatIsSaidOrSeen) {
+  PhotographCheck plain, painted;
+  painted.colours.observable = true;
+  painted.colours.excess = 10.0 * kSeveralMaterials;
+  ASSERT_TRUE(painted.SeveralMaterials());
+  ASSERT_FALSE(plain.SeveralMaterials());
+  constexpr auto kNone = ReflectanceVariation::kNone;
+  constexpr auto kAlbedo = ReflectanceVariation::kAlbedo;
+  Problem problem;
+  problem.kind = ProblemKind::kJoint;
+  EXPECT_EQ(ReflectanceVariation::kAuto, problem.reflectance.variation);
+  EXPECT_EQ(kNone, ChosenVariation(problem, plain));
+  EXPECT_EQ(kAlbedo, ChosenVariation(problem, painted));
+  problem.reflectance.variation = kNone;
+  EXPECT_EQ(kNone, ChosenVariation(problem, painted));
+  problem.reflectance.variation = kAlbedo;
+  EXPECT_EQ(kAlbedo, ChosenVariation(problem, plain));
+  problem.kind = ProblemKind::kIllumination;
+  EXPECT_EQ(kNone, ChosenVariation(problem, painted));
+}
+
 TEST_F(LoadObjectTest, WarningsReachTheProblemOfTheSolve) {
   EXPECT_TRUE(WriteExr(Normals(-1.0f), dir_.File("n.exr")).ok());
   Image image(kSize, kSize);

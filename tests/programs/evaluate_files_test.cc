@@ -43,6 +43,34 @@ TEST(EvaluateFiles, Brdf) {
             EvaluateBrdfFiles(dir.File("a"), dir.File("b")).status().message());
 }
 
+TEST(EvaluateFiles, AlbedoOfFloatsAndCodes) {
+  const TempDir dir;
+  Image image(4, 2);
+  Rgb8Image codes(4, 2);
+  for (size_t i = 0; i < image.rgb.size(); ++i) {
+    codes.rgb[i] = static_cast<uint8_t>(51 + 102 * (i % 2));
+    image.rgb[i] = 2.0f * (0.2f + 0.4f * static_cast<float>(i % 2));
+  }
+  ASSERT_TRUE(WriteExr(image, dir.File("a.exr")).ok());
+  ASSERT_TRUE(WritePng(codes, dir.File("b.png")).ok());
+  const NamedMetrics m =
+      EvaluateAlbedoFiles(dir.File("a.exr"), dir.File("b.png"), "").value();
+  EXPECT_EQ(
+      (std::vector<std::string>{"albedo_log_rmse", "albedo_log_rmse_aligned",
+                                "albedo_psnr", "albedo_dssim", "albedo_lmse"}),
+      Names(m));
+  EXPECT_NEAR(std::log(2.0), m[0].second, 1e-5);
+  EXPECT_NEAR(0.0, m[1].second, 1e-5);
+  EXPECT_EQ(
+      dir.File("a.exr") + ": size: expected 2x2 as the reference, found 4x2",
+      [&] {
+        EXPECT_TRUE(WriteExr(Image(2, 2), dir.File("c.exr")).ok());
+        return EvaluateAlbedoFiles(dir.File("a.exr"), dir.File("c.exr"), "")
+            .status()
+            .message();
+      }());
+}
+
 TEST(EvaluateFiles, IlluminationAndImage) {
   const TempDir dir;
   Image image(4, 2);

@@ -196,6 +196,9 @@ Problem AnyProblem() {
           AnyOf<ReflectanceVariation>(kNumReflectanceVariations);
     }
   }
+  if (p.solver.estimator == SolverEstimator::kMaximum) {
+    p.reflectance.variation = ReflectanceVariation::kNone;
+  }
   const bool map_file = (rendered || p.kind == ProblemKind::kReflectance) &&
                         *rc::gen::arbitrary<bool>();
   // A render takes the file's map as it is; else it may be resampled.
