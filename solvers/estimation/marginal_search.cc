@@ -1,5 +1,7 @@
 #include "ibrdf/solvers/estimation/marginal_search.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +14,6 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/brdf/table_lobes.h"
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
-#include "ibrdf/solvers/paint/first_paint.h"
 #include "ibrdf/solvers/priors/embedding_prior.h"
 #include "ibrdf/solvers/problem/quadrature_level.h"
 
@@ -181,19 +182,21 @@ LightPosterior LightOf(const ReflectanceSearchResult& found, double level) {
 }
 
 // Before the light is known, pixels tell paint and a lamp by themselves; what
-// is left is small, and its chroma hardly the light's, which else would explain
-// paint at no cost.
-void AddPaint(const SolveSetup& setup, ReflectanceSearchOptions* o) {
-  const InverseProblem& problem = *setup.problem;
-  FirstPaint first =
-      FindFirstPaint(problem.points, setup.pixels.observed,
-                     NeighboursOf(problem.points, problem.image.width));
-  if (first.light) o->directional_lights = {first.light->direction};
+// is left is small. Under a lamp its chroma is hardly the light's, which else
+// would explain paint at no cost.
+void AddPaint(const FirstPaint& first, ReflectanceSearchOptions* o) {
+  if (first.light) {
+    o->directional_lights = {first.light->direction};
+    VLOG(1) << "a lamp of strength " << first.light->strength
+            << " shades the paint; deviation at like normals "
+            << first.deviation;
+  }
   o->paint.emplace();
   o->paint->albedo = AlbedoPrior().Scaled(kLeftOfPaint);
   o->paint->albedo.own_luminance =
       std::max(o->paint->albedo.own_luminance, first.deviation);
-  o->paint->mean = std::move(first.log_albedo);
+  o->paint->mean = first.log_albedo;
+  if (first.natural_light) return;
   o->process.chroma_variance *= kPaintedLightChroma;
   o->process.directional_light_chroma_variance *= kPaintedLightChroma;
 }
@@ -201,11 +204,12 @@ void AddPaint(const SolveSetup& setup, ReflectanceSearchOptions* o) {
 }  // namespace
 
 StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
-                                                  SolveContext* context) {
+                                                  SolveContext* context,
+                                                  const FirstPaint* paint) {
   const InverseProblem& problem = *setup.problem;
   ReflectanceSearchOptions o = SearchOptions(kSearchShare, setup, context);
   o.covariance = problem.solver.max_iterations > 0;
-  if (problem.variation == ReflectanceVariation::kAlbedo) AddPaint(setup, &o);
+  if (paint != nullptr) AddPaint(*paint, &o);
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       FlowLobes::Factory(*problem.model, problem.lobes, problem.num_threads),
       setup.materials, problem.points, SearchedPixels(setup), o);

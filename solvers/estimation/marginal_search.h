@@ -5,14 +5,17 @@
 #include "ibrdf/solvers/estimation/posterior.h"
 #include "ibrdf/solvers/estimation/solve_context.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
+#include "ibrdf/solvers/paint/first_paint.h"
 
 namespace ibrdf {
 
 // The reflectance whose posterior is highest with the light integrated out, at
 // the materials' mean level (LevelGauge). kNoImprovement where the light
-// explains the image of no material.
-StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
-                                                  SolveContext* context);
+// explains the image of no material. paint: of an object whose albedo varies;
+// null: it does not.
+StatusOr<ReflectanceEstimate> EstimateReflectance(
+    const SolveSetup& setup, SolveContext* context,
+    const FirstPaint* paint = nullptr);
 
 // For a known reflectance: directional lights and hyperparameters of highest
 // posterior probability with the map integrated out; at the average where the

@@ -198,29 +198,62 @@ double PaintShare(double step, double chroma_step, double turn,
   return x * x / (1.0 + x * x);
 }
 
-// Chroma where it is seen, filled in from around where it is not.
-std::vector<Eigen::Array2d> FilledChroma(
-    const ApparentPaint& apparent,
-    const std::vector<NeighbourPair>& neighbours) {
+// Pairs of neighbours with what of their steps is paint's.
+struct PaintSteps {
+  std::vector<double> weights, luminance;
+  std::vector<Eigen::Array2d> chroma;
+};
+
+PaintSteps StepsOf(const ApparentPaint& apparent,
+                   const std::vector<NeighbourPair>& neighbours,
+                   const AlbedoFitOptions& options) {
+  PaintSteps steps;
+  for (const NeighbourPair& pair : neighbours) {
+    const int a = pair.first, b = pair.second;
+    if (apparent.seen[a] == 0.0 || apparent.seen[b] == 0.0) {
+      steps.weights.push_back(1.0);
+      steps.luminance.push_back(0.0);
+      steps.chroma.push_back(Eigen::Array2d::Zero());
+      continue;
+    }
+    const double luminance = apparent.luminance[b] - apparent.luminance[a];
+    const Eigen::Array2d chroma = apparent.chroma[b] - apparent.chroma[a];
+    const double share =
+        PaintShare(luminance, chroma.matrix().norm(), pair.turn, options);
+    steps.weights.push_back(1.0 / (1.0 + Square(pair.turn / kCrease)));
+    steps.luminance.push_back(share * luminance);
+    steps.chroma.push_back(share * chroma);
+  }
+  return steps;
+}
+
+// Chroma where it is seen, filled in from around where it is not; or, where it
+// drifts, what its steps make.
+std::vector<Eigen::Array2d> FittedChroma(
+    const ApparentPaint& apparent, const PaintSteps& steps,
+    const std::vector<NeighbourPair>& neighbours, bool drifts) {
   const size_t count = apparent.seen.size();
-  if (std::count(apparent.seen.begin(), apparent.seen.end(), 0.0) == 0) {
+  if (!drifts &&
+      std::count(apparent.seen.begin(), apparent.seen.end(), 0.0) == 0) {
     return apparent.chroma;
   }
   std::vector<double> weights = apparent.seen;
-  for (double& w : weights) w *= kSeenAnchor;
+  for (double& w : weights) w *= drifts ? 0.0 : kSeenAnchor;
   const SteppedField field(weights);
-  std::vector<Eigen::Array2d> filled = apparent.chroma;
-  const std::vector<double> even(neighbours.size(), 1.0),
-      none(neighbours.size(), 0.0);
+  std::vector<Eigen::Array2d> fitted = apparent.chroma;
   for (int axis = 0; axis < 2; ++axis) {
-    std::vector<double> anchors(count);
+    std::vector<double> anchors(count), of_axis(neighbours.size(), 0.0);
     for (size_t i = 0; i < count; ++i) anchors[i] = apparent.chroma[i][axis];
-    const std::vector<double> x = field.Solve(neighbours, even, none, anchors);
+    for (size_t k = 0; drifts && k < neighbours.size(); ++k) {
+      of_axis[k] = steps.chroma[k][axis];
+    }
+    const std::vector<double> x =
+        field.Solve(neighbours, steps.weights, of_axis, anchors);
     for (size_t i = 0; i < count; ++i) {
-      if (apparent.seen[i] == 0.0) filled[i][axis] = x[i];
+      if (drifts || apparent.seen[i] == 0.0) fitted[i][axis] = x[i];
     }
   }
-  return filled;
+  return fitted;
 }
 
 }  // namespace
@@ -231,33 +264,21 @@ std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
                               const AlbedoFitOptions& options) {
   const size_t count = observed.valid.size();
   CHECK_EQ(unpainted.matte.size(), 3 * count);
-  const ApparentPaint apparent = ApparentPaintOf(unpainted, observed);
+  ApparentPaint apparent = ApparentPaintOf(unpainted, observed);
+  const PaintSteps steps = StepsOf(apparent, neighbours, options);
+  apparent.chroma =
+      FittedChroma(apparent, steps, neighbours, options.chroma_drifts);
   const std::vector<double> of_colour = LuminanceOfColour(apparent, options);
-  std::vector<double> pair_weights, steps;
-  for (const NeighbourPair& pair : neighbours) {
-    const int a = pair.first, b = pair.second;
-    if (apparent.seen[a] == 0.0 || apparent.seen[b] == 0.0) {
-      pair_weights.push_back(1.0);
-      steps.push_back(0.0);
-      continue;
-    }
-    const double step = apparent.luminance[b] - apparent.luminance[a];
-    const double chroma_step =
-        (apparent.chroma[b] - apparent.chroma[a]).matrix().norm();
-    pair_weights.push_back(1.0 / (1.0 + Square(pair.turn / kCrease)));
-    steps.push_back(step * PaintShare(step, chroma_step, pair.turn, options));
-  }
   std::vector<double> anchor_weights = apparent.seen;
   for (double& w : anchor_weights) {
     w /= Square(options.reach) * static_cast<double>(count);
   }
   const std::vector<double> luminance =
       SteppedField(anchor_weights)
-          .Solve(neighbours, pair_weights, steps, of_colour);
-  const std::vector<Eigen::Array2d> chroma = FilledChroma(apparent, neighbours);
+          .Solve(neighbours, steps.weights, steps.luminance, of_colour);
   std::vector<double> out(3 * count);
   for (size_t i = 0; i < count; ++i) {
-    const Eigen::Array3d log_colour = FromChromaPlane(chroma[i]);
+    const Eigen::Array3d log_colour = FromChromaPlane(apparent.chroma[i]);
     for (int c = 0; c < 3; ++c) out[3 * i + c] = luminance[i] + log_colour[c];
   }
   return out;

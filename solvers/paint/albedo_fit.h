@@ -23,19 +23,22 @@ struct AlbedoFitOptions {
   // From pixel to pixel, a step of log luminance above `edge` and what the
   // normals' turn allows, or one of log chroma above `chroma_edge`, is paint's.
   double edge = 0.1, edge_by_turn = 5.0, chroma_edge = 0.1;
+  // Whether chroma that drifts is the light's, as luminance's is, and sharp
+  // steps alone are paint's; else all of the image's chroma is.
+  bool chroma_drifts = false;
   // Over this share of the object's size, the square root of its pixels, paint
   // may leave the albedo of its colour.
   double reach = 0.15;
 };
 
-// Log albedo a [points * 3], I = e^a matte + gloss. Chroma is the image's.
-// Luminance has two cues. Points of like colour have like albedo, wherever they
-// are, but for outliers. And beside each other, pixels differ by paint where
-// they differ sharply (Retinex), by shading where they do not: shading drifts
-// with the normals, paint has edges. So a is the least squares' solution of
-// sharp steps (a print's, of the same chroma too), drawn over `reach` to what
-// its colour has. Where the gloss is nearly all of the image, or nothing was
-// observed, paint is filled in from around.
+// Log albedo a [points * 3], I = e^a matte + gloss. Chroma is the image's, or
+// what steps in it. Luminance has two cues. Points of like colour have like
+// albedo, wherever they are, but for outliers. And beside each other, pixels
+// differ by paint where they differ sharply (Retinex), by shading where they do
+// not: shading drifts with the normals, paint has edges. So a is the least
+// squares' solution of sharp steps (a print's, of the same chroma too), drawn
+// over `reach` to what its colour has. Where the gloss is nearly all of the
+// image, or nothing was observed, paint is filled in from around.
 std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
                               const Observations& observed,
                               const std::vector<NeighbourPair>& neighbours,

@@ -15,6 +15,8 @@ namespace ibrdf {
 namespace {
 
 constexpr int kMostHighlights = 3;
+// Of ShadingLight::strength: what is brighter makes the light of one colour.
+constexpr double kStrongLamp = 5.0;
 // Bins of like normals: of the disc of visible ones, and of points in each.
 constexpr int kBinsAcross = 24;
 constexpr size_t kFewestOfBin = 8;
@@ -141,6 +143,9 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
   FirstPaint out;
   out.light = FindShadingLight(points, observed);
   const ShadingLight light = out.light.value_or(ShadingLight());
+  out.natural_light = light.strength < kStrongLamp;
+  AlbedoFitOptions options;
+  options.chroma_drifts = out.natural_light;
   UnpaintedRadiance unpainted;
   unpainted.gloss.assign(3 * points.size(), 0.0);
   for (const ShadingPoint& point : points) {
@@ -151,7 +156,7 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
   }
   out.log_albedo =
       FitAlbedo(unpainted, WithoutHighlights(points, observed, unpainted.matte),
-                neighbours, AlbedoFitOptions());
+                neighbours, options);
   Eigen::Map<Eigen::Matrix3Xd> a(out.log_albedo.data(), 3,
                                  static_cast<Eigen::Index>(points.size()));
   const Eigen::Vector3d mean = a.rowwise().mean();

@@ -15,6 +15,9 @@ struct FirstPaint {
   std::optional<ShadingLight> light;
   // Log albedo [points * 3], its mean over the points 0 in each channel.
   std::vector<double> log_albedo;
+  // Whether no lamp outshines the room: the light's colour then varies with its
+  // direction, and colour that drifts over the object is the light's.
+  bool natural_light = true;
   // Of log luminance at like normals, between the image and this paint under
   // this light: texture, shadows, what neither is.
   double deviation = 0.0;

@@ -12,6 +12,7 @@
 #include "ibrdf/solvers/estimation/marginal_search.h"
 #include "ibrdf/solvers/estimation/pixel_renders.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
+#include "ibrdf/solvers/paint/first_paint.h"
 #include "ibrdf/solvers/solve/summary.h"
 
 namespace ibrdf {
@@ -76,17 +77,22 @@ InverseProblem WithoutPaint(const InverseProblem& problem,
   return out;
 }
 
+// What all turns know of the paint.
+struct PaintedPixels {
+  std::vector<NeighbourPair> neighbours;
+  AlbedoFitOptions options;
+};
+
 // The paint under a map, and the light and the rest given that paint.
 StatusOr<Solution> TakeTurn(const SolveSetup& setup,
                             const ReflectanceEstimate& found,
                             const Unpainted& reflectance,
                             const std::vector<float>& map, MapSize size,
-                            SolveContext* context) {
+                            const PaintedPixels& paint, SolveContext* context) {
   const std::vector<ShadingPoint>& points = setup.pixels.points;
   const UnpaintedRadiance unpainted = Render(setup, reflectance, map, size);
   const std::vector<double> log_albedo = FitAlbedo(
-      unpainted, setup.pixels.observed,
-      NeighboursOf(points, setup.problem->image.width), AlbedoFitOptions());
+      unpainted, setup.pixels.observed, paint.neighbours, paint.options);
   const std::vector<double> gain = PaintGain(unpainted, log_albedo);
   const InverseProblem without = WithoutPaint(*setup.problem, gain, points);
   const StatusOr<SolveSetup> of_light = SetUp(without);
@@ -108,8 +114,14 @@ StatusOr<Solution> TakeTurn(const SolveSetup& setup,
 
 StatusOr<Solution> SolvePainted(const SolveSetup& setup,
                                 SolveContext* context) {
+  PaintedPixels paint;
+  paint.neighbours =
+      NeighboursOf(setup.pixels.points, setup.problem->image.width);
+  const FirstPaint first = FindFirstPaint(
+      setup.pixels.points, setup.pixels.observed, paint.neighbours);
+  paint.options.chroma_drifts = first.natural_light;
   const StatusOr<ReflectanceEstimate> found =
-      EstimateReflectance(setup, context);
+      EstimateReflectance(setup, context, &first);
   if (!found.ok() && found.status().code() != StatusCode::kNoImprovement) {
     return found.status();
   }
@@ -121,16 +133,17 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
   std::vector<float> map;
   found->light.mode.Exp(&map);
   double began = context->Elapsed();
-  StatusOr<Solution> solution = TakeTurn(setup, *found, reflectance, map,
-                                         found->light.mode.size(), context);
+  StatusOr<Solution> solution =
+      TakeTurn(setup, *found, reflectance, map, found->light.mode.size(), paint,
+               context);
   for (int turn = 1; turn < kTurns && solution.ok(); ++turn) {
     // A turn that is cut short would undo the last.
     const double seconds = context->Elapsed() - began;
     if (context->Remaining() < kTurnMargin * seconds) break;
     began = context->Elapsed();
     const MapSize size = {solution->map.width, solution->map.height};
-    StatusOr<Solution> next =
-        TakeTurn(setup, *found, reflectance, solution->map.rgb, size, context);
+    StatusOr<Solution> next = TakeTurn(setup, *found, reflectance,
+                                       solution->map.rgb, size, paint, context);
     if (!next.ok()) return next;
     if (next->misfit < solution->misfit) solution = std::move(next);
   }
