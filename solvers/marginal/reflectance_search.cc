@@ -58,9 +58,9 @@ std::vector<Eigen::Vector3d> DirectionalLights(
   for (const Eigen::Vector3d& found : FindDirectionalLights(
            points, observed.radiance, options.most_directional_lights,
            ClippedPoints(observed))) {
-    const bool known =
-        std::any_of(lights.begin(), lights.end(),
-                    [&](const auto& d) { return d.dot(found) >= reach; });
+    const bool known = std::any_of(
+        options.directional_lights.begin(), options.directional_lights.end(),
+        [&](const auto& d) { return d.dot(found) >= reach; });
     if (!known) lights.push_back(found);
   }
   if (static_cast<int>(lights.size()) > options.most_directional_lights) {
