@@ -141,6 +141,7 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
                           const Observations& observed,
                           const std::vector<NeighbourPair>& neighbours) {
   FirstPaint out;
+  if (points.empty()) return out;
   out.light = FindShadingLight(points, observed);
   const ShadingLight light = out.light.value_or(ShadingLight());
   out.natural_light = light.strength < kStrongLamp;

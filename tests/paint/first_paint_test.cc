@@ -78,6 +78,7 @@ TEST(FirstPaint, OfOnePixelIsFinite) {
   ball.radiance.resize(3);
   for (const double a : Find(ball).log_albedo) EXPECT_NEAR(a, 0.0, 1e-9);
   EXPECT_EQ(Find(ball).deviation, 0.0);
+  EXPECT_TRUE(Find(PaintedBall()).log_albedo.empty());
 }
 
 }  // namespace
