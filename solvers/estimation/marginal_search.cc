@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ibrdf/base/eigen_vectors.h"
+#include "ibrdf/base/median.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/brdf/table_lobes.h"
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
@@ -33,7 +34,7 @@ constexpr double kDarkest = 1e-8;
 // Where nearly all of a point's light comes from the object the map's says
 // little of it.
 constexpr double kMostBounceGain = 10.0;
-// Of a painted object, in the priors' own: the deviations of what
+// A painted object has these, in the priors' own: the deviations of what
 // FindFirstPaint leaves of paint, and the variance of the light's chroma.
 constexpr double kLeftOfPaint = 0.3;
 constexpr double kPaintedLightChroma = 0.1;
@@ -157,9 +158,7 @@ Observations SearchedPixels(const SolveSetup& setup) {
     if (std::isfinite(e) && e > 0.0) lit.push_back(e);
   }
   if (lit.empty()) return observed;
-  const auto middle = lit.begin() + lit.size() / 2;
-  std::nth_element(lit.begin(), middle, lit.end());
-  const double darkest = kDarkest * *middle;
+  const double darkest = kDarkest * UpperMedian(std::move(lit));
   for (double& e : radiance) {
     if (e < darkest) e = 0.0;
   }

@@ -59,7 +59,7 @@ Eigen::VectorXd MeanPaint(const std::vector<ShadingPoint>& points,
          ToEigen(BinByNormal(points, without, resolution.bins).log_radiance);
 }
 
-// Of values [3 * bins] or none, those of the bins to keep.
+// Those of the values [3 * bins], or of none, whose bins are to be kept.
 Eigen::VectorXd KeepRows(const Eigen::VectorXd& values,
                          const std::vector<bool>& keep) {
   std::vector<double> kept;

@@ -129,7 +129,7 @@ ApparentPaint ApparentPaintOf(const UnpaintedRadiance& unpainted,
 // The luminance of points of like chroma, outliers aside.
 std::vector<double> LuminanceOfColour(const ApparentPaint& apparent,
                                       const AlbedoFitOptions& options) {
-  const MeanByColour mean(apparent.chroma, options.prior.colour_length);
+  const MeanByColour mean(apparent.chroma, options.colour_length);
   std::vector<double> weights = apparent.seen, of_colour;
   for (int k = 0; k < options.iterations; ++k) {
     of_colour = mean.Of(apparent.luminance, weights);
@@ -188,7 +188,7 @@ class SteppedField {
   Eigen::VectorXd weights_;
 };
 
-// Of each pair: how much of its step is paint's, 0 to 1, smoothly from one to
+// How much of a pair's step is paint's, 0 to 1, smoothly from one to
 // the other about the edges of the options.
 double PaintShare(double step, double chroma_step, double turn,
                   const AlbedoFitOptions& options) {

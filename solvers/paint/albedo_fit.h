@@ -15,7 +15,7 @@ struct UnpaintedRadiance {
 };
 
 struct AlbedoFitOptions {
-  AlbedoPrior prior;
+  double colour_length = AlbedoPrior().colour_length;
   // Deviation of log radiance between image and render that is not paint's: of
   // the reflectance, the light and the normals.
   double shading_std = 0.15;

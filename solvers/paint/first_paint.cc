@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "ibrdf/base/median.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/solvers/observation/normal_bins.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
@@ -15,27 +16,19 @@ namespace ibrdf {
 namespace {
 
 constexpr int kMostHighlights = 3;
-// Of ShadingLight::strength: what is brighter makes the light of one colour.
+// A lamp of this ShadingLight::strength makes the light of one colour.
 constexpr double kStrongLamp = 5.0;
 // Bins of like normals: of the disc of visible ones, and of points in each.
 constexpr int kBinsAcross = 24;
 constexpr size_t kFewestOfBin = 8;
 constexpr double kLeastCosine = 0.2;
-// Of a normal distribution, over the median of its absolute values.
-constexpr double kDeviationOfMedian = 1.4826;
 // About a highlight's middle, of mirrored directions: where its light shows.
 constexpr double kHighlight = 15.0 * kDegree, kRim = 25.0 * kDegree;
 // A highlight is by so much brighter than the median of its rim and than the
 // object's brightest paint, and no larger share of the object.
 constexpr double kContrast = 1.3, kMostOfObject = 0.03;
-// Of the object's points, so many are no brighter than its brightest paint.
+// So many of the object's points are no brighter than its brightest paint.
 constexpr double kBrightest = 0.95;
-
-double Median(std::vector<double>* values) {
-  const auto middle = values->begin() + values->size() / 2;
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
-}
 
 double SumAt(const std::vector<double>& radiance, size_t point) {
   return radiance[3 * point] + radiance[3 * point + 1] +
@@ -77,7 +70,8 @@ std::vector<size_t> HighlightOf(const Eigen::Vector3d& light,
     }
   }
   if (rim.empty()) return {};
-  const double bright = kContrast * std::max(Median(&rim), brightest);
+  const double bright =
+      kContrast * std::max(UpperMedian(std::move(rim)), brightest);
   near.erase(
       std::remove_if(near.begin(), near.end(),
                      [&](size_t i) { return SumAt(unshaded, i) <= bright; }),
@@ -106,8 +100,8 @@ Observations WithoutHighlights(const std::vector<ShadingPoint>& points,
   return out.num_valid > 0 ? out : observed;
 }
 
-// Of log luminance between image and painted matte object, about the median of
-// each bin of normals: what no light explains. A deviation from the median of
+// What no light explains: log luminance between image and painted matte object
+// about the median of each bin of normals. A deviation from the median of
 // absolutes.
 double DeviationAtLikeNormals(const std::vector<ShadingPoint>& points,
                               const Observations& observed,
@@ -127,12 +121,14 @@ double DeviationAtLikeNormals(const std::vector<ShadingPoint>& points,
     bins[{bin.x(), bin.y()}].push_back(left / 3.0);
   }
   std::vector<double> deviations;
-  for (auto& [bin, left] : bins) {
+  for (const auto& [bin, left] : bins) {
     if (left.size() < kFewestOfBin) continue;
-    const double middle = Median(&left);
+    const double middle = UpperMedian(left);
     for (const double l : left) deviations.push_back(std::abs(l - middle));
   }
-  return deviations.empty() ? 0.0 : kDeviationOfMedian * Median(&deviations);
+  return deviations.empty()
+             ? 0.0
+             : kDeviationOverMad * UpperMedian(std::move(deviations));
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ struct FirstPaint {
   // Whether no lamp outshines the room: the light's colour then varies with its
   // direction, and colour that drifts over the object is the light's.
   bool natural_light = true;
-  // Of log luminance at like normals, between the image and this paint under
-  // this light: texture, shadows, what neither is.
+  // How far log luminance deviates at like normals between the image and this
+  // paint under this light: texture, shadows, what neither is.
   double deviation = 0.0;
 };
 

@@ -17,8 +17,8 @@ constexpr double kMinCosine = 0.2;
 // shade.
 constexpr double kLikeColour = 0.06, kLikePaint = 0.15;
 constexpr size_t kPairs = 5000, kFewestPairs = 200, kTries = 400000;
-// Of log luminance and log chroma: what shadows, bounces and a paint's own
-// variation make is beyond it.
+// What shadows, bounces and a paint's own variation make of log luminance and
+// log chroma is beyond these.
 constexpr double kRobustLuminance = 0.15, kRobustChroma = 0.05;
 // The lamp must explain this share of what it costs to have none.
 constexpr double kLeastExplained = 0.1;

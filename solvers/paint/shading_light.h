@@ -19,8 +19,9 @@ struct ShadingLight {
   Eigen::Array2d chroma = Eigen::Array2d::Zero();
 };
 
-// Of a surface under that light, relative to what lights all surfaces alike:
-// strength exp(chroma) max(n . direction, 0) + 1, the lamp setting softly.
+// What a surface gets of that light, relative to what lights all surfaces
+// alike: strength exp(chroma) max(n . direction, 0) + 1, the lamp setting
+// softly.
 Eigen::Array3d Irradiance(const ShadingLight& light,
                           const Eigen::Vector3d& normal);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/base/median.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/solvers/photograph_check/like_normals.h"
 
@@ -23,19 +24,13 @@ constexpr double kBounced = 0.25;
 // pixel over that of a difference of two.
 const double kDeviation = std::sqrt(kPi / 2.0) / std::sqrt(2.0);
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Eigen::Vector2d MedianColour(const std::vector<NormalSample>& samples) {
   std::vector<double> red, blue;
   for (const NormalSample& sample : samples) {
     red.push_back(sample.LogColour().x());
     blue.push_back(sample.LogColour().y());
   }
-  return {Median(std::move(red)), Median(std::move(blue))};
+  return {UpperMedian(std::move(red)), UpperMedian(std::move(blue))};
 }
 
 // Mean |difference| of pairs across and along a direction.

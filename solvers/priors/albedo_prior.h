@@ -28,8 +28,8 @@ struct PaintPrior {
   AlbedoPrior albedo;
   // Its mean, log albedo [points * 3] of all points of the image; empty: 0.
   std::vector<double> mean;
-  // Of the light that a painted object reflects: paint hides where less than
-  // this share is of the part that it scales.
+  // Paint hides where less than this share of the light that the object
+  // reflects is of the part that paint scales.
   double least_matte_share = 0.5;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "ibrdf/base/median.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
@@ -115,9 +116,7 @@ std::vector<Eigen::Vector3d> FindDirectionalLights(
       if (cosine < rim) around.push_back(luminance[j]);
     }
     if (!top || around.empty()) continue;
-    const auto middle = around.begin() + around.size() / 2;
-    std::nth_element(around.begin(), middle, around.end());
-    const double background = *middle;
+    const double background = UpperMedian(std::move(around));
     if (luminance[i] < kContrast * background) continue;
     const double half = 0.5 * (luminance[i] + background);
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/base/median.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/transport/quadrature.h"
@@ -22,18 +23,10 @@ constexpr double kLeftOut = 0.1 * kNoLight;
 constexpr size_t kProbes = 256;
 // Stray light is measured from so many points at least.
 constexpr size_t kLeastPoints = 8;
-constexpr double kNormalSpread = 1.4826;  // deviation over the MAD
 // Stray light differs over the object at least by this share.
 constexpr double kLeastDeviation = 0.1;
 constexpr double kLeastOfOthers = 0.01;  // of the other channels' deviation
 constexpr double kFloorSpreads = 3.0;
-
-double Median(std::vector<double> values) {
-  const auto middle =
-      values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The texels of a map that light anything, the strongest first.
 class Lights {
@@ -151,9 +144,9 @@ StrayLight MeasureStrayLight(const Image& image,
       }
     }
     if (values.size() < kLeastPoints) return {};
-    stray.ambient[c] = std::max(Median(values), 0.0);
+    stray.ambient[c] = std::max(UpperMedian(values), 0.0);
     for (double& v : values) v = std::abs(v - stray.ambient[c]);
-    stray.spread[c] = kNormalSpread * Median(std::move(values));
+    stray.spread[c] = kDeviationOverMad * UpperMedian(std::move(values));
   }
   if (!(stray.ambient > 0.0).any()) return {};
   stray.deviation = stray.spread.max(kLeastDeviation * stray.ambient);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/base/median.h"
 #include "ibrdf/io/photo_file.h"
 
 namespace ibrdf {
@@ -58,10 +59,7 @@ Status CheckLengths(const GeometrySpec& geometry, const Image& normals,
     if (IsSet(v)) lengths.push_back(v.stableNorm());
   }
   if (lengths.empty()) return OkStatus();
-  const auto middle =
-      lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  const double median = *middle;
+  const double median = UpperMedian(lengths);
   const auto far_off = static_cast<double>(
       std::count_if(lengths.begin(), lengths.end(), [&](double length) {
         return length > kFarFactor * median || kFarFactor * length < median;

@@ -47,6 +47,28 @@ StatusOr<Image> ReadAlbedo(const std::string& path) {
   return std::move(photo->image);
 }
 
+struct MaskedPaths {
+  const std::string &estimate, &reference, &mask;  // mask: may be empty
+};
+
+// Reads and compares what a mask, if any, lets take part.
+template <typename Metrics>
+StatusOr<Metrics> CompareMasked(
+    const MaskedPaths& paths, StatusOr<Image> (*read)(const std::string&),
+    StatusOr<Metrics> (*compare)(const Image&, const Image&, const Mask&)) {
+  const StatusOr<Image> a = read(paths.estimate);
+  if (!a.ok()) return a.status();
+  const StatusOr<Image> b = read(paths.reference);
+  if (!b.ok()) return b.status();
+  const StatusOr<Mask> inside = ReadOptionalMask(paths.mask);
+  if (!inside.ok()) return inside.status();
+  const StatusOr<Metrics> metrics = compare(*a, *b, *inside);
+  if (metrics.ok()) return metrics;
+  return NameFile(metrics.status(), {{"estimate", paths.estimate},
+                                     {"reference", paths.reference},
+                                     {"mask", paths.mask}});
+}
+
 }  // namespace
 
 StatusOr<NamedMetrics> EvaluateBrdfFiles(const std::string& estimate,
@@ -100,18 +122,9 @@ StatusOr<IlluminationComparison> EvaluateIlluminationFiles(
 StatusOr<NamedMetrics> EvaluateImageFiles(const std::string& estimate,
                                           const std::string& reference,
                                           const std::string& mask) {
-  const StatusOr<Image> a = ReadImage(estimate);
-  if (!a.ok()) return a.status();
-  const StatusOr<Image> b = ReadImage(reference);
-  if (!b.ok()) return b.status();
-  const StatusOr<Mask> inside = ReadOptionalMask(mask);
-  if (!inside.ok()) return inside.status();
-  const StatusOr<ImageMetrics> metrics = CompareImages(*a, *b, *inside);
-  if (!metrics.ok()) {
-    return NameFile(
-        metrics.status(),
-        {{"estimate", estimate}, {"reference", reference}, {"mask", mask}});
-  }
+  const StatusOr<ImageMetrics> metrics = CompareMasked<ImageMetrics>(
+      {estimate, reference, mask}, &ReadImage, &CompareImages);
+  if (!metrics.ok()) return metrics.status();
   return NamedMetrics{{"image_log_rmse", metrics->log_rmse},
                       {"image_mean_abs_log", metrics->mean_abs_log},
                       {"psnr", metrics->psnr},
@@ -121,18 +134,9 @@ StatusOr<NamedMetrics> EvaluateImageFiles(const std::string& estimate,
 StatusOr<NamedMetrics> EvaluateAlbedoFiles(const std::string& estimate,
                                            const std::string& reference,
                                            const std::string& mask) {
-  const StatusOr<Image> a = ReadAlbedo(estimate);
-  if (!a.ok()) return a.status();
-  const StatusOr<Image> b = ReadAlbedo(reference);
-  if (!b.ok()) return b.status();
-  const StatusOr<Mask> inside = ReadOptionalMask(mask);
-  if (!inside.ok()) return inside.status();
-  const StatusOr<AlbedoMapMetrics> metrics = CompareAlbedoMaps(*a, *b, *inside);
-  if (!metrics.ok()) {
-    return NameFile(
-        metrics.status(),
-        {{"estimate", estimate}, {"reference", reference}, {"mask", mask}});
-  }
+  const StatusOr<AlbedoMapMetrics> metrics = CompareMasked<AlbedoMapMetrics>(
+      {estimate, reference, mask}, &ReadAlbedo, &CompareAlbedoMaps);
+  if (!metrics.ok()) return metrics.status();
   return NamedMetrics{{"albedo_log_rmse", metrics->log_rmse},
                       {"albedo_log_rmse_aligned", metrics->log_rmse_aligned},
                       {"albedo_psnr", metrics->psnr},

@@ -25,7 +25,7 @@ struct ResultPreviewInput {
   // which did (empty: as `mask`).
   Image residual;
   Mask residual_mask;
-  // Of a painted object, of their size: what Solution has; empty: unpainted.
+  // What Solution has of a painted object, of their size; empty: unpainted.
   Image albedo, gloss;
   Image illumination;               // in the library's frame
   bool illumination_known = false;  // nothing to compare with a reference

@@ -1,16 +1,14 @@
 #include "ibrdf/brdf/matte_split.h"
 
 #include <algorithm>
-#include <iterator>
-#include <map>
 #include <utility>
 
+#include "ibrdf/base/median.h"
 #include "ibrdf/base/pi.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kDegree = kPi / 180.0;
 constexpr double kLeastThetaH = 40.0 * kDegree, kMostThetaH = 75.0 * kDegree,
                  kMostThetaD = 60.0 * kDegree, kMostColumn = 45.0 * kDegree;
 
@@ -30,10 +28,33 @@ std::vector<int> LevelNodes(const BrdfGridShape& shape) {
   return nodes;
 }
 
-float Median(std::vector<float>* values) {
-  const auto middle = values->begin() + values->size() / 2;
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
+// The cap of each theta_d at a phi_d [d]: the median over the half vectors far
+// from the normal, or the level where that is more. Beyond kMostColumn, and
+// where a column has no such node, it is that of the nearest column below, else
+// of the first that has one; the level where none has.
+std::vector<float> Caps(const BrdfGridShape& shape, const float* field, int ip,
+                        float level) {
+  std::vector<float> caps(shape.d, level);
+  int first = shape.d;
+  for (int id = 0; id < shape.d; ++id) {
+    std::vector<float> far;
+    for (int ih = 0; ih < shape.h; ++ih) {
+      const int node = shape.Node(ih, id, ip);
+      const Eigen::Vector3d angles = shape.NodeAngles(node);
+      if (angles[1] <= kMostColumn && angles[0] >= kLeastThetaH &&
+          angles[0] <= kMostThetaH) {
+        far.push_back(field[node]);
+      }
+    }
+    if (!far.empty()) {
+      caps[id] = std::max(level, UpperMedian(std::move(far)));
+      first = std::min(first, id);
+    } else if (id > first) {
+      caps[id] = caps[id - 1];
+    }
+  }
+  if (first < shape.d) std::fill_n(caps.begin(), first, caps[first]);
+  return caps;
 }
 
 }  // namespace
@@ -41,31 +62,16 @@ float Median(std::vector<float>* values) {
 std::vector<float> MattePart(const BrdfGridShape& shape, const float* field) {
   std::vector<float> values;
   for (const int node : LevelNodes(shape)) values.push_back(field[node]);
-  const float level = Median(&values);
-  // By theta_d and phi_d, the column of a node: the first column has theta_d 0.
-  std::map<std::pair<double, double>, std::vector<float>> columns;
-  for (int i = 0; i < shape.num_nodes(); ++i) {
-    const Eigen::Vector3d angles = shape.NodeAngles(i);
-    if (angles[0] >= kLeastThetaH && angles[0] <= kMostThetaH) {
-      columns[{angles[1], angles[2]}].push_back(field[i]);
-    }
-  }
-  std::map<double, std::map<double, float>> caps;  // by phi_d, then theta_d
-  for (auto& [column, of_column] : columns) {
-    if (column.first > kMostColumn) continue;
-    caps[column.second][column.first] = std::max(level, Median(&of_column));
-  }
+  const float level = UpperMedian(std::move(values));
   std::vector<float> matte(field, field + shape.num_nodes());
-  for (int i = 0; i < shape.num_nodes(); ++i) {
-    const Eigen::Vector3d angles = shape.NodeAngles(i);
-    const auto of_phi = caps.find(angles[2]);
-    float cap = level;
-    if (of_phi != caps.end()) {
-      const auto next = of_phi->second.upper_bound(angles[1]);
-      cap = next == of_phi->second.begin() ? next->second
-                                           : std::prev(next)->second;
+  for (int ip = 0; ip < shape.p; ++ip) {
+    const std::vector<float> caps = Caps(shape, field, ip, level);
+    for (int id = 0; id < shape.d; ++id) {
+      for (int ih = 0; ih < shape.h; ++ih) {
+        float& f = matte[shape.Node(ih, id, ip)];
+        f = std::min(f, caps[id]);
+      }
     }
-    matte[i] = std::min(matte[i], cap);
   }
   return matte;
 }

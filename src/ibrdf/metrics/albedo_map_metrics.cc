@@ -64,13 +64,7 @@ StatusOr<AlbedoMapMetrics> CompareAlbedoMaps(const Image& estimate,
                                              const Image& reference,
                                              const Mask& mask) {
   IBRDF_RETURN_IF_ERROR(CheckSameSize(estimate, reference));
-  if (!mask.empty() &&
-      (mask.width != reference.width || mask.height != reference.height)) {
-    return InvalidInput(
-        "mask: size",
-        "expected " + SizeName(reference.width, reference.height) +
-            " as the reference, found " + SizeName(mask.width, mask.height));
-  }
+  IBRDF_RETURN_IF_ERROR(CheckMaskSize(mask, reference));
   const Mask compared = PixelsOfBoth(estimate, reference, mask);
   AlbedoMapMetrics metrics;
   Eigen::Array3d mean = Eigen::Array3d::Zero(), square = mean;

@@ -27,4 +27,16 @@ inline Status CheckSameSize(const Image& estimate, const Image& reference) {
   return OkStatus();
 }
 
+// An empty mask fits any image.
+inline Status CheckMaskSize(const Mask& mask, const Image& reference) {
+  if (mask.empty() ||
+      (mask.width == reference.width && mask.height == reference.height)) {
+    return OkStatus();
+  }
+  return InvalidInput(
+      "mask: size", "expected " + SizeName(reference.width, reference.height) +
+                        " as the reference, found " +
+                        SizeName(mask.width, mask.height));
+}
+
 }  // namespace ibrdf

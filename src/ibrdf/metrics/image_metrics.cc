@@ -20,13 +20,7 @@ StatusOr<std::vector<double>> Compared(const Image& estimate,
                                        const Image& reference,
                                        const Mask& mask) {
   IBRDF_RETURN_IF_ERROR(CheckSameSize(estimate, reference));
-  if (!mask.empty() &&
-      (mask.width != reference.width || mask.height != reference.height)) {
-    return InvalidInput(
-        "mask: size",
-        "expected " + SizeName(reference.width, reference.height) +
-            " as the reference, found " + SizeName(mask.width, mask.height));
-  }
+  IBRDF_RETURN_IF_ERROR(CheckMaskSize(mask, reference));
   std::vector<double> compared(reference.num_pixels(), 0.0);
   const auto finite = [](const Image& image, size_t i) {
     return std::isfinite(image.rgb[3 * i]) &&
