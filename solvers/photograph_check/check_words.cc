@@ -82,7 +82,8 @@ std::string ColourVerdict(const ColourSpread& colours) {
   const std::string share = Number(100.0 * colours.share) + " % of the pixels";
   if (!colours.observable) {
     return "cannot be told: " + share +
-           " have a like normal elsewhere on the object";
+           " have a like normal elsewhere on the object. If it is painted, a "
+           "joint problem needs reflectance.variation: albedo";
   }
   return (SaysSeveralMaterials(colours) ? "several materials"
                                         : "may be one material") +
