@@ -433,7 +433,7 @@ Keys ReflectanceKeys() {
                    {"albedo",
                     "One gloss over paint: the albedo of what is matte is "
                     "found at every pixel, in `albedo.exr`."}})
-          .UsedBy(kUsedByJoint),
+          .UsedBy(kUnknownReflectance),
       Row("reflectance.known",
           "The known BRDF: a MERL table, or one of `lambertian` and "
           "`cook_torrance`.")

@@ -131,6 +131,22 @@ double DeviationAtLikeNormals(const std::vector<ShadingPoint>& points,
              : kDeviationOverMad * UpperMedian(std::move(deviations));
 }
 
+// FitAlbedo of a matte object of that shading, its mean 0 in each channel.
+std::vector<double> PaintOf(const std::vector<ShadingPoint>& points,
+                            const Observations& observed,
+                            const std::vector<NeighbourPair>& neighbours,
+                            const UnpaintedRadiance& unpainted,
+                            const AlbedoFitOptions& options) {
+  std::vector<double> log_albedo =
+      FitAlbedo(unpainted, WithoutHighlights(points, observed, unpainted.matte),
+                neighbours, options);
+  Eigen::Map<Eigen::Matrix3Xd> a(log_albedo.data(), 3,
+                                 static_cast<Eigen::Index>(points.size()));
+  const Eigen::Vector3d mean = a.rowwise().mean();
+  a.colwise() -= mean;
+  return log_albedo;
+}
+
 }  // namespace
 
 FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
@@ -151,16 +167,19 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
     unpainted.matte.insert(unpainted.matte.end(), irradiance.begin(),
                            irradiance.end());
   }
-  out.log_albedo =
-      FitAlbedo(unpainted, WithoutHighlights(points, observed, unpainted.matte),
-                neighbours, options);
-  Eigen::Map<Eigen::Matrix3Xd> a(out.log_albedo.data(), 3,
-                                 static_cast<Eigen::Index>(points.size()));
-  const Eigen::Vector3d mean = a.rowwise().mean();
-  a.colwise() -= mean;
+  out.log_albedo = PaintOf(points, observed, neighbours, unpainted, options);
   out.deviation =
       DeviationAtLikeNormals(points, observed, unpainted, out.log_albedo);
   return out;
+}
+
+std::vector<double> FirstPaintUnder(
+    const std::vector<ShadingPoint>& points, const Observations& observed,
+    const std::vector<NeighbourPair>& neighbours, std::vector<double> shading) {
+  UnpaintedRadiance unpainted;
+  unpainted.matte = std::move(shading);
+  unpainted.gloss.assign(3 * points.size(), 0.0);
+  return PaintOf(points, observed, neighbours, unpainted, AlbedoFitOptions());
 }
 
 }  // namespace ibrdf

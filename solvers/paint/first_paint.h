@@ -30,4 +30,10 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
                           const Observations& observed,
                           const std::vector<NeighbourPair>& neighbours);
 
+// The log albedo alone, [points * 3] of mean 0, where the shading is known:
+// the radiance [points * 3] of a white matte object.
+std::vector<double> FirstPaintUnder(
+    const std::vector<ShadingPoint>& points, const Observations& observed,
+    const std::vector<NeighbourPair>& neighbours, std::vector<double> shading);
+
 }  // namespace ibrdf

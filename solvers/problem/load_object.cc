@@ -116,7 +116,9 @@ StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
 
 ReflectanceVariation ChosenVariation(const Problem& problem,
                                      const PhotographCheck& check) {
-  if (problem.kind != ProblemKind::kJoint) return ReflectanceVariation::kNone;
+  if (problem.kind == ProblemKind::kIllumination) {
+    return ReflectanceVariation::kNone;
+  }
   if (problem.reflectance.variation != ReflectanceVariation::kAuto) {
     return problem.reflectance.variation;
   }

@@ -14,6 +14,7 @@
 #include "ibrdf/solvers/solve/curve_search.h"
 #include "ibrdf/solvers/solve/exposure.h"
 #include "ibrdf/solvers/solve/painted.h"
+#include "ibrdf/solvers/solve/painted_known_light.h"
 #include "ibrdf/solvers/solve/summary.h"
 
 namespace ibrdf {
@@ -59,7 +60,9 @@ StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
   IBRDF_RETURN_IF_ERROR(CheckMethod(*setup));
   context->Reserve(PredictSummarySeconds(*setup, *context));
   if (problem.variation == ReflectanceVariation::kAlbedo) {
-    return SolvePainted(*setup, context);
+    return setup->light_unknown()
+               ? SolvePainted(*setup, context)
+               : SolvePaintedUnderKnownLight(*setup, context);
   }
   StatusOr<Estimate> estimate = EstimateUnknowns(*setup, context);
   if (!estimate.ok()) return estimate.status();

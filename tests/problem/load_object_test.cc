@@ -99,7 +99,7 @@ TEST_F(LoadObjectTest, CountsClippedCodesAndSaysWhichCurve) {
               *check.overlap, 1e-12);
 }
 
-// The look decides only what nobody said, and of what a joint problem can use.
+// The look decides only what nobody said, and of what is unknown.
 TEST(ChosenVariation, IsWhatIsSaidOrSeen) {
   PhotographCheck plain, painted;
   painted.colours.observable = true;
@@ -116,6 +116,8 @@ TEST(ChosenVariation, IsWhatIsSaidOrSeen) {
   problem.reflectance.variation = kNone;
   EXPECT_EQ(kNone, ChosenVariation(problem, painted));
   problem.reflectance.variation = kAlbedo;
+  EXPECT_EQ(kAlbedo, ChosenVariation(problem, plain));
+  problem.kind = ProblemKind::kReflectance;
   EXPECT_EQ(kAlbedo, ChosenVariation(problem, plain));
   problem.kind = ProblemKind::kIllumination;
   EXPECT_EQ(kNone, ChosenVariation(problem, painted));

@@ -1,0 +1,80 @@
+#include "ibrdf/solvers/solve/unpainted_object.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ibrdf/brdf/matte_split.h"
+#include "ibrdf/metrics/albedo.h"
+#include "ibrdf/solvers/estimation/pixel_renders.h"
+
+namespace ibrdf {
+namespace {
+
+// What is matte needs few.
+constexpr AlbedoOptions kAlbedoNodes = {24, 32};
+
+}  // namespace
+
+UnpaintedReflectance UnpaintedOf(const LobeModel& lobes,
+                                 const double* parameters) {
+  UnpaintedReflectance out;
+  out.whole = lobes.Grid(parameters);
+  out.matte = lobes.Combine(parameters, MatteShapes(lobes, parameters), 1);
+  out.albedo =
+      FurnaceRules(kAlbedoNodes)
+          .Measure(BatchOf([&](double theta_h, double theta_d, double phi_d) {
+            return out.matte.Evaluate(theta_h, theta_d, phi_d);
+          }))
+          .hemispherical;
+  return out;
+}
+
+UnpaintedRadiance RenderUnpainted(const SolveSetup& setup,
+                                  const UnpaintedReflectance& reflectance,
+                                  const std::vector<float>& map, MapSize size) {
+  UnpaintedRadiance out;
+  RenderPixels(setup, size,
+               {{&reflectance.matte, map.data(), &out.matte},
+                {&reflectance.whole, map.data(), &out.gloss}});
+  for (size_t i = 0; i < out.gloss.size(); ++i) {
+    out.gloss[i] = std::max(out.gloss[i] - out.matte[i], 0.0);
+  }
+  return out;
+}
+
+void ScalePixels(const std::vector<double>& factors,
+                 const std::vector<ShadingPoint>& points, Image* image) {
+  for (size_t i = 0; i < points.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      float& v = image->rgb[size_t{3} * points[i].pixel + c];
+      v = static_cast<float>(v * factors[3 * i + c]);
+    }
+  }
+}
+
+InverseProblem WithoutPaint(const InverseProblem& problem,
+                            const std::vector<double>& gain,
+                            const std::vector<ShadingPoint>& points) {
+  std::vector<double> factors;
+  for (const double g : gain) factors.push_back(1.0 / g);
+  InverseProblem out = problem;
+  ScalePixels(factors, points, &out.image);
+  if (out.bounds) {
+    ScalePixels(factors, points, &out.bounds->low);
+    ScalePixels(factors, points, &out.bounds->high);
+  }
+  return out;
+}
+
+void SetPaint(const SolveSetup& setup, const UnpaintedReflectance& reflectance,
+              const UnpaintedRadiance& unpainted,
+              const std::vector<double>& log_albedo, Solution* solution) {
+  std::vector<double> albedo(log_albedo.size());
+  for (size_t i = 0; i < albedo.size(); ++i) {
+    albedo[i] = reflectance.albedo[i % 3] * std::exp(log_albedo[i]);
+  }
+  solution->albedo = AtPixels(setup, albedo);
+  solution->gloss = AtPixels(setup, unpainted.gloss);
+}
+
+}  // namespace ibrdf
