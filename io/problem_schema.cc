@@ -427,8 +427,8 @@ Keys ReflectanceKeys() {
           .Choice("auto",
                   {{"auto",
                     "`albedo` where pixels of like normals far apart differ in "
-                    "colour, else `none`. A convex object shows every normal "
-                    "once: its paint is not seen."},
+                    "colour, or where colour has sharp edges that paint "
+                    "explains better than mirrored light; else `none`."},
                    {"none", "One material."},
                    {"albedo",
                     "One gloss over paint: the albedo of what is matte is "

@@ -247,7 +247,8 @@ LightPosterior EstimateLightPosterior(const SolveSetup& setup,
   return found.ok() ? LightOf(*found, 0.0) : LightPosterior();
 }
 
-double CoarseEvidence(const SolveSetup& setup, SolveContext* context) {
+double CoarseEvidence(const SolveSetup& setup, SolveContext* context,
+                      const PaintPrior* paint) {
   const InverseProblem& problem = *setup.problem;
   ReflectanceSearchOptions o = SearchOptions(1.0, setup, context);
   o.coarse_stages = kEvidenceStages;
@@ -255,6 +256,7 @@ double CoarseEvidence(const SolveSetup& setup, SolveContext* context) {
   o.covariance = false;
   o.bounce_gain = {};
   o.report = {};
+  if (paint != nullptr) o.paint = *paint;
   const StatusOr<ReflectanceSearchResult> found =
       setup.lobes_unknown()
           ? SearchReflectance(FlowLobes::Factory(*problem.model, problem.lobes,

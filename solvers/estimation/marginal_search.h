@@ -25,8 +25,10 @@ LightPosterior EstimateLightPosterior(const SolveSetup& setup,
 
 // -log posterior of the best reflectance at the search's coarse resolution, the
 // light integrated out, nats; infinite where there is none. It compares images
-// of the same pixels.
-double CoarseEvidence(const SolveSetup& setup, SolveContext* context);
+// of the same pixels. paint: the albedo varies, as this says, and is integrated
+// out as well; null: it does not.
+double CoarseEvidence(const SolveSetup& setup, SolveContext* context,
+                      const PaintPrior* paint = nullptr);
 
 // The most central of the model's materials.
 ReflectanceEstimate MeanMaterial(const SolveSetup& setup);

@@ -63,9 +63,10 @@ struct Solution {
   MerlTable brdf;  // empty if known
   Image map;       // [H, W]; the known one if known
   Image render;    // radiance at the object's pixels, else 0
-  // Where the albedo varies: that of what is matte, at the object's pixels,
+  // Where the albedo varies, has_paint(): that of what is matte, at the object's pixels,
   // else 0; and the radiance that is gloss. Empty where it does not.
   Image albedo, gloss;
+  bool has_paint() const { return !albedo.empty(); }
   // Stray light beside the known map's, in `render` too; 0: none.
   Eigen::Array3d ambient = Eigen::Array3d::Zero();
   double scale = 0.0;  // b used at the end

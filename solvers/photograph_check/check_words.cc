@@ -78,12 +78,18 @@ std::string NormalsVerdict(const PhotographCheck& check) {
                        : names + ": not told apart";
 }
 
-std::string ColourVerdict(const ColourSpread& colours) {
+std::string ColourVerdict(const PhotographCheck& check) {
+  const ColourSpread& colours = check.colours;
   const std::string share = Number(100.0 * colours.share) + " % of the pixels";
   if (!colours.observable) {
     return "cannot be told: " + share +
-           " have a like normal elsewhere on the object. If it is painted, a "
-           "joint problem needs reflectance.variation: albedo";
+           " have a like normal elsewhere on the object. Sharp edges of colour "
+           "have " +
+           Two(check.colour_steps) + " of the object's size" +
+           (check.MayBePainted()
+                ? ": a solve compares paint with mirrored light"
+                : ", too little for paint; if it is painted, set "
+                  "reflectance.variation: albedo");
   }
   return (SaysSeveralMaterials(colours) ? "several materials"
                                         : "may be one material") +
@@ -93,11 +99,11 @@ std::string ColourVerdict(const ColourSpread& colours) {
 }
 
 std::vector<std::string> CheckLines(const PhotographCheck& check) {
-  std::vector<std::string> lines = {
-      "image         " + ImageLine(check), "object        " + ObjectLine(check),
-      "its pixels    " + CountsLine(check),
-      "like normals  " + SpreadLine(check),
-      "materials     " + ColourVerdict(check.colours)};
+  std::vector<std::string> lines = {"image         " + ImageLine(check),
+                                    "object        " + ObjectLine(check),
+                                    "its pixels    " + CountsLine(check),
+                                    "like normals  " + SpreadLine(check),
+                                    "materials     " + ColourVerdict(check)};
   if (!check.normals.empty()) {
     lines.push_back("normals       " + NormalsLine(check));
   }

@@ -21,6 +21,6 @@ std::vector<std::string> CheckWarnings(const PhotographCheck& check,
 std::string NormalsVerdict(const PhotographCheck& check);
 
 // "one material may be", "several materials", or why it cannot be told.
-std::string ColourVerdict(const ColourSpread& colours);
+std::string ColourVerdict(const PhotographCheck& check);
 
 }  // namespace ibrdf

@@ -65,6 +65,7 @@ PhotographCheck CheckPhotograph(const LookInput& input) {
   const std::vector<NormalSample> samples =
       SampleNormals(input.radiance, input.points);
   check.colours = SpreadOfColours(samples);
+  check.colour_steps = SharpColourSteps(samples, check.width, check.height);
   check.like_normals = SpreadOfLikeNormals(samples, input.points.size());
   if (!input.normal_map.empty()) {
     check.normals = RankNormalHypotheses(input.normal_map, input.mask);

@@ -8,6 +8,7 @@
 #include "ibrdf/image/image.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/photograph_check/colour_spread.h"
+#include "ibrdf/solvers/photograph_check/colour_steps.h"
 #include "ibrdf/solvers/photograph_check/like_normals.h"
 #include "ibrdf/solvers/photograph_check/normal_scores.h"
 #include "ibrdf/solvers/photograph_check/pixel_counts.h"
@@ -41,10 +42,16 @@ struct PhotographCheck {
   double radiance_1 = 0.0, radiance_99 = 0.0;  // percentiles of used values
   LikeNormalsSpread like_normals;
   ColourSpread colours;
+  double colour_steps = 0.0;  // SharpColourSteps
   // Of a normal map, the most plausible first; empty: another geometry.
   std::vector<NormalScore> normals;
 
   bool SeveralMaterials() const { return SaysSeveralMaterials(colours); }
+  // Where no two places have like normals, sharp changes of colour are all that
+  // tells of paint.
+  bool MayBePainted() const {
+    return !colours.observable && colour_steps >= kMayBePainted;
+  }
   // Null where there is no normal map.
   const NormalScore* AsGiven() const;
   // The first of the ranking where it is clearly better than what was given;

@@ -41,7 +41,8 @@ struct InverseProblem {
   std::shared_ptr<const NeuralBrdfModel> model;
   int lobes = 2;
   double prior_sigma = 0.5;
-  ReflectanceVariation variation = ReflectanceVariation::kNone;  // not kAuto
+  // kAuto: as the solve finds (IsProbablyPainted).
+  ReflectanceVariation variation = ReflectanceVariation::kNone;
   std::optional<BrdfGrid> known_brdf;
 
   // Size of the map; known: its radiance at that size.

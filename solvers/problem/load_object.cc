@@ -122,8 +122,9 @@ ReflectanceVariation ChosenVariation(const Problem& problem,
   if (problem.reflectance.variation != ReflectanceVariation::kAuto) {
     return problem.reflectance.variation;
   }
-  return check.SeveralMaterials() ? ReflectanceVariation::kAlbedo
-                                  : ReflectanceVariation::kNone;
+  if (check.SeveralMaterials()) return ReflectanceVariation::kAlbedo;
+  return check.MayBePainted() ? ReflectanceVariation::kAuto
+                              : ReflectanceVariation::kNone;
 }
 
 }  // namespace ibrdf

@@ -38,7 +38,8 @@ struct PhotographedObject {
   std::vector<std::string> warnings;  // sentences that name the file
 };
 
-// What reflectance.variation comes to, auto by the look: kNone or kAlbedo.
+// What reflectance.variation comes to, auto by the look: kNone or kAlbedo, or
+// kAuto where the solve is to decide.
 ReflectanceVariation ChosenVariation(const Problem& problem,
                                      const PhotographCheck& check);
 

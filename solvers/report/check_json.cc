@@ -30,7 +30,8 @@ Json LikeNormalsJson(const LikeNormalsSpread& spread) {
           {"log_colour", known ? Json(spread.log_colour) : Json()}};
 }
 
-Json MaterialsJson(const ColourSpread& colours) {
+Json MaterialsJson(const PhotographCheck& check) {
+  const ColourSpread& colours = check.colours;
   const char* const verdict = !colours.observable ? "cannot be told"
                               : SaysSeveralMaterials(colours)
                                   ? "several materials"
@@ -42,6 +43,7 @@ Json MaterialsJson(const ColourSpread& colours) {
       {"far", {{"across", colours.far.across}, {"along", colours.far.along}}},
       {"near",
        {{"across", colours.near.across}, {"along", colours.near.along}}},
+      {"sharp_colour_edges", check.colour_steps},
       {"pairs", colours.pairs},
       {"share_of_pixels", colours.share},
       {"own_log_colour", {colours.own.x(), colours.own.y()}}};
@@ -73,7 +75,7 @@ nlohmann::ordered_json CheckToJson(const PhotographCheck& check) {
       {"radiance_99_percent", check.radiance_99},
       {"pixels", PixelsJson(check)},
       {"like_normals", LikeNormalsJson(check.like_normals)},
-      {"materials", MaterialsJson(check.colours)},
+      {"materials", MaterialsJson(check)},
       {"normals", NormalsJson(check)}};
 }
 

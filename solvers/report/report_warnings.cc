@@ -145,6 +145,19 @@ std::string RivalWarning(const std::vector<Alternative>& alternatives) {
   return "";
 }
 
+std::string PaintWarning(const SolvedProblem& solved) {
+  if (solved.inverse.variation != ReflectanceVariation::kAuto) return "";
+  return solved.solution.has_paint()
+             ? "The object looks painted: its colour has sharp edges, and "
+               "paint "
+               "explains the image better than mirrored light does. Its albedo "
+               "was taken to vary; for one material set "
+               "reflectance.variation: none."
+             : "The object's colour has sharp edges. They were taken for what "
+               "one material mirrors; if it is painted, set "
+               "reflectance.variation: albedo.";
+}
+
 }  // namespace
 
 std::string EffectsNote(const SolvedProblem& solved) {
@@ -163,8 +176,9 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
         MisfitWarning(solved), PixelWarning(solved), UnlitWarning(solved),
-        StrayLightWarning(solved), FewPixelsWarning(solved),
-        CurveWarning(solved.solution.curves), UncertainWarning(solved.solution),
+        StrayLightWarning(solved), PaintWarning(solved),
+        FewPixelsWarning(solved), CurveWarning(solved.solution.curves),
+        UncertainWarning(solved.solution),
         RivalWarning(solved.solution.alternatives)}) {
     if (!warning.empty()) warnings.push_back(std::move(warning));
   }

@@ -383,7 +383,7 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
   n.used_pixels = solution.pixels_used;
   if (solved.inverse.look != nullptr) TakeLook(solved.inverse.look->check, &n);
   // Paint that is sought is not taken for light.
-  if (solved.inverse.variation != ReflectanceVariation::kNone) {
+  if (solution.has_paint()) {
     n.several_materials = false;
     n.floor = 0.0;
   }

@@ -29,7 +29,7 @@ std::vector<std::string> EarlierNames(const Solution& solution) {
   if (solution.map_std.rgb.empty()) {
     names.emplace_back("illumination_log_std.exr");
   }
-  if (solution.albedo.rgb.empty()) {
+  if (!solution.has_paint()) {
     names.insert(names.end(),
                  {"albedo.exr", "gloss.exr", "albedo.png", "gloss.png"});
   }
@@ -54,7 +54,7 @@ Status WriteRadiance(const SolvedProblem& solved, const std::string& folder) {
                                    folder + "/illumination_log_std.exr"));
   }
   IBRDF_RETURN_IF_ERROR(WriteExr(solution.render, folder + "/render.exr"));
-  if (!solution.albedo.rgb.empty()) {
+  if (solution.has_paint()) {
     IBRDF_RETURN_IF_ERROR(WriteExr(solution.albedo, folder + "/albedo.exr"));
     IBRDF_RETURN_IF_ERROR(WriteExr(solution.gloss, folder + "/gloss.exr"));
   }

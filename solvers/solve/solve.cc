@@ -13,6 +13,7 @@
 #include "ibrdf/solvers/published/joint_maximum.h"
 #include "ibrdf/solvers/solve/curve_search.h"
 #include "ibrdf/solvers/solve/exposure.h"
+#include "ibrdf/solvers/solve/paint_evidence.h"
 #include "ibrdf/solvers/solve/painted.h"
 #include "ibrdf/solvers/solve/painted_known_light.h"
 #include "ibrdf/solvers/solve/summary.h"
@@ -59,7 +60,9 @@ StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
   if (!setup.ok()) return setup.status();
   IBRDF_RETURN_IF_ERROR(CheckMethod(*setup));
   context->Reserve(PredictSummarySeconds(*setup, *context));
-  if (problem.variation == ReflectanceVariation::kAlbedo) {
+  if (problem.variation == ReflectanceVariation::kAlbedo ||
+      (problem.variation == ReflectanceVariation::kAuto &&
+       IsProbablyPainted(*setup, context))) {
     return setup->light_unknown()
                ? SolvePainted(*setup, context)
                : SolvePaintedUnderKnownLight(*setup, context);

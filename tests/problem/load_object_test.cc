@@ -113,6 +113,12 @@ TEST(ChosenVariation, IsWhatIsSaidOrSeen) {
   EXPECT_EQ(ReflectanceVariation::kAuto, problem.reflectance.variation);
   EXPECT_EQ(kNone, ChosenVariation(problem, plain));
   EXPECT_EQ(kAlbedo, ChosenVariation(problem, painted));
+  // Edges of colour are for the solve to judge, unless like normals have said.
+  PhotographCheck edges;
+  edges.colour_steps = 2.0 * kMayBePainted;
+  EXPECT_EQ(ReflectanceVariation::kAuto, ChosenVariation(problem, edges));
+  edges.colours.observable = true;
+  EXPECT_EQ(kNone, ChosenVariation(problem, edges));
   problem.reflectance.variation = kNone;
   EXPECT_EQ(kNone, ChosenVariation(problem, painted));
   problem.reflectance.variation = kAlbedo;

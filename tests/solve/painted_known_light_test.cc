@@ -7,6 +7,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/brdf/matte_split.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/solve/paint_evidence.h"
 #include "ibrdf/solvers/solve/solve.h"
 #include "tests/support/solver_testing.h"
 
@@ -68,6 +69,13 @@ class PaintedUnderKnownLightTest : public ::testing::Test {
       }
     }
   }
+  void Unpaint() {
+    const std::vector<double> whole = Render(whole_);
+    for (size_t k = 0; k < whole.size(); ++k) {
+      problem_.image.rgb[3 * problem_.points[k / 3].pixel + k % 3] =
+          static_cast<float>(whole[k]);
+    }
+  }
   Solution Solve() const {
     const StatusOr<Solution> e =
         SolveInverseRendering(problem_, nullptr, nullptr);
@@ -105,6 +113,29 @@ TEST_F(PaintedUnderKnownLightTest, FindsThePaint) {
                 0.5);
     EXPECT_GE(e.gloss.rgb[at], 0.0f);
   }
+}
+
+TEST_F(PaintedUnderKnownLightTest, IsSoughtWhereOneMaterialFails) {
+  problem_.variation = ReflectanceVariation::kAuto;
+  problem_.solver.max_iterations = 40;  // of both estimates together
+  EXPECT_LT(AlbedoError(Solve()), 0.1);
+  Unpaint();
+  EXPECT_FALSE(Solve().has_paint());
+}
+
+// The light is unknown, so that mirrored light could explain paint.
+TEST_F(PaintedUnderKnownLightTest, EvidenceTellsPaintFromLight) {
+  problem_.kind = ProblemKind::kJoint;
+  problem_.known_map.reset();
+  const auto is_painted = [this] {
+    const StatusOr<SolveSetup> setup = ibrdf::SetUp(problem_);
+    EXPECT_TRUE(setup.ok()) << setup.status().message();
+    SolveContext context(problem_, nullptr, nullptr);
+    return IsProbablyPainted(*setup, &context);
+  };
+  EXPECT_TRUE(is_painted());
+  Unpaint();
+  EXPECT_FALSE(is_painted());
 }
 
 // Without the key the paint is in no albedo, and the misfit is its.
