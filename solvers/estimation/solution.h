@@ -63,8 +63,8 @@ struct Solution {
   MerlTable brdf;  // empty if known
   Image map;       // [H, W]; the known one if known
   Image render;    // radiance at the object's pixels, else 0
-  // Where the albedo varies, has_paint(): that of what is matte, at the object's pixels,
-  // else 0; and the radiance that is gloss. Empty where it does not.
+  // Where the albedo varies, has_paint(): that of what is matte, at the
+  // object's pixels, else 0; and the radiance that is gloss. Else empty.
   Image albedo, gloss;
   bool has_paint() const { return !albedo.empty(); }
   // Stray light beside the known map's, in `render` too; 0: none.

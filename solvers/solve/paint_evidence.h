@@ -6,11 +6,11 @@
 
 namespace ibrdf {
 
-// Light unknown: whether the image is far more probable of a painted object than
-// of one material, both at the search's coarse resolution and with the light,
-// and of the former the albedo too, integrated out. Light known: whether the
-// best material leaves much of the image unexplained, which then nothing but
-// the object can be. Takes some seconds.
+// Light unknown: whether the image is far more probable of a painted object
+// than of one material, both at the search's coarse resolution and with the
+// light, and of the former the albedo too, integrated out. Light known: whether
+// the best material leaves much of the image unexplained, which then nothing
+// but the object can be. Takes some seconds.
 bool IsProbablyPainted(const SolveSetup& setup, SolveContext* context);
 
 }  // namespace ibrdf
