@@ -109,6 +109,14 @@ inline constexpr int kNumReflectanceVariations = 3;
 // "auto", "none", "albedo".
 const char* ReflectanceVariationName(ReflectanceVariation variation);
 
+// Paint over a known reflectance, f = a(x) f_matte + f_gloss.
+struct PaintSpec {
+  std::string albedo;  // floats, an image of the size of what is rendered
+  // What the file's values are divided by: a(x) is 1 there. Unset: the albedo
+  // of f_matte, as in albedo.exr of a result.
+  std::optional<Eigen::Array3d> unpainted_albedo = Eigen::Array3d::Ones();
+};
+
 struct ReflectanceSpec {
   // Unknown reflectance.
   std::string model;         // trained model; empty: the default one
@@ -118,6 +126,7 @@ struct ReflectanceSpec {
   // Known reflectance: at most one is set.
   std::string known_file;                // MERL .binary
   std::optional<CookTorrance> analytic;  // `lambertian` too: specular 0
+  std::optional<PaintSpec> paint;        // over either
 
   bool known() const { return !known_file.empty() || analytic.has_value(); }
 };

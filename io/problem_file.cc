@@ -169,11 +169,30 @@ void CheckCameraStays(ProblemReader camera, const GeometrySpec& geometry) {
   }
 }
 
-void ReadAnalyticBrdf(ProblemReader reader, ReflectanceSpec* reflectance) {
+void ReadPaint(ProblemReader* reader, std::optional<PaintSpec>* paint) {
+  reader->CheckNeeds("unpainted_albedo", reader->Has("albedo"));
+  if (!reader->Has("albedo")) return;
+  paint->emplace();
+  reader->Read("albedo", &(*paint)->albedo);
+  if (!reader->Has("unpainted_albedo")) return;
+  (*paint)->unpainted_albedo.reset();
+  reader->Read("unpainted_albedo", &(*paint)->unpainted_albedo);
+}
+
+void ReadKnownBrdf(ProblemReader reader, ReflectanceSpec* reflectance) {
+  ReadPaint(&reader, &reflectance->paint);
+  if (reader.Has("brdf") + reader.Has("lambertian") +
+          reader.Has("cook_torrance") !=
+      1) {
+    reader.Fail("expected a file or one of brdf, lambertian and cook_torrance");
+    return;
+  }
+  if (reader.Has("brdf")) {
+    reader.Read("brdf", &reflectance->known_file);
+    return;
+  }
   CookTorrance brdf;
-  if (reader.Has("lambertian") == reader.Has("cook_torrance")) {
-    reader.Fail("expected a file or one of lambertian and cook_torrance");
-  } else if (reader.Has("lambertian")) {
+  if (reader.Has("lambertian")) {
     brdf.specular.setZero();
     reader.Read("lambertian", &brdf.diffuse);
   } else {
@@ -194,7 +213,7 @@ void ReadReflectance(ProblemReader reader, ReflectanceSpec* reflectance) {
   const ConfigNode* known = reader.Find("known");
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {
-    ReadAnalyticBrdf(reader.Below("known"), reflectance);
+    ReadKnownBrdf(reader.Below("known"), reflectance);
   } else {
     reader.Read("known", &reflectance->known_file);
   }
@@ -432,6 +451,9 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
        problem.geometry.file},
       {"reflectance.model", problem.reflectance.model},
       {"reflectance.known", problem.reflectance.known_file},
+      {"reflectance.known.albedo", problem.reflectance.paint.has_value()
+                                       ? problem.reflectance.paint->albedo
+                                       : ""},
       {"illumination.known", problem.illumination.known_file},
       {"truth.brdf", problem.truth.brdf},
       {"truth.illumination", problem.truth.illumination}};
@@ -481,6 +503,9 @@ Status CheckSolvable(const Problem& problem) {
                 reflectance_known
                     ? "expected with problem: illumination, found nothing"
                     : "expected with problem: illumination only");
+  }
+  if (problem.reflectance.paint.has_value()) {
+    return fail("reflectance.known.albedo", "expected in a render alone");
   }
   if (problem.illumination.known() != illumination_known) {
     return fail("illumination.known",

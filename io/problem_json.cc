@@ -85,21 +85,35 @@ json GeometryJson(const GeometrySpec& geometry) {
   return {{"sphere", json::object()}};
 }
 
-json ReflectanceJson(const ReflectanceSpec& reflectance) {
-  if (!reflectance.known_file.empty()) {
-    return {{"known", reflectance.known_file}};
+json AnalyticJson(const CookTorrance& f) {
+  if (f.specular.maxCoeff() == 0.0) {
+    return {{"lambertian", Triple(f.diffuse)}};
   }
-  if (reflectance.analytic.has_value()) {
-    const CookTorrance& f = *reflectance.analytic;
-    if (f.specular.maxCoeff() == 0.0) {
-      return {{"known", {{"lambertian", Triple(f.diffuse)}}}};
-    }
-    return {{"known",
-             {{"cook_torrance",
-               {{"diffuse", Triple(f.diffuse)},
-                {"specular", Triple(f.specular)},
-                {"roughness", Triple(f.roughness)},
-                {"f0", Triple(f.f0)}}}}}};
+  return {{"cook_torrance",
+           {{"diffuse", Triple(f.diffuse)},
+            {"specular", Triple(f.specular)},
+            {"roughness", Triple(f.roughness)},
+            {"f0", Triple(f.f0)}}}};
+}
+
+json KnownReflectanceJson(const ReflectanceSpec& reflectance) {
+  const std::optional<PaintSpec>& paint = reflectance.paint;
+  if (!paint.has_value() && !reflectance.known_file.empty()) {
+    return reflectance.known_file;
+  }
+  json known = reflectance.analytic.has_value()
+                   ? AnalyticJson(*reflectance.analytic)
+                   : json{{"brdf", reflectance.known_file}};
+  if (paint.has_value()) {
+    known["albedo"] = paint->albedo;
+    known["unpainted_albedo"] = AutoOr(paint->unpainted_albedo);
+  }
+  return known;
+}
+
+json ReflectanceJson(const ReflectanceSpec& reflectance) {
+  if (reflectance.known()) {
+    return {{"known", KnownReflectanceJson(reflectance)}};
   }
   return {{"model", reflectance.model.empty() ? "default" : reflectance.model},
           {"lobes", reflectance.lobes},

@@ -67,9 +67,10 @@ class Row {
     key_.range = range;
     return Type(ValueType::kOneOrTriple, default_value);
   }
-  Row& AutoOrTriple(const Range& range) {
+  Row& AutoOrTriple(const Range& range,
+                    const std::string& default_value = "auto") {
     key_.range = range;
-    return Type(ValueType::kAutoOrTriple, "auto");
+    return Type(ValueType::kAutoOrTriple, default_value);
   }
   Row& NumberList(const Range& range) {
     key_.range = range;
@@ -435,11 +436,27 @@ Keys ReflectanceKeys() {
                     "found at every pixel, in `albedo.exr`."}})
           .UsedBy(kUnknownReflectance),
       Row("reflectance.known",
-          "The known BRDF: a MERL table, or one of `lambertian` and "
-          "`cook_torrance`.")
+          "The known BRDF: a MERL table, or one of `brdf`, `lambertian` and "
+          "`cook_torrance`, and perhaps paint over it, `albedo`.")
           .PathOrMap(".binary")
           .Without("needed")
           .UsedBy(kKnownReflectance),
+      Row("reflectance.known.brdf", "A MERL table, to be painted.")
+          .Path(".binary")
+          .UsedBy(kKnownReflectance),
+      Row("reflectance.known.albedo",
+          "Paint: an image of the render's size, values >= 0. The matte part "
+          "of the BRDF is multiplied by it, pixel by pixel; the gloss stays "
+          "([programs](programs.md#painted-objects)).")
+          .Path(".exr, .hdr, .pfm, .tif, .npy")
+          .UsedBy(kUsedByRender),
+      Row("reflectance.known.unpainted_albedo",
+          "What the values of `albedo` are divided by. `auto`: the "
+          "hemispherical albedo of the matte part, as for `albedo.exr` of a "
+          "result.")
+          .AutoOrTriple(kPositive, "1")
+          .Needs("reflectance.known.albedo")
+          .UsedBy(kUsedByRender),
       Row("reflectance.known.lambertian", "Albedo of a matte surface.")
           .OneOrTriple(kUnitInterval, "")
           .UsedBy(kKnownReflectance),

@@ -22,6 +22,20 @@ StatusOr<KnownBrdf> LoadBrdf(const ReflectanceSpec& reflectance) {
   return brdf;
 }
 
+Status AddKnownPaint(const PaintSpec& spec, ForwardScene* scene) {
+  StatusOr<KnownPaint> paint =
+      LoadKnownPaint(spec, scene->view.points, scene->view.mask, scene->brdf);
+  if (!paint.ok()) return paint.status();
+  if (paint->pixels_without > 0) {
+    scene->warnings.push_back(
+        spec.albedo + ": " + std::to_string(paint->pixels_without) + " of " +
+        std::to_string(scene->view.mask.CountInside()) +
+        " pixels of the object are 0, which is black paint");
+  }
+  scene->paint = *std::move(paint);
+  return OkStatus();
+}
+
 }  // namespace
 
 void SortByAngle(std::vector<ShadingPoint>* points) {
@@ -74,8 +88,12 @@ StatusOr<ForwardScene> LoadForwardScene(const Problem& problem,
   scene.map = *std::move(map);
   scene.warnings = std::move(warnings);
   scene.brdf = *std::move(brdf);
+  if (problem.reflectance.paint.has_value()) {
+    IBRDF_RETURN_IF_ERROR(AddKnownPaint(*problem.reflectance.paint, &scene));
+  }
   if (scene.view.scene.CastsShadows()) {
-    scene.grid = scene.brdf.Grid();
+    scene.grid =
+        scene.paint ? scene.paint->MeanGrid(scene.brdf) : scene.brdf.Grid();
     scene.narrow_lobe = LobeHalfWidth(scene.brdf.Lookup()) < kNarrowLobe;
   }
   return scene;

@@ -1,5 +1,6 @@
 // The files of a renderable problem, read.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "ibrdf/io/problem.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/forward/known_brdf.h"
+#include "ibrdf/solvers/forward/known_paint.h"
 
 namespace ibrdf {
 
@@ -23,9 +25,12 @@ struct ViewPoints {
 
 struct ForwardScene {
   ViewPoints view;
-  Image map;       // the illumination
-  KnownBrdf brdf;  // its Lookup() refers to this
-  BrdfGrid grid;   // the BRDF's; empty where nothing casts shadows
+  Image map;                        // the illumination
+  KnownBrdf brdf;                   // its Lookup() refers to this
+  std::optional<KnownPaint> paint;  // over it
+  // What the object shows itself: the BRDF's, or its paint's mean; empty where
+  // nothing casts shadows.
+  BrdfGrid grid;
   // Whether the object may see itself as in a mirror: it casts shadows, and its
   // lobe is narrower than kNarrowLobe.
   bool narrow_lobe = false;

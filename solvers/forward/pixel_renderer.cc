@@ -5,6 +5,8 @@
 #include "ibrdf/approximation/reflectance_map.h"
 #include "ibrdf/render/reference_renderer.h"
 #include "ibrdf/scene/pixel_samples.h"
+#include "ibrdf/solvers/forward/known_paint.h"
+#include "ibrdf/solvers/forward/scene_radiance.h"
 
 namespace ibrdf {
 
@@ -31,23 +33,53 @@ StatusOr<Image> PixelRenderer::Render() {
 StatusOr<Image> PixelRenderer::RenderPoints(
     const std::vector<ShadingPoint>& points, const Span& span) {
   std::vector<double> L_o(3 * points.size());
-  counts_.points += points.size();
-  if (planned_.plan.approximation.approximation ==
-      Approximation::kReflectanceMap) {
-    IBRDF_RETURN_IF_ERROR(RenderByNormals(points, span, L_o.data()));
-  } else if (!planned_.renderer().Render(points, Within(span), L_o.data())) {
-    return RenderInterrupted(problem_);
+  if (!scene_.paint) {
+    IBRDF_RETURN_IF_ERROR(RenderUnpainted(points, span, L_o.data()));
+  } else {
+    const double middle = 0.5 * (span.begin + span.end);
+    std::vector<double> matte(L_o.size());
+    IBRDF_RETURN_IF_ERROR(
+        RenderUnpainted(points, {span.begin, middle}, L_o.data()));
+    IBRDF_RETURN_IF_ERROR(
+        RenderMatte(points, {middle, span.end}, matte.data()));
+    AddPaint(*scene_.paint, points, matte, L_o.data());
   }
   return PixelMeans(points, L_o.data(), problem_.image.width,
                     problem_.image.height);
 }
 
-Status PixelRenderer::RenderByNormals(const std::vector<ShadingPoint>& points,
+bool PixelRenderer::ByNormals() const {
+  return planned_.plan.approximation.approximation ==
+         Approximation::kReflectanceMap;
+}
+
+Status PixelRenderer::RenderUnpainted(const std::vector<ShadingPoint>& points,
+                                      const Span& span, double* L_o) {
+  counts_.points += points.size();
+  if (ByNormals()) {
+    return RenderByNormals(*planned_.radiance, points, span, L_o);
+  }
+  return planned_.renderer().Render(points, Within(span), L_o)
+             ? OkStatus()
+             : RenderInterrupted(problem_);
+}
+
+Status PixelRenderer::RenderMatte(const std::vector<ShadingPoint>& points,
+                                  const Span& span, double* L_o) {
+  const MatteRadiance matte(*planned_.radiance, *scene_.paint);
+  counts_.points += points.size();
+  if (ByNormals()) return RenderByNormals(matte, points, span, L_o);
+  return matte.Render(points, Within(span), L_o) ? OkStatus()
+                                                 : RenderInterrupted(problem_);
+}
+
+Status PixelRenderer::RenderByNormals(const RadianceRenderer& renderer,
+                                      const std::vector<ShadingPoint>& points,
                                       const Span& span, double* L_o) {
   ReflectanceMapOptions options;
   options.log_error = RenderTolerances::Of(problem_.quality).approximation;
   const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, *planned_.radiance, Within(span), options, L_o);
+      RenderByNormal(points, renderer, Within(span), options, L_o);
   if (!report.ok()) {
     return report.status().code() == StatusCode::kInterrupted
                ? RenderInterrupted(problem_)

@@ -42,8 +42,15 @@ class PixelRenderer {
 
   StatusOr<Image> RenderPoints(const std::vector<ShadingPoint>& points,
                                const Span& span);
-  Status RenderByNormals(const std::vector<ShadingPoint>& points,
+  // Radiance of the unpainted object, and that of its matte part.
+  Status RenderUnpainted(const std::vector<ShadingPoint>& points,
                          const Span& span, double* L_o);
+  Status RenderMatte(const std::vector<ShadingPoint>& points, const Span& span,
+                     double* L_o);
+  Status RenderByNormals(const RadianceRenderer& renderer,
+                         const std::vector<ShadingPoint>& points,
+                         const Span& span, double* L_o);
+  bool ByNormals() const;
   // The progress of a call that goes through `span`.
   RadianceRenderer::Progress Within(const Span& span) const;
   // Renders the pixels anew whose centre does not stand for them.

@@ -53,6 +53,7 @@ StatusOr<RenderedScene> RenderScene(const Problem& problem,
                             ? static_cast<uint64_t>(*problem.solver.seed)
                             : options.seed;
   AddNoise(problem.noise, seed, &out.image);
+  if (scene->paint) out.painted_brdf = scene->paint->MeanTable(scene->brdf);
   out.mask = std::move(scene->view.mask);
   out.illumination = std::move(scene->map);
   return out;

@@ -2,9 +2,11 @@
 // load, plan, render.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "ibrdf/base/status.h"
+#include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/io/problem.h"
 #include "ibrdf/solvers/forward/pixel_renderer.h"
@@ -24,6 +26,8 @@ struct RenderedScene {
   Image image;         // radiance; 0 outside the object
   Mask mask;           // pixels whose centre (preview) or any sample sees it
   Image illumination;  // the map used
+  // Of a painted object, the BRDF of its mean paint.
+  std::optional<MerlTable> painted_brdf;
   RenderPlan plan;
   PixelCounts counts;
   std::vector<std::string> warnings;  // of the inputs: sentences for the user

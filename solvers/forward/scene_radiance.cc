@@ -106,13 +106,19 @@ void SceneRadiance::set_lobe_rays(int rays) {
 
 bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
                            const Progress& progress, double* L_o) const {
+  return RenderWith(scene_.brdf, points, progress, L_o);
+}
+
+bool SceneRadiance::RenderWith(const KnownBrdf& brdf,
+                               const std::vector<ShadingPoint>& points,
+                               const Progress& progress, double* L_o) const {
   EmittedLight emitted;
   if (bounces_ > 0) emitted = {emitted_[bounces_].data(), bounces_};
-  if (scene_.brdf.function) {
-    return ReferenceRadiance(*renderer_, scene_.brdf.function, emitted)
+  if (brdf.function) {
+    return ReferenceRadiance(*renderer_, brdf.function, emitted)
         .Render(points, progress, L_o);
   }
-  return ReferenceRadiance(*renderer_, scene_.brdf.table, emitted)
+  return ReferenceRadiance(*renderer_, brdf.table, emitted)
       .Render(points, progress, L_o);
 }
 

@@ -8,6 +8,8 @@
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/effects/effects_plan.h"
 #include "ibrdf/solvers/forward/forward_scene.h"
+#include "ibrdf/solvers/forward/known_brdf.h"
+#include "ibrdf/solvers/forward/known_paint.h"
 #include "ibrdf/transport/radiance_renderer.h"
 
 namespace ibrdf {
@@ -36,6 +38,8 @@ struct SceneRadianceOptions {
   static SceneRadianceOptions Of(RenderQuality quality, int num_threads);
 };
 
+// Of the scene's unpainted reflectance. What the object throws on itself has
+// the paint's mean (ForwardScene::grid).
 class SceneRadiance final : public RadianceRenderer {
  public:
   // `scene` must live as long as this. `points`: of the image; where the object
@@ -58,6 +62,10 @@ class SceneRadiance final : public RadianceRenderer {
   // `progress` is called as by ReferenceRadiance.
   bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
               double* L_o) const override;
+  // The same of another reflectance, what the object throws on itself as it is.
+  bool RenderWith(const KnownBrdf& brdf,
+                  const std::vector<ShadingPoint>& points,
+                  const Progress& progress, double* L_o) const;
 
  private:
   // Places patches that `points` see, and lights them.
@@ -69,6 +77,22 @@ class SceneRadiance final : public RadianceRenderer {
   std::vector<std::vector<double>> emitted_;  // [bounces][patches, 3]
   ReferenceOptions reference_;
   std::unique_ptr<const ReferenceRenderer> renderer_;
+};
+
+// What a scene's matte part alone sends. Refers to both.
+class MatteRadiance final : public RadianceRenderer {
+ public:
+  MatteRadiance(const SceneRadiance& scene, const KnownPaint& paint)
+      : scene_(scene), paint_(paint) {}
+
+  bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
+              double* L_o) const override {
+    return scene_.RenderWith(paint_.matte, points, progress, L_o);
+  }
+
+ private:
+  const SceneRadiance& scene_;
+  const KnownPaint& paint_;
 };
 
 }  // namespace ibrdf

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "ibrdf/io/albedo_file.h"
 #include "ibrdf/io/image_file.h"
 #include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
-#include "ibrdf/io/photo_file.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/light/convert_map.h"
 #include "ibrdf/metrics/albedo_map_metrics.h"
@@ -35,16 +35,6 @@ int Rows(const StoredMap& map) {
 StatusOr<Mask> ReadOptionalMask(const std::string& path) {
   if (path.empty()) return Mask();
   return ReadMask(path);
-}
-
-StatusOr<Image> ReadAlbedo(const std::string& path) {
-  StatusOr<Photo> photo = ReadPhoto(path);
-  if (!photo.ok()) return photo.status();
-  if (photo->bits > 0) {
-    const auto white = static_cast<float>((1u << photo->bits) - 1u);
-    for (float& v : photo->image.rgb) v /= white;
-  }
-  return std::move(photo->image);
 }
 
 struct MaskedPaths {

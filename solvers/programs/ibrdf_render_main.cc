@@ -133,6 +133,7 @@ Status WriteOutputs(const Problem& problem, const RenderedScene& rendered,
                                    out.illumination));
   }
   if (out.brdf.empty()) return OkStatus();
+  if (rendered.painted_brdf) return WriteMerl(*rendered.painted_brdf, out.brdf);
   const StatusOr<MerlTable> table = LoadKnownReflectance(problem.reflectance);
   if (!table.ok()) return table.status();
   return WriteMerl(*table, out.brdf);

@@ -111,7 +111,8 @@ void ExpectRange(const std::string& path, const YAML::Node& range) {
   const StatusOr<Image> image = ReadExr(path);
   ASSERT_TRUE(image.ok()) << image.status().message();
   float low = std::numeric_limits<float>::infinity(), high = -low;
-  const bool skip_zero = path.find("render.exr") != std::string::npos;
+  // Beside the object.
+  const bool skip_zero = path.find("illumination.exr") == std::string::npos;
   for (const float v : image->rgb) {
     if (skip_zero && v == 0) continue;
     low = std::min(low, v);
@@ -167,6 +168,12 @@ void CheckRun(const YAML::Node& holds, const CaseRun& run) {
     }
     return;
   }
+  if (holds["files"]) {
+    std::vector<std::string> found = FilesIn(run.folder);
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(holds["files"].as<std::vector<std::string>>(), found);
+    return;
+  }
   Json result;
   ExpectWholeFiles(run.folder, &result);
   if (testing::Test::HasFatalFailure()) return;
@@ -187,6 +194,13 @@ void CheckRun(const YAML::Node& holds, const CaseRun& run) {
   }
   if (holds["map"]) {
     ExpectRange(run.folder + "/illumination.exr", holds["map"]);
+  }
+  const std::string albedo = run.folder + "/albedo.exr";
+  if (holds["albedo"] && holds["albedo"].IsScalar()) {
+    EXPECT_EQ("none", holds["albedo"].as<std::string>());
+    EXPECT_FALSE(fs::exists(albedo));
+  } else if (holds["albedo"]) {
+    ExpectRange(albedo, holds["albedo"]);
   }
   if (holds["image"]) {
     ExpectRange(run.folder + "/render.exr", holds["image"]);

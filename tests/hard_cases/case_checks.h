@@ -25,6 +25,9 @@ struct CaseRun {
 //   equals: {pointer: text}
 //   map: [a, b]                  range of illumination.exr
 //   image: [a, b]                range of render.exr on the object
+//   albedo: [a, b]               range of albedo.exr on the object; or none:
+//                                there is no such file
+//   files: [names, sorted]       all that there is, and nothing else is checked
 // Reports by googletest.
 void CheckRun(const YAML::Node& holds, const CaseRun& run);
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <random>
 #include <string>
@@ -183,6 +184,43 @@ noise: 0.02
   ASSERT_TRUE(matte.ok()) << matte.status().message();
   EXPECT_EQ(0.0, matte->reflectance.analytic->specular.maxCoeff());
   EXPECT_EQ(0.5, matte->reflectance.analytic->diffuse[1]);
+  EXPECT_FALSE(matte->reflectance.paint.has_value());
+}
+
+TEST_F(ProblemFile, PaintLiesOverAKnownReflectance) {
+  const auto known = [&](const std::string& keys) {
+    return Read(
+        "image: {width: 8, height: 8}\ngeometry: {sphere: {}}\n"
+        "illumination: {known: {sky: {}}}\nreflectance: {known: {" +
+        keys + "}}\n");
+  };
+  const StatusOr<Problem> table = known("brdf: a.binary, albedo: a.exr");
+  ASSERT_TRUE(table.ok()) << table.status().message();
+  EXPECT_EQ(dir_.File("a.binary"), table->reflectance.known_file);
+  EXPECT_EQ(dir_.File("a.exr"), table->reflectance.paint->albedo);
+  EXPECT_EQ(1.0, table->reflectance.paint->unpainted_albedo->minCoeff());
+  EXPECT_TRUE(CheckRenderable(*table).ok());
+  const std::vector<NamedFile> files = NamedFiles(*table);
+  EXPECT_TRUE(std::any_of(files.begin(), files.end(), [](const NamedFile& f) {
+    return f.key == "reflectance.known.albedo";
+  }));
+  const StatusOr<Problem> own =
+      known("lambertian: 0.5, albedo: a.exr, unpainted_albedo: auto");
+  ASSERT_TRUE(own.ok()) << own.status().message();
+  EXPECT_FALSE(own->reflectance.paint->unpainted_albedo.has_value());
+  EXPECT_EQ(0.25, known("brdf: a.binary, albedo: a.exr, unpainted_albedo: "
+                        "[0.5, 0.25, 1]")
+                      ->reflectance.paint->unpainted_albedo.value()[1]);
+  EXPECT_FALSE(known("brdf: a.binary")->reflectance.paint.has_value());
+
+  // It is for renders.
+  const StatusOr<Problem> solved = Read(std::string(kLeast) +
+                                  "problem: illumination\nreflectance: {known: "
+                                  "{lambertian: 0.5, albedo: a.exr}}");
+  ASSERT_TRUE(solved.ok()) << solved.status().message();
+  EXPECT_NE(std::string::npos,
+            CheckSolvable(*solved).message().find(
+                "reflectance.known.albedo: expected in a render alone"));
 }
 
 TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
@@ -258,6 +296,20 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {least + "illumination: {known: {sky: {cloud: 1}}}",
        "illumination.known.sky.cloud: unknown key; the nearest known one is "
        "illumination.known.sky.clouds"},
+      {least + "reflectance: {known: {albedo: a.exr}}",
+       "reflectance.known: expected a file or one of brdf, lambertian and "
+       "cook_torrance"},
+      {least + "reflectance: {known: {brdf: a.binary, lambertian: 1}}",
+       "reflectance.known: expected a file or one of brdf, lambertian and "
+       "cook_torrance"},
+      {least + "reflectance: {known: {lambertian: 1, unpainted_albedo: 1}}",
+       "reflectance.known.unpainted_albedo: expected with "
+       "reflectance.known.albedo only"},
+      {least + "reflectance: {known: {lambertian: 1, albedo: a.exr, "
+               "unpainted_albedo: 0}}",
+       "reflectance.known.unpainted_albedo: expected"},
+      {least + "reflectance: {known: {lambertian: 1, albedo: [1]}}",
+       "reflectance.known.albedo: expected"},
       {least + "reflectance: {known: {lambertian: [1, 2, 0]}}",
        "reflectance.known.lambertian: expected a number in [0, 1] or a list"},
       {least + "reflectance: {known: [a]}",

@@ -58,6 +58,10 @@ Setting SettingOf(const ProblemKey& key) {
   if (map == "geometry.frame") {
     return setting.With("geometry", "{normals: n.exr}");
   }
+  // Paint lies over a material.
+  if (map == "reflectance.known" && key.used_by == kUsedByRender) {
+    setting = setting.With(map, "{lambertian: 0.5}");
+  }
   const size_t colon = key.needs.find(": ");
   if (colon != std::string::npos) {
     return setting.With(key.needs.substr(0, colon),

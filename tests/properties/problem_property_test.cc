@@ -84,6 +84,17 @@ CookTorrance AnyAnalyticBrdf() {
   return brdf;
 }
 
+PaintSpec AnyPaint() {
+  PaintSpec paint;
+  paint.albedo = AnyPath();
+  if (*rc::gen::arbitrary<bool>()) {
+    paint.unpainted_albedo.reset();
+  } else {
+    paint.unpainted_albedo = AnyTriple<Eigen::Array3d>(kLeast, kMost);
+  }
+  return paint;
+}
+
 SkyOptions AnySky() {
   SkyOptions sky;
   sky.sun_theta_degrees = AnyNumber(0.0, 90.0);
@@ -186,6 +197,8 @@ Problem AnyProblem() {
     } else {
       p.reflectance.analytic = AnyAnalyticBrdf();
     }
+    if (rendered && *rc::gen::arbitrary<bool>())
+      p.reflectance.paint = AnyPaint();
   } else {
     if (*rc::gen::arbitrary<bool>()) p.reflectance.model = AnyPath();
     p.reflectance.lobes = *rc::gen::inRange(1, 9);
@@ -258,6 +271,14 @@ void AssertSame(const CookTorrance& a, const CookTorrance& b) {
   RC_ASSERT((a.f0 == b.f0).all());
 }
 
+void AssertSame(const PaintSpec& a, const PaintSpec& b) {
+  RC_ASSERT(a.albedo == b.albedo);
+  RC_ASSERT(a.unpainted_albedo.has_value() == b.unpainted_albedo.has_value());
+  if (a.unpainted_albedo.has_value()) {
+    RC_ASSERT((*a.unpainted_albedo == *b.unpainted_albedo).all());
+  }
+}
+
 void AssertSame(const SkyOptions& a, const SkyOptions& b) {
   RC_ASSERT(a.sun_theta_degrees == b.sun_theta_degrees);
   RC_ASSERT(a.sun_phi_degrees == b.sun_phi_degrees);
@@ -302,6 +323,10 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
             q.reflectance.analytic.has_value());
   if (p.reflectance.analytic.has_value()) {
     AssertSame(*p.reflectance.analytic, *q.reflectance.analytic);
+  }
+  RC_ASSERT(p.reflectance.paint.has_value() == q.reflectance.paint.has_value());
+  if (p.reflectance.paint.has_value()) {
+    AssertSame(*p.reflectance.paint, *q.reflectance.paint);
   }
   RC_ASSERT(p.illumination.width == q.illumination.width);
   RC_ASSERT(p.illumination.height == q.illumination.height);
