@@ -53,6 +53,7 @@ Status Edit(const YAML::Node& edit, Image* image) {
   if (edit["rows"]) {
     first_row = edit["rows"][0].as<int>();
     end_row = edit["rows"][1].as<int>();
+    if (first_row < 0 || end_row > image->height) return Unknown("rows", edit);
   }
   for (int y = first_row; y < end_row; ++y) {
     for (int x = 0; x < image->width; ++x) {
