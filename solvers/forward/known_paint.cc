@@ -75,16 +75,6 @@ void FillRim(const std::vector<int>& rim, Image* albedo) {
   }
 }
 
-// Hemispherical, as in a result.
-Eigen::Array3d AlbedoOf(const BrdfGrid& matte) {
-  constexpr AlbedoOptions kNodes = {24, 32};  // what is matte needs few
-  return FurnaceRules(kNodes)
-      .Measure(BatchOf([&](double theta_h, double theta_d, double phi_d) {
-        return matte.Evaluate(theta_h, theta_d, phi_d);
-      }))
-      .hemispherical;
-}
-
 // Divides by `unpainted`, and takes mean and count over the object's pixels.
 void SetFactor(Image albedo, const Eigen::Array3d& unpainted, const Mask& mask,
                KnownPaint* paint) {
@@ -142,7 +132,7 @@ StatusOr<KnownPaint> LoadKnownPaint(const PaintSpec& spec,
   const BrdfGrid matte = MattePart(brdf.Grid());
   const Eigen::Array3d unpainted = spec.unpainted_albedo.has_value()
                                        ? *spec.unpainted_albedo
-                                       : AlbedoOf(matte);
+                                       : MatteAlbedo(matte);
   if (!(unpainted.minCoeff() > 0.0)) {
     return Refuse(spec.albedo,
                   "expected a BRDF whose matte part is above 0 in every "

@@ -42,8 +42,12 @@ StatusOr<Solution> TakeTurn(const SolveSetup& setup,
   StatusOr<Estimate> estimate = EstimateLight(*of_light, found, context);
   if (!estimate.ok()) return estimate.status();
   Solution solution = Summarise(*of_light, *std::move(estimate), context);
-  ScalePixels(gain, points, &solution.render);
-  SetPaint(setup, reflectance, unpainted, log_albedo, &solution);
+  // Render and gloss are of the light that was found, not of that before.
+  const UnpaintedRadiance lit =
+      RenderUnpainted(setup, reflectance, solution.map.rgb,
+                      {solution.map.width, solution.map.height});
+  ScalePixels(PaintGain(lit, log_albedo), points, &solution.render);
+  SetPaint(setup, reflectance, lit, log_albedo, &solution);
   return solution;
 }
 

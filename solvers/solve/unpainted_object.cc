@@ -8,24 +8,13 @@
 #include "ibrdf/solvers/estimation/pixel_renders.h"
 
 namespace ibrdf {
-namespace {
-
-// What is matte needs few.
-constexpr AlbedoOptions kAlbedoNodes = {24, 32};
-
-}  // namespace
 
 UnpaintedReflectance UnpaintedOf(const LobeModel& lobes,
                                  const double* parameters) {
   UnpaintedReflectance out;
   out.whole = lobes.Grid(parameters);
   out.matte = lobes.Combine(parameters, MatteShapes(lobes, parameters), 1);
-  out.albedo =
-      FurnaceRules(kAlbedoNodes)
-          .Measure(BatchOf([&](double theta_h, double theta_d, double phi_d) {
-            return out.matte.Evaluate(theta_h, theta_d, phi_d);
-          }))
-          .hemispherical;
+  out.albedo = MatteAlbedo(out.matte);
   return out;
 }
 

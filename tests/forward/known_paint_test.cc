@@ -205,19 +205,20 @@ double MeanLogDifference(const RenderedScene& a, const RenderedScene& b) {
   return sum / count;
 }
 
-// Paint adds nothing to what a preview is off by.
+// Paint adds nothing to what a preview of the sphere is off by. The bowl's has
+// its tolerances (RenderTolerances), 0.011, and coarser patches, 0.007
+// (SceneRadianceOptions), besides.
 TEST_F(KnownPaintTest, QualitiesAgree) {
-  for (const char* shape : {"sphere", "bowl"}) {
-    const double unpainted =
-        MeanLogDifference(Render(shape, kCoated, "preview").value(),
-                          Render(shape, kCoated, "reference").value());
-    const double painted = MeanLogDifference(
+  const auto painted = [&](const char* shape) {
+    return MeanLogDifference(
         Painted(shape, kCoated, TwoHalves(), "preview").value(),
         Painted(shape, kCoated, TwoHalves(), "reference").value());
-    // The effect of a preview's tolerance for pixels (RenderTolerances).
-    EXPECT_LT(painted, unpainted + 3e-3) << shape;
-    EXPECT_LT(painted, 0.03) << shape;
-  }
+  };
+  const double unpainted =
+      MeanLogDifference(Render("sphere", kCoated, "preview").value(),
+                        Render("sphere", kCoated, "reference").value());
+  EXPECT_LT(painted("sphere"), unpainted + RenderTolerances().pixel);
+  EXPECT_LT(painted("bowl"), 0.018);
 }
 
 // A result holds no albedo where a pixel's centre misses the object.

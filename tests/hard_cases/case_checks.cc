@@ -12,6 +12,8 @@
 
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/merl.h"
+#include "ibrdf/io/problem_file.h"
+#include "ibrdf/solvers/forward/render_scene.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -122,6 +124,44 @@ void ExpectRange(const std::string& path, const YAML::Node& range) {
   EXPECT_LE(high, range[1].as<double>()) << path;
 }
 
+// The scene that a painted result's files describe.
+std::string SceneOf(const YAML::Node& problem, const std::string& folder,
+                    const Image& render) {
+  YAML::Node scene;
+  scene["image"]["width"] = render.width;
+  scene["image"]["height"] = render.height;
+  scene["geometry"] = problem["geometry"];
+  if (problem["camera"]) scene["camera"] = problem["camera"];
+  YAML::Node known = scene["reflectance"]["known"];
+  known["brdf"] = folder + "/brdf.binary";
+  known["albedo"] = folder + "/albedo.exr";
+  known["unpainted_albedo"] = "auto";
+  scene["illumination"]["known"] = folder + "/illumination.exr";
+  scene["quality"] = "preview";
+  return YAML::Dump(scene) + "\n";
+}
+
+void ExpectRendersAgain(const YAML::Node& problem, const std::string& folder,
+                        double tolerance) {
+  const StatusOr<Image> render = ReadExr(folder + "/render.exr");
+  ASSERT_TRUE(render.ok()) << render.status().message();
+  const StatusOr<Problem> scene =
+      ParseProblem(fs::path(folder).parent_path() / "scene.yaml",
+                   SceneOf(problem, folder, *render), {});
+  ASSERT_TRUE(scene.ok()) << scene.status().message();
+  const StatusOr<RenderedScene> again = RenderScene(*scene, {});
+  ASSERT_TRUE(again.ok()) << again.status().message();
+  double sum = 0.0;
+  int count = 0;
+  for (size_t k = 0; k < render->rgb.size(); ++k) {
+    if (render->rgb[k] == 0.0f || again->image.rgb[k] == 0.0f) continue;
+    sum += std::abs(std::log(double{render->rgb[k]} / again->image.rgb[k]));
+    ++count;
+  }
+  ASSERT_GT(count, 0);
+  EXPECT_LT(sum / count, tolerance);
+}
+
 }  // namespace
 
 void CheckSameBits(const CaseRun& a, const CaseRun& b) {
@@ -138,7 +178,8 @@ void CheckSameBits(const CaseRun& a, const CaseRun& b) {
   EXPECT_GE(compared, 3);
 }
 
-void CheckRun(const YAML::Node& holds, const CaseRun& run) {
+void CheckRun(const YAML::Node& holds, const YAML::Node& problem,
+              const CaseRun& run) {
   std::vector<int> allowed;
   if (holds["exit"].IsSequence()) {
     allowed = holds["exit"].as<std::vector<int>>();
@@ -201,6 +242,9 @@ void CheckRun(const YAML::Node& holds, const CaseRun& run) {
     EXPECT_FALSE(fs::exists(albedo));
   } else if (holds["albedo"]) {
     ExpectRange(albedo, holds["albedo"]);
+  }
+  if (holds["renders"]) {
+    ExpectRendersAgain(problem, run.folder, holds["renders"].as<double>());
   }
   if (holds["image"]) {
     ExpectRange(run.folder + "/render.exr", holds["image"]);

@@ -27,9 +27,13 @@ struct CaseRun {
 //   image: [a, b]                range of render.exr on the object
 //   albedo: [a, b]               range of albedo.exr on the object; or none:
 //                                there is no such file
+//   renders: error               ibrdf_render's of the files of a painted
+//                                result against its render.exr: the mean
+//                                magnitude of log differences on the object
 //   files: [names, sorted]       all that there is, and nothing else is checked
-// Reports by googletest.
-void CheckRun(const YAML::Node& holds, const CaseRun& run);
+// `problem`: of the case, for `renders`. Reports by googletest.
+void CheckRun(const YAML::Node& holds, const YAML::Node& problem,
+              const CaseRun& run);
 
 // That two runs ended alike, with the same bits in what they estimated.
 void CheckSameBits(const CaseRun& a, const CaseRun& b);

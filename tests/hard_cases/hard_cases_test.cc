@@ -110,7 +110,7 @@ TEST_P(HardCases, Holds) {
     return run;
   };
   const CaseRun run = solve(c["options"], "out");
-  CheckRun(c["holds"], run);
+  CheckRun(c["holds"], c["problem"], run);
   if (c["again"]) CheckSameBits(run, solve(c["again"], "again"));
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -147,6 +148,17 @@ TEST(Albedo, IntegralsAreReciprocal) {
   }
   // Masking has kinks, and 24 views meet Fresnel's rise at grazing angles.
   EXPECT_LT((in / out - 1.0).abs().maxCoeff(), 1e-3);
+}
+
+TEST(Albedo, OfAMattePartByFewNodes) {
+  BrdfGrid matte({24, 12, 8});
+  for (int c = 0; c < 3; ++c) {
+    std::fill_n(matte.Channel(c), matte.shape.num_nodes(),
+                static_cast<float>((0.2 + 0.3 * c) / kPi));
+  }
+  const Eigen::Array3d albedo = MatteAlbedo(matte);
+  // The nodes are floats.
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(0.2 + 0.3 * c, albedo[c], 1e-6);
 }
 
 TEST(Furnace, CountsViewsThatMakeEnergy) {

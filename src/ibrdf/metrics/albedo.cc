@@ -92,4 +92,13 @@ FurnaceFigures FurnaceRules::Measure(const BrdfBatch& brdf) const {
   return figures;
 }
 
+Eigen::Array3d MatteAlbedo(const BrdfGrid& matte) {
+  constexpr AlbedoOptions kNodes = {24, 32};
+  return FurnaceRules(kNodes)
+      .Measure(BatchOf([&](double theta_h, double theta_d, double phi_d) {
+        return matte.Evaluate(theta_h, theta_d, phi_d);
+      }))
+      .hemispherical;
+}
+
 }  // namespace ibrdf

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/flow_brdf.h"
 
 namespace ibrdf {
@@ -72,5 +73,8 @@ class FurnaceRules {
   std::vector<AlbedoRule> hemisphere_;  // Gauss-Legendre in cos(theta_o)
   std::vector<double> hemisphere_weights_;
 };
+
+// Hemispherical albedo of the matte part of a BRDF, by few nodes.
+Eigen::Array3d MatteAlbedo(const BrdfGrid& matte);
 
 }  // namespace ibrdf
