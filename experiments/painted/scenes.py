@@ -32,7 +32,7 @@ PROBLEM = """problem: joint
 image: {{file: {picture}.exr}}
 geometry: {geometry}
 reflectance: {{model: {model}, variation: {variation}}}
-solver: {{seconds: 1800}}
+solver: {{seconds: 3600}}
 """
 
 

@@ -9,9 +9,14 @@
 #include <vector>
 
 #include "ibrdf/base/pi.h"
+#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/matte_split.h"
+#include "ibrdf/geometry/camera.h"
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/problem_file.h"
+#include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/forward/render_scene.h"
+#include "ibrdf/transport/transport.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/temp_dir.h"
 
@@ -219,6 +224,42 @@ TEST_F(KnownPaintTest, QualitiesAgree) {
                         Render("sphere", kCoated, "reference").value());
   EXPECT_LT(painted("sphere"), unpainted + RenderTolerances().pixel);
   EXPECT_LT(painted("bowl"), 0.018);
+}
+
+// What paint makes of a pixel is what it makes in a solve: the solver renders
+// matte and whole by its own quadrature.
+TEST_F(KnownPaintTest, PaintIsThatOfASolve) {
+  const Image paint = TwoHalves();
+  const RenderedScene plain = Render("sphere", kCoated, "preview").value();
+  const RenderedScene painted =
+      Painted("sphere", kCoated, paint, "preview").value();
+  const std::vector<ShadingPoint> points =
+      FindShadingPoints(Scene::UnitSphere(), Camera(), kSize, kSize, Mask(), 1)
+          .value();
+  CookTorrance coated;
+  coated.diffuse = {0.6, 0.5, 0.4};
+  coated.roughness.setConstant(0.15);
+  const TransportOptions options;
+  const BrdfGrid grid = BrdfGrid::FromFunction(coated.Function(), options.grid);
+  const Image& map = plain.illumination;
+  const Transport transport(points, map.height, map.width, options);
+  std::vector<double> whole(3 * points.size()), matte(whole.size());
+  transport.Render(grid, map.rgb.data(), whole.data());
+  transport.Render(MattePart(grid), map.rgb.data(), matte.data());
+  double error = 0.0;
+  size_t count = 0;
+  for (size_t i = 0; i < whole.size(); ++i) {
+    const double W = whole[i], M = matte[i];
+    const size_t k = size_t{3} * points[i / 3].pixel + i % 3;
+    // Near the outline a pixel is more than its centre, which a solve takes.
+    if (std::abs(std::log(plain.image.rgb[k] / W)) > 0.005) continue;
+    const double expected = (paint.rgb[k] * M + std::max(W - M, 0.0)) / W;
+    const double found = painted.image.rgb[k] / plain.image.rgb[k];
+    error += std::abs(found - expected);
+    ++count;
+  }
+  EXPECT_GT(count, whole.size() / 2);
+  EXPECT_LT(error / static_cast<double>(count), 0.003);
 }
 
 // A result holds no albedo where a pixel's centre misses the object.

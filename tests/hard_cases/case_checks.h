@@ -29,7 +29,9 @@ struct CaseRun {
 //                                there is no such file
 //   renders: error               ibrdf_render's of the files of a painted
 //                                result against its render.exr: the mean
-//                                magnitude of log differences on the object
+//                                magnitude of log differences on the object;
+//                                pixels of 10x10 are more than their centres,
+//                                by 0.02
 //   files: [names, sorted]       all that there is, and nothing else is checked
 // `problem`: of the case, for `renders`. Reports by googletest.
 void CheckRun(const YAML::Node& holds, const YAML::Node& problem,
