@@ -4,10 +4,9 @@
     experiments/painted/make_scenes.py TABLES MAPS MESHES OUT [--only 1/5] [--bin DIR]
 
 TABLES: MERL tables; MAPS: city.hdr and so on; MESHES: bunny.obj and spot_low_resolution.obj. A folder of OUT for each
-case gets albedo.pfm, the paint; painted.exr and unpainted.exr, 128x128 pictures with 2 % noise, the
-second with the paint's mean all over; mask.png, the
-pixels that the object fills. What is there is kept.
-Needs Debian's python3-numpy.
+case gets albedo.pfm, the paint; painted.exr and unpainted.exr, 128x128 pictures with 2 % noise, the second with the
+paint's mean all over; and mask.png, the pixels that the object fills. What is there is kept. Needs Debian's
+python3-numpy.
 """
 import argparse
 import pathlib

@@ -114,6 +114,10 @@ void SetGauge(SolverGauge gauge, int num_lobes, Solution* solution) {
     // Negative values mark invalid bins.
     if (raw[i] > 0.0) raw[i] *= scale[i / kMerlBins];
   }
+  std::vector<float>& albedo = solution->albedo.rgb;
+  for (size_t i = 0; i < albedo.size(); ++i) {
+    albedo[i] = static_cast<float>(albedo[i] * scale[i % 3]);
+  }
 }
 
 }  // namespace ibrdf
