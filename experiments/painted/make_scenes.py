@@ -73,7 +73,7 @@ class Case:
 
     def scene(self, arguments, albedo):
         """A problem file for ibrdf_render."""
-        # A mesh at reference quality takes ten minutes. A preview of it is off by 1 %, half the noise.
+        # A mesh takes minutes at reference quality. The tolerances of a preview sum to 1.1 %, half the noise.
         quality = "reference" if self.shape == "sphere" else "preview"
         return SCENE.format(size=SIZE, quality=quality, geometry=self.geometry(arguments.out), albedo=albedo,
                             material=self.material_line(arguments.tables), seed=self.number + 1,
