@@ -1,6 +1,7 @@
 #include "ibrdf/solvers/training/lobe_table_fit.h"
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 #include <glog/logging.h>
 
 #include <algorithm>
@@ -24,6 +25,12 @@ constexpr double kFreeColours = 1e3;  // standard deviation of log colours: none
 // Log colours tried for a further lobe, relative to the one that would make it
 // fit alone, go down to this.
 constexpr double kFaintest = -5.0;
+// A Lambertian lobe starts at this share of the table's values in order, and
+// is held there by a Gaussian of its log colours: a table without a matte part
+// would drive them to minus infinity. The deviation leaves it less than a
+// twentieth of the darkest tenth of the bins.
+constexpr double kDarkShare = 0.1;
+constexpr double kLambertianDeviation = 5.0;
 
 // Which theta_h of a column of `count` stands for stratum i of n.
 int Stratum(int i, int n, int count) {
@@ -67,9 +74,9 @@ StatusOr<std::vector<float>> ThinTable(const MerlTable& table,
 }
 
 // Puts codes beyond the unit ball on its sphere.
-void ProjectCodes(int lobes, int code_size, std::vector<double>* parameters) {
-  const MutableLobeMixture mixture({lobes, code_size}, parameters->data());
-  for (int k = 0; k < lobes; ++k) {
+void ProjectCodes(const LobeLayout& layout, std::vector<double>* parameters) {
+  const MutableLobeMixture mixture(layout, parameters->data());
+  for (int k = 0; k < layout.num_coded(); ++k) {
     // As ClampCodes, but the squares are summed in their order: the bits of
     // trained models.
     const auto z = mixture.code(k);
@@ -77,6 +84,31 @@ void ProjectCodes(int lobes, int code_size, std::vector<double>* parameters) {
         std::sqrt(std::inner_product(z.begin(), z.end(), z.begin(), 0.0));
     for (double& value : mixture.code(k)) value /= std::max(norm, 1.0);
   }
+}
+
+// The log colours at which a Lambertian lobe starts, for log raw values [3][n].
+std::vector<double> DarkColours(const std::vector<float>& log_raw) {
+  const size_t n = log_raw.size() / 3;
+  std::vector<double> colours;
+  for (int c = 0; c < 3; ++c) {
+    std::vector<float> values(log_raw.begin() + c * n,
+                              log_raw.begin() + (c + 1) * n);
+    const auto dark = values.begin() + static_cast<size_t>(kDarkShare * n);
+    std::nth_element(values.begin(), dark, values.end());
+    colours.push_back(*dark);
+  }
+  return colours;
+}
+
+// (a - mean) / kLambertianDeviation for the last log colours of a mixture.
+ceres::CostFunction* HoldLambertian(const LobeLayout& layout,
+                                    const std::vector<double>& mean) {
+  const int n = layout.num_parameters();
+  ceres::Matrix A = ceres::Matrix::Zero(3, n);
+  A.rightCols(3).diagonal().setConstant(1.0 / kLambertianDeviation);
+  ceres::Vector b = ceres::Vector::Zero(n);
+  for (int c = 0; c < 3; ++c) b[n - 3 + c] = mean[c];
+  return new ceres::NormalPrior(A, b);
 }
 
 }  // namespace
@@ -106,10 +138,14 @@ class LobeTableFitter::Search {
         n_(fitter.search_points_.num_points()),
         codes_(fitter.model_.num_codes()) {}
 
-  // The `count` best starts with one lobe more than `base` (which may be
-  // empty), no two with the same new material.
+  // The `count` best starts with one lobe of the flow more than `base` (which
+  // may be empty), no two with the same new material.
   std::vector<std::vector<double>> Extend(const std::vector<double>& base,
                                           int count) const {
+    const LobeLayout of_base = fitter_.LayoutOf(base);
+    const LobeLayout layout = {of_base.num_lobes + 1, of_base.code_size,
+                               of_base.lambertian};
+    const int added = of_base.num_coded();
     const std::vector<float> log_base = LogSum(base);
     std::vector<std::pair<double, int>> order;
     std::vector<Eigen::Array3d> colours(codes_);
@@ -133,15 +169,15 @@ class LobeTableFitter::Search {
       }
       taken.push_back(material);
       std::vector<double> start = base;
-      LobeLayout layout = LayoutOf(base);
-      const int last = layout.num_lobes++;
-      start.resize(layout.num_parameters());
+      start.insert(start.begin() + of_base.code(added), layout.lobe_size(),
+                   0.0);
       const MutableLobeMixture lobes(layout, start.data());
-      lobes.code(last) = Eigen::Map<const Eigen::VectorXf>(
-                             fitter_.model_.codes.data() + m * layout.code_size,
-                             layout.code_size)
-                             .cast<double>();
-      lobes.log_colour(last) = colours[m];
+      lobes.code(added) =
+          Eigen::Map<const Eigen::VectorXf>(
+              fitter_.model_.codes.data() + m * layout.code_size,
+              layout.code_size)
+              .cast<double>();
+      lobes.log_colour(added) = colours[m];
       starts.push_back(start);
       if (static_cast<int>(starts.size()) == count) break;
     }
@@ -149,20 +185,19 @@ class LobeTableFitter::Search {
   }
 
  private:
-  LobeLayout LayoutOf(const std::vector<double>& parameters) const {
-    return LobeLayout::OfSize(parameters.size(),
-                              fitter_.model_.shape.code_size());
-  }
-
   // log of the sum of lobes [3][n]; -inf where there are none.
   std::vector<float> LogSum(const std::vector<double>& parameters) const {
     std::vector<float> sum(3 * n_, -std::numeric_limits<float>::infinity());
-    const LobeMixture lobes(LayoutOf(parameters), parameters.data());
+    const LobeMixture lobes(fitter_.LayoutOf(parameters), parameters.data());
     std::vector<float> value(n_);
     for (int k = 0; k < lobes.num_lobes(); ++k) {
-      const Eigen::VectorXf code = lobes.code(k).cast<float>();
-      fitter_.flow_->LogDensityOnColumns(fitter_.search_points_, code.data(), 1,
-                                         value.data(), nullptr);
+      if (k < lobes.layout().num_coded()) {
+        const Eigen::VectorXf code = lobes.code(k).cast<float>();
+        fitter_.flow_->LogDensityOnColumns(fitter_.search_points_, code.data(),
+                                           1, value.data(), nullptr);
+      } else {
+        std::fill(value.begin(), value.end(), 0.0f);
+      }
       for (int c = 0; c < 3; ++c) {
         for (size_t i = 0; i < n_; ++i) {
           const double v =
@@ -257,8 +292,8 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
   if (best.empty()) {
     return InvalidInput("table", "no start of the fit has a finite cost");
   }
-  Refine(columns, options.lobes, options.max_iterations, options, &best);
-  ProjectCodes(options.lobes, model_.shape.code_size(), &best);
+  Refine(columns, options.max_iterations, options, &best);
+  ProjectCodes(LayoutOf(best), &best);
   const double log_rmse = LogRmse(columns, best, options);
   return LobeTableFit{std::move(best), log_rmse};
 }
@@ -267,12 +302,12 @@ std::vector<double> LobeTableFitter::BestStart(
     const TableColumns& rough, const Search& search,
     const LobeTableFitOptions& options) const {
   std::vector<double> best;
+  if (options.lambertian) best = DarkColours(rough.log_raw);
   for (int lobes = 1; lobes <= options.lobes; ++lobes) {
     std::vector<double> winner;
     double least = std::numeric_limits<double>::infinity();
     for (std::vector<double>& start : search.Extend(best, options.starts)) {
-      const double cost =
-          Refine(rough, lobes, kRoughIterations, options, &start);
+      const double cost = Refine(rough, kRoughIterations, options, &start);
       if (cost < least) {
         least = cost;
         winner = start;
@@ -287,9 +322,8 @@ std::vector<double> LobeTableFitter::BestStart(
 double LobeTableFitter::LogRmse(const TableColumns& columns,
                                 const std::vector<double>& parameters,
                                 const LobeTableFitOptions& options) const {
-  const LogTableCost cost(*flow_, model_.shape.code_size(), model_.exponent,
-                          options.lobes, columns, kLogFloor, 1.0,
-                          options.num_threads);
+  const LogTableCost cost(*flow_, LayoutOf(parameters), model_.exponent,
+                          columns, kLogFloor, 1.0, options.num_threads);
   std::vector<double> residuals(columns.log_raw.size());
   const double* block = parameters.data();
   cost.Evaluate(&block, residuals.data(), nullptr);
@@ -298,24 +332,33 @@ double LobeTableFitter::LogRmse(const TableColumns& columns,
   return std::sqrt(square / static_cast<double>(residuals.size()));
 }
 
-double LobeTableFitter::Refine(const TableColumns& columns, int lobes,
-                               int iterations,
+LobeLayout LobeTableFitter::LayoutOf(
+    const std::vector<double>& parameters) const {
+  return LobeLayout::OfSize(parameters.size(), model_.shape.code_size());
+}
+
+double LobeTableFitter::Refine(const TableColumns& columns, int iterations,
                                const LobeTableFitOptions& options,
                                std::vector<double>* parameters) const {
-  const int size = model_.shape.code_size();
+  const LobeLayout layout = LayoutOf(*parameters);
   LobePrior prior;
   prior.sigma = options.prior_sigma;
   prior.wall = options.wall;
   prior.colour_sigma = kFreeColours;
   ceres::Problem problem;
   problem.AddResidualBlock(
-      new LogTableCost(*flow_, size, model_.exponent, lobes, columns, kLogFloor,
+      new LogTableCost(*flow_, layout, model_.exponent, columns, kLogFloor,
                        options.independent_bins /
                            static_cast<double>(columns.log_raw.size()),
                        options.num_threads),
       nullptr, parameters->data());
-  problem.AddResidualBlock(new LobePriorCost({lobes, size}, prior), nullptr,
+  problem.AddResidualBlock(new LobePriorCost(layout, prior), nullptr,
                            parameters->data());
+  if (layout.lambertian) {
+    problem.AddResidualBlock(
+        HoldLambertian(layout, DarkColours(columns.log_raw)), nullptr,
+        parameters->data());
+  }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   solver.max_num_iterations = iterations;

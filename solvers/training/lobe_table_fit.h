@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
+#include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/flow/brdf_flow.h"
 #include "ibrdf/flow/neural_brdf_model.h"
@@ -15,8 +16,9 @@ namespace ibrdf {
 struct TableColumns;
 
 struct LobeTableFitOptions {
-  int lobes = 2;
-  int starts = 4;  // combinations of embedding codes that are refined
+  int lobes = 2;            // of the flow
+  bool lambertian = false;  // a Lambertian lobe beside them
+  int starts = 4;           // combinations of embedding codes that are refined
   int max_iterations = 60;
   // Relative decrease of the cost to stop at, and the stiffness of the wall at
   // the unit ball: a stiffer one holds up steps along it. A stiff wall and a
@@ -35,7 +37,9 @@ struct LobeTableFitOptions {
 };
 
 struct LobeTableFit {
-  // As LobeModel's: per lobe the code, then log colours in raw units.
+  // As LobeModel's: per lobe the code, then log colours in raw units. Of a
+  // table that has no matte part the Lambertian lobe's stay where the lobe is a
+  // few per cent of the darkest bins: further down they would mean nothing.
   std::vector<double> parameters;
   double log_rmse = 0.0;  // over the bins that the fit saw
 };
@@ -64,9 +68,11 @@ class LobeTableFitter {
   std::vector<double> BestStart(const TableColumns& rough, const Search& search,
                                 const LobeTableFitOptions& options) const;
   // Levenberg-Marquardt in place; returns the cost, infinite where it failed.
-  double Refine(const TableColumns& columns, int lobes, int iterations,
+  double Refine(const TableColumns& columns, int iterations,
                 const LobeTableFitOptions& options,
                 std::vector<double>* parameters) const;
+  // Of as many lobes as the parameters make.
+  LobeLayout LayoutOf(const std::vector<double>& parameters) const;
 
   // Root mean square of the residuals over the columns.
   double LogRmse(const TableColumns& columns,

@@ -29,7 +29,8 @@ StatusOr<std::vector<double>> FitMaterial(const LobeTableFitter& fitter,
                                           const LobeTableFitOptions& options) {
   const StatusOr<LobeTableFit> fit = fitter.Fit(table, options);
   if (!fit.ok()) return fit.status();
-  const LobeMixture fitted({options.lobes, fitter.model().shape.code_size()},
+  const LobeMixture fitted(LobeLayout::OfSize(fit->parameters.size(),
+                                              fitter.model().shape.code_size()),
                            fit->parameters.data());
   std::vector<int> order(options.lobes);
   std::iota(order.begin(), order.end(), 0);
@@ -41,12 +42,16 @@ StatusOr<std::vector<double>> FitMaterial(const LobeTableFitter& fitter,
     const auto lobe = fitted.lobe(k);
     lobes.insert(lobes.end(), lobe.begin(), lobe.end());
   }
+  if (options.lambertian) {
+    const auto lobe = fitted.lobe(options.lobes);
+    lobes.insert(lobes.end(), lobe.begin(), lobe.end());
+  }
   return lobes;
 }
 
 }  // namespace
 
-Status FitMaterialLobes(int lobes, int num_threads,
+Status FitMaterialLobes(int lobes, bool lambertian, int num_threads,
                         const std::atomic<bool>* stop, NeuralBrdfModel* model) {
   const int materials = model->num_materials();
   const LobeTableFitter fitter(*model);
@@ -56,6 +61,7 @@ Status FitMaterialLobes(int lobes, int num_threads,
   const FlowLobes by_channel(*model, 3, {2, 2, 1}, 1);
   LobeTableFitOptions options;
   options.lobes = lobes;
+  options.lambertian = lambertian;
   options.num_threads = 1;
   std::vector<StatusOr<std::vector<double>>> fits(
       materials, Status(StatusCode::kInterrupted,
@@ -75,6 +81,7 @@ Status FitMaterialLobes(int lobes, int num_threads,
                         status.message());
   }
   model->fit_lobes = lobes;
+  model->fit_lambertian = lambertian;
   model->lobe_fits.clear();
   for (const StatusOr<std::vector<double>>& fit : fits) {
     model->lobe_fits.insert(model->lobe_fits.end(), fit->begin(), fit->end());
