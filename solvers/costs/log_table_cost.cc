@@ -48,6 +48,14 @@ bool LogTableCost::Evaluate(double const* const* parameters, double* residuals,
       const double log_f = std::log(sum) + top;
       if (!std::isfinite(log_f)) return false;
       const size_t row = c * n + i;
+      if (std::isinf(table_.log_raw[row])) {
+        residuals[row] = 0.0;
+        if (derivatives) {
+          std::fill_n(jacobians[0] + row * layout_.num_parameters(),
+                      layout_.num_parameters(), 0.0);
+        }
+        continue;
+      }
       residuals[row] = scale_ * (log_f - table_.log_raw[row]);
       if (!derivatives) continue;
       const MutableLobeMixture j(layout_,

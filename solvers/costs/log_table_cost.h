@@ -14,7 +14,8 @@ namespace ibrdf {
 // theta_h in each.
 struct TableColumns {
   FlowColumns points;
-  // log(max(raw, 0) + floor) [3][points.num_points()].
+  // log(raw + floor) [3][points.num_points()]; minus infinity where nothing was
+  // measured, which costs nothing.
   std::vector<float> log_raw;
 };
 

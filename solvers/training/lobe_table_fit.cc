@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -31,6 +32,8 @@ constexpr double kFaintest = -5.0;
 // twentieth of the darkest tenth of the bins.
 constexpr double kDarkShare = 0.1;
 constexpr double kLambertianDeviation = 5.0;
+// Beside a finished fit it starts so much fainter, and hardly spoils it.
+constexpr double kFaintLambertian = -2.0;
 
 // Which theta_h of a column of `count` stands for stratum i of n.
 int Stratum(int i, int n, int count) {
@@ -63,7 +66,7 @@ StatusOr<std::vector<float>> ThinTable(const MerlTable& table,
     for (int i = 0; i < points; ++i) {
       for (int k = 0; k < n; ++k) {
         const float v = all.LogRaw(c, k)[Stratum(i, points, all.count[k])];
-        if (!std::isfinite(v)) {
+        if (!std::isfinite(v) && v != kNotMeasured) {
           return InvalidInput("table", "expected finite values");
         }
         log_raw.push_back(v);
@@ -86,14 +89,29 @@ void ProjectCodes(const LobeLayout& layout, std::vector<double>* parameters) {
   }
 }
 
+// The measured ones of channel c's log raw values, of [3][n].
+std::vector<float> Measured(const std::vector<float>& log_raw, int c) {
+  const size_t n = log_raw.size() / 3;
+  std::vector<float> values;
+  std::copy_if(log_raw.begin() + c * n, log_raw.begin() + (c + 1) * n,
+               std::back_inserter(values),
+               [](float v) { return v != kNotMeasured; });
+  return values;
+}
+
+double CountMeasured(const std::vector<float>& log_raw) {
+  return static_cast<double>(log_raw.size() - std::count(log_raw.begin(),
+                                                         log_raw.end(),
+                                                         kNotMeasured));
+}
+
 // The log colours at which a Lambertian lobe starts, for log raw values [3][n].
 std::vector<double> DarkColours(const std::vector<float>& log_raw) {
-  const size_t n = log_raw.size() / 3;
   std::vector<double> colours;
   for (int c = 0; c < 3; ++c) {
-    std::vector<float> values(log_raw.begin() + c * n,
-                              log_raw.begin() + (c + 1) * n);
-    const auto dark = values.begin() + static_cast<size_t>(kDarkShare * n);
+    std::vector<float> values = Measured(log_raw, c);
+    const auto dark =
+        values.begin() + static_cast<size_t>(kDarkShare * values.size());
     std::nth_element(values.begin(), dark, values.end());
     colours.push_back(*dark);
   }
@@ -222,12 +240,17 @@ class LobeTableFitter::Search {
     const float* q = fitter_.embedding_.data() + m * n_;
     const float* target = log_raw_.data() + c * n_;
     const float* b = base.data() + c * n_;
-    double mean = 0.0;
-    for (size_t i = 0; i < n_; ++i) mean += target[i] - q[i];
-    mean /= static_cast<double>(n_);
+    double mean = 0.0, measured = 0.0;
+    for (size_t i = 0; i < n_; ++i) {
+      if (target[i] == kNotMeasured) continue;
+      mean += target[i] - q[i];
+      measured += 1.0;
+    }
+    mean /= measured;
     if (std::isinf(b[0])) {
       double error = 0.0;
       for (size_t i = 0; i < n_; ++i) {
+        if (target[i] == kNotMeasured) continue;
         const double r = mean + q[i] - target[i];
         error += r * r;
       }
@@ -237,6 +260,7 @@ class LobeTableFitter::Search {
     for (double shift = 1.0; shift >= kFaintest; shift -= 1.0) {
       double error = 0.0;
       for (size_t i = 0; i < n_; i += 2) {
+        if (target[i] == kNotMeasured) continue;
         const double v = mean + shift + q[i];
         const double top = std::max<double>(b[i], v);
         const double r =
@@ -282,38 +306,67 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
   StatusOr<std::vector<float>> target =
       ThinTable(table, fit_columns_, kFitPoints);
   if (!target.ok()) return target.status();
+  for (const std::vector<float>& values : {*seen, *target}) {
+    for (int c = 0; c < 3; ++c) {
+      if (Measured(values, c).empty()) {
+        return InvalidInput("table", "expected more bins that have values");
+      }
+    }
+  }
   const TableColumns rough{search_points_, *seen};
   const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
                              std::move(*target)};
 
+  const Search search(*this, std::move(*seen));
   // All starts are refined roughly, the best one to the end.
-  std::vector<double> best =
-      BestStart(rough, Search(*this, std::move(*seen)), options);
-  if (best.empty()) {
+  Start best = AddLobes({}, rough, search, options);
+  if (best.parameters.empty()) {
     return InvalidInput("table", "no start of the fit has a finite cost");
   }
-  Refine(columns, options.max_iterations, options, &best);
-  ProjectCodes(LayoutOf(best), &best);
-  const double log_rmse = LogRmse(columns, best, options);
-  return LobeTableFit{std::move(best), log_rmse};
+  Finish(columns, options, &best);
+  if (options.lambertian) AddLambertian(rough, columns, search, options, &best);
+  ProjectCodes(LayoutOf(best.parameters), &best.parameters);
+  const double log_rmse = LogRmse(columns, best.parameters, options);
+  return LobeTableFit{std::move(best.parameters), log_rmse};
 }
 
-std::vector<double> LobeTableFitter::BestStart(
-    const TableColumns& rough, const Search& search,
+void LobeTableFitter::Finish(const TableColumns& columns,
+                             const LobeTableFitOptions& options,
+                             Start* start) const {
+  start->cost =
+      Refine(columns, options.max_iterations, options, &start->parameters);
+}
+
+void LobeTableFitter::AddLambertian(const TableColumns& rough,
+                                    const TableColumns& columns,
+                                    const Search& search,
+                                    const LobeTableFitOptions& options,
+                                    Start* best) const {
+  const std::vector<double> dark = DarkColours(rough.log_raw);
+  for (const double colour : dark) {
+    best->parameters.push_back(colour + kFaintLambertian);
+  }
+  Finish(columns, options, best);
+  // The lobe from the start leads to other lobes of the flow, often to better
+  // ones.
+  Start matte = AddLobes(dark, rough, search, options);
+  if (matte.parameters.empty()) return;
+  Finish(columns, options, &matte);
+  if (matte.cost < best->cost) *best = std::move(matte);
+}
+
+LobeTableFitter::Start LobeTableFitter::AddLobes(
+    std::vector<double> base, const TableColumns& rough, const Search& search,
     const LobeTableFitOptions& options) const {
-  std::vector<double> best;
-  if (options.lambertian) best = DarkColours(rough.log_raw);
+  Start best = {std::move(base), 0.0};
   for (int lobes = 1; lobes <= options.lobes; ++lobes) {
-    std::vector<double> winner;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::vector<double>& start : search.Extend(best, options.starts)) {
+    Start winner = {{}, std::numeric_limits<double>::infinity()};
+    for (std::vector<double>& start :
+         search.Extend(best.parameters, options.starts)) {
       const double cost = Refine(rough, kRoughIterations, options, &start);
-      if (cost < least) {
-        least = cost;
-        winner = start;
-      }
+      if (cost < winner.cost) winner = {start, cost};
     }
-    if (winner.empty()) return {};
+    if (winner.parameters.empty()) return winner;
     best = winner;
   }
   return best;
@@ -329,7 +382,7 @@ double LobeTableFitter::LogRmse(const TableColumns& columns,
   cost.Evaluate(&block, residuals.data(), nullptr);
   const double square = std::inner_product(residuals.begin(), residuals.end(),
                                            residuals.begin(), 0.0);
-  return std::sqrt(square / static_cast<double>(residuals.size()));
+  return std::sqrt(square / CountMeasured(columns.log_raw));
 }
 
 LobeLayout LobeTableFitter::LayoutOf(
@@ -347,10 +400,10 @@ double LobeTableFitter::Refine(const TableColumns& columns, int iterations,
   prior.colour_sigma = kFreeColours;
   ceres::Problem problem;
   problem.AddResidualBlock(
-      new LogTableCost(*flow_, layout, model_.exponent, columns, kLogFloor,
-                       options.independent_bins /
-                           static_cast<double>(columns.log_raw.size()),
-                       options.num_threads),
+      new LogTableCost(
+          *flow_, layout, model_.exponent, columns, kLogFloor,
+          options.independent_bins / CountMeasured(columns.log_raw),
+          options.num_threads),
       nullptr, parameters->data());
   problem.AddResidualBlock(new LobePriorCost(layout, prior), nullptr,
                            parameters->data());

@@ -53,9 +53,10 @@ class LobeTableFitter {
 
   // Least squares of log(f + 1e-6) - log(raw + 1e-6) (the log-RMSE of
   // CompareBrdfs) over columns of the table, by Levenberg-Marquardt from the
-  // best combinations of embedding codes; lobes are added one by one. Codes
-  // stay in the unit ball. Fails on a table without a positive red value and on
-  // non-finite values; the message starts with "table".
+  // best combinations of embedding codes; lobes are added one by one. Bins of
+  // negative raw values play no part. Codes stay in the unit ball. Fails on a
+  // table without a positive red value and on non-finite values; the message
+  // starts with "table".
   StatusOr<LobeTableFit> Fit(const MerlTable& table,
                              const LobeTableFitOptions& options) const;
 
@@ -63,10 +64,22 @@ class LobeTableFitter {
 
  private:
   class Search;
-  // Lobes at the few columns of the search; empty where no start has a finite
-  // cost.
-  std::vector<double> BestStart(const TableColumns& rough, const Search& search,
-                                const LobeTableFitOptions& options) const;
+  struct Start {
+    std::vector<double> parameters;  // empty where no cost is finite
+    double cost = 0.0;
+  };
+  // Lobes of the flow added one by one to `base`, which may be empty, at the
+  // few columns of the search.
+  Start AddLobes(std::vector<double> base, const TableColumns& rough,
+                 const Search& search,
+                 const LobeTableFitOptions& options) const;
+  // Refines a start at all columns of the fit.
+  void Finish(const TableColumns& columns, const LobeTableFitOptions& options,
+              Start* start) const;
+  // A fit of the flow's lobes becomes the best with a Lambertian one.
+  void AddLambertian(const TableColumns& rough, const TableColumns& columns,
+                     const Search& search, const LobeTableFitOptions& options,
+                     Start* best) const;
   // Levenberg-Marquardt in place; returns the cost, infinite where it failed.
   double Refine(const TableColumns& columns, int iterations,
                 const LobeTableFitOptions& options,

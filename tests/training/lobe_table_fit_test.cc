@@ -12,6 +12,7 @@
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/solvers/bench/neural_fitters.h"
 #include "ibrdf/solvers/costs/log_table_cost.h"
+#include "ibrdf/solvers/training/training_data.h"
 #include "tests/support/solver_testing.h"
 
 namespace ibrdf {
@@ -180,6 +181,50 @@ TEST_F(LobeTableFitTest, LambertianLobeIsHarmlessWhereNothingIsMatte) {
     EXPECT_LT(fit->parameters[7 + c], fit->parameters[4 + c] - 2.0);
     EXPECT_GT(fit->parameters[7 + c], -20.0);
   }
+}
+
+TEST(LogTableCost, BinsThatWereNotMeasuredCostNothing) {
+  const NeuralBrdfModel model = TinyModel(2);
+  const auto flow = BrdfFlow::Create(model.shape, model.weights);
+  TableColumns table = SmallTable();
+  const LogTableCost cost(*flow, {1, 4}, 1.0, table, 1e-6, 1.0, 1);
+  const std::vector<double> p = {0.3, -0.4, 0.2, 0.1, 0.5, 0.3, -0.8};
+  const double* block = p.data();
+  std::vector<double> all(60), some(60), jacobian(60 * 7, 1.0);
+  double* j = jacobian.data();
+  ASSERT_TRUE(cost.Evaluate(&block, all.data(), nullptr));
+  table.log_raw[17] = kNotMeasured;
+  ASSERT_TRUE(cost.Evaluate(&block, some.data(), &j));
+  for (int i = 0; i < 60; ++i) {
+    EXPECT_EQ(i == 17 ? 0.0 : all[i], some[i]);
+    double largest = 0.0;
+    for (int k = 0; k < 7; ++k) {
+      largest = std::max(largest, std::abs(jacobian[7 * i + k]));
+    }
+    EXPECT_EQ(i == 17, largest == 0.0) << i;
+  }
+}
+
+// A third of the bins is void; elsewhere the table is a model's.
+TEST_F(LobeTableFitTest, VoidBinsPlayNoPart) {
+  const MerlTable table =
+      TableOf(model_, {0.35, -0.2, 0.25, -0.3, 4.0, 3.0, 2.0});
+  MerlTable part = table;
+  for (size_t i = 0; i < part.raw.size(); i += 3) part.raw[i] = -1.0;
+  for (const bool lambertian : {false, true}) {
+    options_.lambertian = lambertian;
+    options_.lobes = 1;
+    const StatusOr<LobeTableFit> fit = fitter_.Fit(part, options_);
+    ASSERT_TRUE(fit.ok());
+    EXPECT_LT(CompareBrdfs(TableOf(model_, fit->parameters), table)->log_rmse,
+              0.02);
+    EXPECT_LT(fit->log_rmse, 0.02);
+  }
+  // No value in one channel.
+  std::fill(part.raw.begin() + kMerlBins, part.raw.begin() + 2 * kMerlBins,
+            -1.0);
+  EXPECT_EQ(StatusCode::kInvalidInput,
+            fitter_.Fit(part, options_).status().code());
 }
 
 TEST_F(LobeTableFitTest, CodesStayInTheBallAndScoreIsThatOfTheTable) {
