@@ -54,6 +54,17 @@ FlowColumns ThinColumns(const std::vector<int>& columns, int points) {
   return thin;
 }
 
+// The measured ones of channel c's log raw values, of [channels][n].
+std::vector<float> Measured(const std::vector<float>& log_raw, int c,
+                            int channels = 3) {
+  const size_t n = log_raw.size() / channels;
+  std::vector<float> values;
+  std::copy_if(log_raw.begin() + c * n, log_raw.begin() + (c + 1) * n,
+               std::back_inserter(values),
+               [](float v) { return v != kNotMeasured; });
+  return values;
+}
+
 // log raw [3][points][columns] of the same bins.
 StatusOr<std::vector<float>> ThinTable(const MerlTable& table,
                                        const std::vector<int>& columns,
@@ -72,6 +83,9 @@ StatusOr<std::vector<float>> ThinTable(const MerlTable& table,
         log_raw.push_back(v);
       }
     }
+    if (Measured(log_raw, c, c + 1).empty()) {
+      return InvalidInput("table", "expected more bins that have values");
+    }
   }
   return log_raw;
 }
@@ -87,16 +101,6 @@ void ProjectCodes(const LobeLayout& layout, std::vector<double>* parameters) {
         std::sqrt(std::inner_product(z.begin(), z.end(), z.begin(), 0.0));
     for (double& value : mixture.code(k)) value /= std::max(norm, 1.0);
   }
-}
-
-// The measured ones of channel c's log raw values, of [3][n].
-std::vector<float> Measured(const std::vector<float>& log_raw, int c) {
-  const size_t n = log_raw.size() / 3;
-  std::vector<float> values;
-  std::copy_if(log_raw.begin() + c * n, log_raw.begin() + (c + 1) * n,
-               std::back_inserter(values),
-               [](float v) { return v != kNotMeasured; });
-  return values;
 }
 
 double CountMeasured(const std::vector<float>& log_raw) {
@@ -306,13 +310,6 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
   StatusOr<std::vector<float>> target =
       ThinTable(table, fit_columns_, kFitPoints);
   if (!target.ok()) return target.status();
-  for (const std::vector<float>& values : {*seen, *target}) {
-    for (int c = 0; c < 3; ++c) {
-      if (Measured(values, c).empty()) {
-        return InvalidInput("table", "expected more bins that have values");
-      }
-    }
-  }
   const TableColumns rough{search_points_, *seen};
   const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
                              std::move(*target)};
@@ -324,10 +321,39 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
     return InvalidInput("table", "no start of the fit has a finite cost");
   }
   Finish(columns, options, &best);
-  if (options.lambertian) AddLambertian(rough, columns, search, options, &best);
-  ProjectCodes(LayoutOf(best.parameters), &best.parameters);
-  const double log_rmse = LogRmse(columns, best.parameters, options);
-  return LobeTableFit{std::move(best.parameters), log_rmse};
+  if (options.lambertian) {
+    FinishWithLambertian(columns, options, &best);
+    // The lobe from the start leads to other lobes of the flow, often to better
+    // ones.
+    Start matte = AddLobes(DarkColours(rough.log_raw), rough, search, options);
+    if (!matte.parameters.empty()) {
+      Finish(columns, options, &matte);
+      if (matte.cost < best.cost) best = std::move(matte);
+    }
+  }
+  return FitOf(columns, options, std::move(best.parameters));
+}
+
+StatusOr<LobeTableFit> LobeTableFitter::AddLambertian(
+    const MerlTable& table, const LobeTableFit& fit,
+    const LobeTableFitOptions& options) const {
+  IBRDF_RETURN_IF_ERROR(options.Check());
+  StatusOr<std::vector<float>> target =
+      ThinTable(table, fit_columns_, kFitPoints);
+  if (!target.ok()) return target.status();
+  const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
+                             std::move(*target)};
+  Start start = {fit.parameters, fit.log_rmse};
+  FinishWithLambertian(columns, options, &start);
+  return FitOf(columns, options, std::move(start.parameters));
+}
+
+LobeTableFit LobeTableFitter::FitOf(const TableColumns& columns,
+                                    const LobeTableFitOptions& options,
+                                    std::vector<double> parameters) const {
+  ProjectCodes(LayoutOf(parameters), &parameters);
+  const double log_rmse = LogRmse(columns, parameters, options);
+  return LobeTableFit{std::move(parameters), log_rmse};
 }
 
 void LobeTableFitter::Finish(const TableColumns& columns,
@@ -337,22 +363,13 @@ void LobeTableFitter::Finish(const TableColumns& columns,
       Refine(columns, options.max_iterations, options, &start->parameters);
 }
 
-void LobeTableFitter::AddLambertian(const TableColumns& rough,
-                                    const TableColumns& columns,
-                                    const Search& search,
-                                    const LobeTableFitOptions& options,
-                                    Start* best) const {
-  const std::vector<double> dark = DarkColours(rough.log_raw);
-  for (const double colour : dark) {
-    best->parameters.push_back(colour + kFaintLambertian);
+void LobeTableFitter::FinishWithLambertian(const TableColumns& columns,
+                                           const LobeTableFitOptions& options,
+                                           Start* start) const {
+  for (const double colour : DarkColours(columns.log_raw)) {
+    start->parameters.push_back(colour + kFaintLambertian);
   }
-  Finish(columns, options, best);
-  // The lobe from the start leads to other lobes of the flow, often to better
-  // ones.
-  Start matte = AddLobes(dark, rough, search, options);
-  if (matte.parameters.empty()) return;
-  Finish(columns, options, &matte);
-  if (matte.cost < best->cost) *best = std::move(matte);
+  Finish(columns, options, start);
 }
 
 LobeTableFitter::Start LobeTableFitter::AddLobes(

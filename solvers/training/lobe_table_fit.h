@@ -60,6 +60,13 @@ class LobeTableFitter {
   StatusOr<LobeTableFit> Fit(const MerlTable& table,
                              const LobeTableFitOptions& options) const;
 
+  // A Lambertian lobe beside the lobes of a table's fit without one, all of
+  // them refined from there: near the same lobes of the flow, where Fit with
+  // `lambertian` may find others that fit better.
+  StatusOr<LobeTableFit> AddLambertian(
+      const MerlTable& table, const LobeTableFit& fit,
+      const LobeTableFitOptions& options) const;
+
   const NeuralBrdfModel& model() const { return model_; }
 
  private:
@@ -76,10 +83,13 @@ class LobeTableFitter {
   // Refines a start at all columns of the fit.
   void Finish(const TableColumns& columns, const LobeTableFitOptions& options,
               Start* start) const;
-  // A fit of the flow's lobes becomes the best with a Lambertian one.
-  void AddLambertian(const TableColumns& rough, const TableColumns& columns,
-                     const Search& search, const LobeTableFitOptions& options,
-                     Start* best) const;
+  // The same with a faint Lambertian lobe beside the start's.
+  void FinishWithLambertian(const TableColumns& columns,
+                            const LobeTableFitOptions& options,
+                            Start* start) const;
+  LobeTableFit FitOf(const TableColumns& columns,
+                     const LobeTableFitOptions& options,
+                     std::vector<double> parameters) const;
   // Levenberg-Marquardt in place; returns the cost, infinite where it failed.
   double Refine(const TableColumns& columns, int iterations,
                 const LobeTableFitOptions& options,

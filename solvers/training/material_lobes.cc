@@ -22,12 +22,18 @@ float Peakedness(const BrdfFlow& flow, const Eigen::VectorXd& code) {
   return value[0] - value[1];
 }
 
-// Codes and log colours of one material's lobes, the most peaked first.
+// Codes and log colours of one material's lobes, the most peaked first. With a
+// Lambertian lobe the flow's lobes stay near those without one: a prior of
+// others misled joint estimates (docs/notes, lambertian_lobe).
 StatusOr<std::vector<double>> FitMaterial(const LobeTableFitter& fitter,
                                           const BrdfFlow& flow,
                                           const MerlTable& table,
-                                          const LobeTableFitOptions& options) {
-  const StatusOr<LobeTableFit> fit = fitter.Fit(table, options);
+                                          const LobeTableFitOptions& options,
+                                          bool lambertian) {
+  StatusOr<LobeTableFit> fit = fitter.Fit(table, options);
+  if (fit.ok() && lambertian) {
+    fit = fitter.AddLambertian(table, *fit, options);
+  }
   if (!fit.ok()) return fit.status();
   const LobeMixture fitted(LobeLayout::OfSize(fit->parameters.size(),
                                               fitter.model().shape.code_size()),
@@ -42,7 +48,7 @@ StatusOr<std::vector<double>> FitMaterial(const LobeTableFitter& fitter,
     const auto lobe = fitted.lobe(k);
     lobes.insert(lobes.end(), lobe.begin(), lobe.end());
   }
-  if (options.lambertian) {
+  if (lambertian) {
     const auto lobe = fitted.lobe(options.lobes);
     lobes.insert(lobes.end(), lobe.begin(), lobe.end());
   }
@@ -61,7 +67,6 @@ Status FitMaterialLobes(int lobes, bool lambertian, int num_threads,
   const FlowLobes by_channel(*model, 3, {2, 2, 1}, 1);
   LobeTableFitOptions options;
   options.lobes = lobes;
-  options.lambertian = lambertian;
   options.num_threads = 1;
   std::vector<StatusOr<std::vector<double>>> fits(
       materials, Status(StatusCode::kInterrupted,
@@ -70,8 +75,8 @@ Status FitMaterialLobes(int lobes, bool lambertian, int num_threads,
     if (stop != nullptr && *stop) return;
     const std::vector<double> channels =
         MaterialLobes(*model, 3 * static_cast<int>(m));
-    fits[m] =
-        FitMaterial(fitter, *flow, by_channel.ToMerl(channels.data()), options);
+    fits[m] = FitMaterial(fitter, *flow, by_channel.ToMerl(channels.data()),
+                          options, lambertian);
   });
   for (int m = 0; m < materials; ++m) {
     if (fits[m].ok()) continue;

@@ -166,6 +166,25 @@ TEST_F(LobeTableFitTest, LambertianLobeHoldsWhatIsMatte) {
   }
 }
 
+// From a fit without the lobe: its own lobes stay the first ones.
+TEST_F(LobeTableFitTest, LambertianLobeIsAddedToAFit) {
+  const MerlTable table =
+      TableOf(model_, {0.35, -0.2, 0.25, -0.3, 3.0, 3.0, 3.0, 3.2, 3.1, 3.0});
+  options_.lobes = 1;
+  const StatusOr<LobeTableFit> flow = fitter_.Fit(table, options_);
+  ASSERT_TRUE(flow.ok());
+  const StatusOr<LobeTableFit> both =
+      fitter_.AddLambertian(table, *flow, options_);
+  ASSERT_TRUE(both.ok());
+  ASSERT_EQ(10u, both->parameters.size());
+  EXPECT_LT(both->log_rmse, 0.5 * flow->log_rmse);
+  MerlTable broken = table;
+  std::fill(broken.raw.begin(), broken.raw.end(),
+            std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(StatusCode::kInvalidInput,
+            fitter_.AddLambertian(broken, *flow, options_).status().code());
+}
+
 // Its log colours do not run away, and the fit is none the worse.
 TEST_F(LobeTableFitTest, LambertianLobeIsHarmlessWhereNothingIsMatte) {
   const MerlTable table =
