@@ -18,7 +18,8 @@ namespace ibrdf {
 namespace {
 
 constexpr char kMagic[] = "ibrdf-model ";
-constexpr int kVersion = 3;
+// The second one's fits have a Lambertian lobe.
+constexpr int kVersion = 3, kLambertianVersion = 4;
 constexpr size_t kMaxModelBytes = size_t{256} << 20;
 // Rounding of a code that was projected to the unit sphere in float.
 constexpr double kBallSlack = 1e-4;
@@ -98,8 +99,11 @@ Status ParseModelHeader(const std::string& path, const std::string& text,
   }
   const std::string wrong = model->shape.Validate();
   if (!wrong.empty()) return InvalidInput(path + ": header", wrong);
-  if (model->fit_lobes < 0 || model->fit_lobes > 8) {
-    return InvalidInput(path + ": fit_lobes", "expected 0 to 8");
+  const int least_fit_lobes = model->fit_lambertian ? 1 : 0;
+  if (model->fit_lobes < least_fit_lobes || model->fit_lobes > 8) {
+    return InvalidInput(
+        path + ": fit_lobes",
+        "expected " + std::to_string(least_fit_lobes) + " to 8");
   }
   if (!(model->exponent >= 0.1 && model->exponent <= 32.0)) {
     return InvalidInput(path + ": exponent", "expected a number in [0.1, 32]");
@@ -121,10 +125,13 @@ StatusOr<NeuralBrdfModel> DecodeModel(const std::string& path,
   size_t at = magic;
   std::string version, length;
   if (bytes.compare(0, magic, kMagic) != 0 || !TakeLine(bytes, &at, &version)) {
-    return InvalidInput(path, "not a model file, expected \"ibrdf-model 3\"");
+    return InvalidInput(path,
+                        "not a model file, expected \"ibrdf-model 3\" or 4");
   }
-  if (version != std::to_string(kVersion)) {
-    return InvalidInput(path + ": version", "expected 3, found " + version);
+  const bool lambertian = version == std::to_string(kLambertianVersion);
+  if (!lambertian && version != std::to_string(kVersion)) {
+    return InvalidInput(path + ": version",
+                        "expected 3 or 4, found " + version);
   }
   if (bytes.size() < at + sizeof(uint64_t)) {
     return InvalidInput(path, "truncated model file");
@@ -143,12 +150,13 @@ StatusOr<NeuralBrdfModel> DecodeModel(const std::string& path,
   }
   const size_t header_size = std::stoul(length);
   NeuralBrdfModel model;
+  model.fit_lambertian = lambertian;
   IBRDF_RETURN_IF_ERROR(
       ParseModelHeader(path, bytes.substr(at, header_size), &model));
   at += header_size;
   const size_t codes = model.names.size() * model.shape.code_size();
-  const size_t fits = static_cast<size_t>(model.num_materials()) *
-                      model.fit_lobes * (model.shape.code_size() + 3);
+  const size_t fits =
+      static_cast<size_t>(model.num_materials()) * model.fit_size();
   const size_t floats =
       model.shape.NumWeights() + codes + model.names.size() + fits;
   if (end - at != floats * sizeof(float)) {
@@ -202,7 +210,8 @@ Status WriteModel(const NeuralBrdfModel& model, const std::string& path) {
   // A name may come from a file whose name is not UTF-8: replaced, not thrown.
   const std::string text =
       header.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  std::string bytes = kMagic + std::to_string(kVersion) + "\n" +
+  const int version = model.fit_lambertian ? kLambertianVersion : kVersion;
+  std::string bytes = kMagic + std::to_string(version) + "\n" +
                       std::to_string(text.size()) + "\n" + text;
   for (const std::vector<float>* values :
        {&model.weights, &model.codes, &model.log_colours, &model.lobe_fits}) {

@@ -10,7 +10,8 @@ namespace ibrdf {
 // Format, version 3: the line "ibrdf-model 3\n"; a decimal byte count and "\n";
 // that many bytes of JSON (shape, exponent, fit_lobes, names, note); the
 // float32 arrays weights, codes, log_colours and lobe_fits, little endian; a
-// 64-bit FNV-1a checksum of everything before it. Refused with a message that
+// 64-bit FNV-1a checksum of everything before it. Version 4 differs in its
+// lobe_fits, which have a Lambertian lobe. Refused with a message that
 // names file and field: another magic or version, sizes that do not fit, a
 // wrong checksum, numbers that are not finite, codes outside the unit ball.
 StatusOr<NeuralBrdfModel> ReadModel(const std::string& path);

@@ -412,8 +412,8 @@ Keys ReflectanceKeys() {
           .Path(".ibrdf", "default")
           .UsedBy(kUnknownReflectance),
       Row("reflectance.lobes",
-          "Number of lobes. Each has a code of the embedding and an RGB "
-          "colour.")
+          "Number of lobes of the flow. Each has a code of the embedding and "
+          "an RGB colour. A Lambertian lobe of the model is not counted.")
           .Integer(1, kMaxLobes, "2")
           .UsedBy(kUnknownReflectance),
       Row("reflectance.prior_sigma",

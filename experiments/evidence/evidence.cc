@@ -68,7 +68,7 @@ class EvidenceStudy {
         prior_(std::move(prior)),
         factory_(study.cook_torrance
                      ? CookTorranceLobes::Factory(problem.num_threads)
-                     : FlowLobes::Factory(*problem.model, problem.lobes,
+                     : FlowLobes::Factory(*problem.model, prior_.layout(),
                                           problem.num_threads)),
         lobes_(factory_(problem.transport.grid)),
         study_(study),
@@ -114,6 +114,7 @@ class EvidenceStudy {
     if (study_.found_alone) return OkStatus();
     LobeTableFitOptions fit_options;
     fit_options.lobes = problem_.lobes;
+    fit_options.lambertian = prior_.layout().lambertian;
     fit_options.num_threads = problem_.num_threads;
     const StatusOr<LobeTableFit> fit =
         LobeTableFitter(*problem_.model).Fit(truth_.brdf, fit_options);
@@ -123,8 +124,10 @@ class EvidenceStudy {
     LevelGauge(*problem_.model, prior_, problem_.num_threads)
         .Fix(nearest.data());
     std::vector<double> turned = nearest;
-    std::rotate(turned.begin(), turned.end() - lobes_->lobe_size(),
-                turned.end());
+    const auto end_of_codes =
+        turned.begin() + lobes_->layout().num_coded() * lobes_->lobe_size();
+    std::rotate(turned.begin(), end_of_codes - lobes_->lobe_size(),
+                end_of_codes);
     if (prior_.Cost(ToEigen(turned), nullptr) <
         prior_.Cost(ToEigen(nearest), nullptr)) {
       nearest = turned;
@@ -248,8 +251,11 @@ Status Study(const std::string& path, const StudyOptions& options,
   if (truth->brdf.raw.empty()) {
     return InvalidInput(path, "truth.brdf is needed here");
   }
-  MaterialPrior prior = (options.ball_prior ? BallPrior : JointMaterialPrior)(
-      *inverse->model, inverse->lobes, inverse->prior_sigma);
+  const int lobes = inverse->lobes;
+  MaterialPrior prior =
+      options.ball_prior
+          ? BallPrior(*inverse->model, lobes, inverse->prior_sigma)
+          : JointMaterialPrior(*inverse->model, lobes, inverse->prior_sigma);
   if (options.cook_torrance) {
     const auto [known, is_new] =
         cook_torrance->try_emplace(problem->reflectance.model, MaterialPrior());

@@ -27,7 +27,8 @@ StatusOr<MaterialPrior> CookTorrancePrior(const NeuralBrdfModel& model,
   }
   std::vector<MaterialPrior::Material> materials =
       JointMaterialPrior(model, model.fit_lobes, 1.0).materials;
-  const FlowLobes lobes(model, model.fit_lobes, kNoGrid, 1);
+  const FlowLobes lobes(model, FittedLayout(model, model.fit_lobes), kNoGrid,
+                        1);
   std::vector<Status> failed(materials.size());
   ParallelFor(
       static_cast<int64_t>(materials.size()), num_threads, [&](int64_t m, int) {

@@ -20,7 +20,9 @@ class FlowTableFitter final : public TableFitter {
                   const LobeTableFitOptions& options)
       : fitter_(std::move(fitter)), name_(model_name), options_(options) {}
 
-  std::string method() const override { return "flow"; }
+  std::string method() const override {
+    return options_.lambertian ? "flow_lambertian" : "flow";
+  }
   std::string lobes() const override { return std::to_string(options_.lobes); }
   std::string model() const override { return name_; }
 
@@ -33,8 +35,11 @@ class FlowTableFitter final : public TableFitter {
     if (!fit.ok()) return fit.status();
     FittedTable result;
     result.seconds = watch.Seconds();
-    const FlowLobes lobes(fitter_->model(), options.lobes, kNoGrid,
-                          context.num_threads);
+    const FlowLobes lobes(
+        fitter_->model(),
+        LobeLayout::OfSize(fit->parameters.size(),
+                           fitter_->model().shape.code_size()),
+        kNoGrid, context.num_threads);
     result.table = lobes.ToMerl(fit->parameters.data());
     return result;
   }

@@ -39,9 +39,9 @@ template <typename Render>
 bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
                   const double* parameters, std::vector<double>* L_o,
                   std::vector<double>* dL_o) {
-  const int codes = lobes.code_size();
-  const int stride = dL_o != nullptr ? 1 + codes : 1;
-  const int num_fields = stride * lobes.num_lobes();
+  const int stride = dL_o != nullptr ? 1 + lobes.code_size() : 1;
+  const int num_fields =
+      dL_o != nullptr ? lobes.num_fields() : lobes.num_lobes();
   const int columns = lobes.num_parameters();
   std::vector<float> fields;
   lobes.Tabulate(parameters, dL_o != nullptr, &fields);
@@ -68,7 +68,7 @@ bool CombineLobes(const Render& render, int points, const LobeModel& lobes,
         (*L_o)[row] += colours(c, k) * field(0);
         if (dL_o == nullptr) continue;
         const MutableLobeMixture d = lobes.Mixture(&(*dL_o)[row * columns]);
-        for (int z = 0; z < codes; ++z) {
+        for (int z = 0; z < d.code(k).size(); ++z) {
           d.code(k)[z] = colours(c, k) * field(1 + z);
         }
         d.log_colour(k)[c] = slopes(c, k) * field(0);

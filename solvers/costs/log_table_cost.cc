@@ -5,11 +5,11 @@
 
 namespace ibrdf {
 
-LogTableCost::LogTableCost(const BrdfFlow& flow, int code_size, double exponent,
-                           int num_lobes, const TableColumns& table,
+LogTableCost::LogTableCost(const BrdfFlow& flow, const LobeLayout& layout,
+                           double exponent, const TableColumns& table,
                            double floor, double weight, int num_threads)
     : flow_(flow),
-      layout_{num_lobes, code_size},
+      layout_(layout),
       exponent_(exponent),
       table_(table),
       floor_(floor),
@@ -25,9 +25,9 @@ bool LogTableCost::Evaluate(double const* const* parameters, double* residuals,
   const int num_lobes = layout_.num_lobes, code_size = layout_.code_size;
   const LobeMixture lobes(layout_, parameters[0]);
   const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
-  std::vector<float> log_q(n * num_lobes), dcode;
-  if (derivatives) dcode.resize(n * num_lobes * code_size);
-  for (int k = 0; k < num_lobes; ++k) {
+  std::vector<float> log_q(n * num_lobes, 0.0f), dcode;
+  if (derivatives) dcode.resize(n * layout_.num_coded() * code_size);
+  for (int k = 0; k < layout_.num_coded(); ++k) {
     const Eigen::VectorXf code = lobes.code(k).cast<float>();
     flow_.LogDensityOnColumns(
         table_.points, code.data(), num_threads_, log_q.data() + k * n,
@@ -48,15 +48,23 @@ bool LogTableCost::Evaluate(double const* const* parameters, double* residuals,
       const double log_f = std::log(sum) + top;
       if (!std::isfinite(log_f)) return false;
       const size_t row = c * n + i;
+      if (std::isinf(table_.log_raw[row])) {
+        residuals[row] = 0.0;
+        if (derivatives) {
+          std::fill_n(jacobians[0] + row * layout_.num_parameters(),
+                      layout_.num_parameters(), 0.0);
+        }
+        continue;
+      }
       residuals[row] = scale_ * (log_f - table_.log_raw[row]);
       if (!derivatives) continue;
       const MutableLobeMixture j(layout_,
                                  jacobians[0] + row * layout_.num_parameters());
       for (int k = 0; k < num_lobes; ++k) {
         const double share = scale_ * std::exp(log_lobe[k] - log_f);
-        const float* dz = dcode.data() + k * n * code_size + i;
-        for (int d = 0; d < code_size; ++d) {
-          j.code(k)[d] = share * exponent_ * dz[d * n];
+        for (int d = 0; d < j.code(k).size(); ++d) {
+          const float dz = dcode[(k * code_size + d) * n + i];
+          j.code(k)[d] = share * exponent_ * dz;
         }
         j.log_colour(k).setZero();
         j.log_colour(k)[c] = share;

@@ -14,20 +14,22 @@ namespace ibrdf {
 // theta_h in each.
 struct TableColumns {
   FlowColumns points;
-  // log(max(raw, 0) + floor) [3][points.num_points()].
+  // log(raw + floor) [3][points.num_points()]; minus infinity where nothing was
+  // measured, which costs nothing.
   std::vector<float> log_raw;
 };
 
 // Parameters as LobeModel's. Residuals per channel and point:
 // log(sum_k exp(a_kc) q(x | z_k)^exponent + floor) - log raw, raw units, times
-// sqrt(weight). Where another lobe dominates, a lobe's derivative vanishes
+// sqrt(weight); of a Lambertian lobe q is 1. Where another lobe dominates, a
+// lobe's derivative vanishes
 // smoothly; where all are below the floor, all do.
 class LogTableCost final : public ceres::CostFunction {
  public:
   // flow and table must outlive *this.
-  LogTableCost(const BrdfFlow& flow, int code_size, double exponent,
-               int num_lobes, const TableColumns& table, double floor,
-               double weight, int num_threads);
+  LogTableCost(const BrdfFlow& flow, const LobeLayout& layout, double exponent,
+               const TableColumns& table, double floor, double weight,
+               int num_threads);
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;

@@ -210,7 +210,8 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
   o.covariance = problem.solver.max_iterations > 0;
   if (paint != nullptr) AddPaint(*paint, &o);
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      FlowLobes::Factory(*problem.model, problem.lobes, problem.num_threads),
+      FlowLobes::Factory(*problem.model, setup.lobes->layout(),
+                         problem.num_threads),
       setup.materials, problem.points, SearchedPixels(setup), o);
   if (!found.ok()) return found.status();
   ReflectanceEstimate out;
@@ -259,10 +260,10 @@ double CoarseEvidence(const SolveSetup& setup, SolveContext* context,
   if (paint != nullptr) o.paint = *paint;
   const StatusOr<ReflectanceSearchResult> found =
       setup.lobes_unknown()
-          ? SearchReflectance(FlowLobes::Factory(*problem.model, problem.lobes,
-                                                 problem.num_threads),
-                              setup.materials, problem.points,
-                              SearchedPixels(setup), o)
+          ? SearchReflectance(
+                FlowLobes::Factory(*problem.model, setup.lobes->layout(),
+                                   problem.num_threads),
+                setup.materials, problem.points, SearchedPixels(setup), o)
           : SearchReflectance(
                 TableLobes::Factory(*problem.known_brdf),
                 KnownMaterial(ToEigen(TableLobes::KnownParameters())),

@@ -25,7 +25,7 @@ constexpr double kLightChromaStd = 0.35;
 
 LevelGauge::LevelGauge(const NeuralBrdfModel& model, const MaterialPrior& prior,
                        int num_threads)
-    : lobes_(model, prior.num_lobes(), kGrid, num_threads) {
+    : lobes_(model, prior.layout(), kGrid, num_threads) {
   CHECK(!prior.materials.empty());
   for (const MaterialPrior::Material& m : prior.materials) {
     mean_ += MeanLog(m.parameters.data()) /
@@ -98,7 +98,7 @@ Eigen::Array3d LightGaugeShift(SolverGauge gauge, const Image& map) {
   return log_mean - log_mean.mean();
 }
 
-void SetGauge(SolverGauge gauge, int num_lobes, Solution* solution) {
+void SetGauge(SolverGauge gauge, int code_size, Solution* solution) {
   const Eigen::Array3d shift = LightGaugeShift(gauge, solution->map);
   const Eigen::Array3d scale = shift.exp();
   std::vector<float>& map = solution->map.rgb;
@@ -106,8 +106,7 @@ void SetGauge(SolverGauge gauge, int num_lobes, Solution* solution) {
     map[i] = static_cast<float>(map[i] / scale[i % 3]);
   }
   std::vector<double>& lobes = solution->lobe_parameters;
-  const int lobe_size = static_cast<int>(lobes.size()) / num_lobes;
-  MutableLobeMixture({num_lobes, lobe_size - 3}, lobes.data())
+  MutableLobeMixture(LobeLayout::OfSize(lobes.size(), code_size), lobes.data())
       .ShiftColours(shift);
   std::vector<double>& raw = solution->brdf.raw;
   for (size_t i = 0; i < raw.size(); ++i) {

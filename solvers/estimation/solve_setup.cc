@@ -62,12 +62,17 @@ void SetKnownLight(const Image& map, SolveSetup* setup) {
 }
 
 void SetUnknownLobes(const InverseProblem& problem, SolveSetup* setup) {
-  setup->lobes =
-      std::make_unique<FlowLobes>(*problem.model, problem.lobes,
-                                  problem.transport.grid, problem.num_threads);
+  const bool published = setup->light_unknown() &&
+                         problem.solver.estimator == SolverEstimator::kMaximum;
+  // The published estimate has lobes of the flow alone.
+  const LobeLayout layout =
+      published ? LobeLayout{problem.lobes, problem.model->shape.code_size()}
+                : FittedLayout(*problem.model, problem.lobes);
+  setup->lobes = std::make_unique<FlowLobes>(
+      *problem.model, layout, problem.transport.grid, problem.num_threads);
   setup->lobe_prior = EmbeddingPrior(*problem.model, problem.prior_sigma);
   setup->materials =
-      JointMaterialPrior(*problem.model, problem.lobes, problem.prior_sigma);
+      JointMaterialPrior(*problem.model, layout, problem.prior_sigma);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ void LobeBlock::ReverseGradient(const double* parameters, const float* map,
                                 const std::vector<double>& adjoint,
                                 double* gradient) const {
   const size_t nodes = lobes_->grid_shape().num_nodes();
-  const int codes = lobes_->code_size(), stride = 1 + codes;
+  const int stride = 1 + lobes_->code_size();
   std::vector<float> by_grid(3 * nodes), fields;
   lobes_->Tabulate(parameters, true, &fields);
   const BrdfGrid grid = lobes_->Combine(parameters, fields, stride);
@@ -54,7 +54,7 @@ void LobeBlock::ReverseGradient(const double* parameters, const float* map,
       }
       by_lobe.log_colour(k)[c] = slopes(c, k) * sum;
     }
-    for (int d = 0; d < codes; ++d) {
+    for (int d = 0; d < mixture.code(k).size(); ++d) {
       const float* derivative = shape + (1 + d) * nodes;
       double sum = 0.0;
       for (size_t i = 0; i < nodes; ++i) sum += by_shape[i] * derivative[i];

@@ -313,7 +313,7 @@ MarginalValue MarginalReflectance::Evaluate(
       (*gradient)[lobes_->num_parameters() + i] +=
           adjoint.col(t + i / 2).cast<double>().dot(slopes[k].col(i));
     }
-    for (int d = 0; d < size; ++d) {
+    for (int d = 0; d < lobes.code(k).size(); ++d) {
       const float* derivative = &fields[(k * stride + 1 + d) * nodes];
       double sum = 0.0;
       for (size_t i = 0; i < nodes; ++i) {
@@ -332,7 +332,7 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
     const DirectionalLightResponses& directional_lights,
     const LightMode& mode) const {
   const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
-  const int num_fields = num_lobes * (1 + size);
+  const int num_fields = lobes_->num_fields();
   const Eigen::Index P = binned_.num_bins();
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<const float*> field(num_fields);
@@ -393,7 +393,7 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
         const double* of_lobe = &sum[3 * k * (1 + size) + c];
         const MutableLobeMixture row =
             lobes_->Mixture(jacobian.row(c * P + i).data());
-        for (int d = 0; d < size; ++d) {
+        for (int d = 0; d < row.code(k).size(); ++d) {
           row.code(k)[d] = share * of_lobe[3 * (1 + d)];
         }
         row.log_colour(k)[c] = colour_slopes(c, k) / radiance * of_lobe[0];

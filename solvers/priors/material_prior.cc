@@ -22,11 +22,12 @@ constexpr double kExtraLobe = -3.0;
 // dimension's mean: a narrow prior would otherwise start at an infinite cost.
 constexpr double kExtraDeviations = 2.0;
 
-// Lobes of every material: those of its fit, or one of its mean code.
+// Lobes of every material: those of its fit as far as the layout has them, or
+// one of its mean code.
 std::vector<MaterialPrior::Material> FittedMaterials(
-    const NeuralBrdfModel& model, int lobes) {
+    const NeuralBrdfModel& model, const LobeLayout& layout) {
   std::vector<MaterialPrior::Material> materials;
-  if (model.fit_lobes == 0 || lobes < model.fit_lobes) {
+  if (model.fit_lobes == 0 || layout.num_coded() < model.fit_lobes) {
     const LobeLayout one = {1, model.shape.code_size()};
     const std::vector<MaterialCode> codes = MaterialCodes(model);
     for (size_t m = 0; m < codes.size(); ++m) {
@@ -41,28 +42,65 @@ std::vector<MaterialPrior::Material> FittedMaterials(
     }
     return materials;
   }
-  const LobeLayout fitted = {model.fit_lobes, model.shape.code_size()};
-  const Eigen::Index size = fitted.num_parameters();
+  const LobeLayout taken = {model.fit_lobes + (layout.lambertian ? 1 : 0),
+                            model.shape.code_size(), layout.lambertian};
   for (int m = 0; m < model.num_materials(); ++m) {
     const std::string& name = model.names[static_cast<size_t>(3) * m];
     materials.push_back(
         {name.substr(0, name.rfind('.')),
-         Eigen::Map<const Eigen::VectorXf>(&model.lobe_fits[m * size], size)
+         Eigen::Map<const Eigen::VectorXf>(
+             &model.lobe_fits[m * model.fit_size()], taken.num_parameters())
              .cast<double>()});
   }
   return materials;
 }
 
-// Appends a lobe like the last but fainter, its code no longer than `longest`.
+// Appends a lobe like the last with a code but fainter, its code no longer than
+// `longest`; a Lambertian lobe stays last.
 void AddLobe(int code_size, double longest, Eigen::VectorXd* parameters) {
-  LobeLayout layout = LobeLayout::OfSize(parameters->size(), code_size);
-  const int last = layout.num_lobes++;
-  parameters->conservativeResize(layout.num_parameters());
+  const LobeLayout before = LobeLayout::OfSize(parameters->size(), code_size);
+  const LobeLayout layout = {before.num_lobes + 1, code_size,
+                             before.lambertian};
+  const int added = before.num_coded();
+  const Eigen::VectorXd old = *parameters;
+  parameters->resize(layout.num_parameters());
+  const LobeMixture from(before, old.data());
   const MutableLobeMixture lobes(layout, parameters->data());
-  lobes.lobe(last) = lobes.lobe(last - 1);
-  const double norm = lobes.code(last).norm();
-  if (norm > longest) lobes.code(last) *= longest / norm;
-  lobes.log_colour(last) += kExtraLobe;
+  for (int k = 0; k < added; ++k) lobes.lobe(k) = from.lobe(k);
+  lobes.lobe(added) = from.lobe(added - 1);
+  const double norm = lobes.code(added).norm();
+  if (norm > longest) lobes.code(added) *= longest / norm;
+  lobes.log_colour(added) += kExtraLobe;
+  if (layout.lambertian) lobes.lobe(added + 1) = from.lobe(added);
+}
+
+// Codes N(0, code_sigma^2 I), colours as the embedding's.
+MaterialPrior IndependentPrior(const NeuralBrdfModel& model,
+                               const LobeLayout& layout, double code_sigma) {
+  const LobePrior embedding = EmbeddingPrior(model, code_sigma);
+  const int size = layout.code_size;
+  MaterialPrior prior;
+  prior.code_size = size;
+  prior.mean = Eigen::VectorXd::Zero(layout.num_parameters());
+  Eigen::VectorXd std =
+      Eigen::VectorXd::Constant(prior.mean.size(), code_sigma);
+  const MutableLobeMixture of_mean(layout, prior.mean.data());
+  const MutableLobeMixture of_std(layout, std.data());
+  for (int k = 0; k < layout.num_lobes; ++k) {
+    of_mean.log_colour(k) =
+        Eigen::Map<const Eigen::Array3d>(embedding.colour_mean);
+    of_std.log_colour(k).setConstant(embedding.colour_sigma);
+  }
+  prior.factor = std.asDiagonal();
+  prior.materials = FittedMaterials(model, layout);
+  const double longest =
+      kExtraDeviations * code_sigma * std::sqrt(static_cast<double>(size));
+  for (MaterialPrior::Material& m : prior.materials) {
+    while (m.parameters.size() < prior.mean.size()) {
+      AddLobe(size, longest, &m.parameters);
+    }
+  }
+  return prior;
 }
 
 // The deviation of a known material's parameters: no step or derivative tells
@@ -75,7 +113,7 @@ double MaterialPrior::WallCost(const Eigen::VectorXd& x,
                                Eigen::VectorXd* gradient) const {
   double cost = 0.0;
   const LobeMixture lobes(layout(), x.data());
-  for (int k = 0; k < num_lobes(); ++k) {
+  for (int k = 0; k < layout().num_coded(); ++k) {
     const double norm = lobes.code(k).norm();
     if (norm <= 1.0) continue;
     cost += 0.5 * wall * wall * (norm - 1.0) * (norm - 1.0);
@@ -90,7 +128,7 @@ double MaterialPrior::WallCost(const Eigen::VectorXd& x,
 void MaterialPrior::AddWallInformation(const Eigen::VectorXd& x,
                                        Eigen::MatrixXd* information) const {
   const LobeMixture lobes(layout(), x.data());
-  for (int k = 0; k < num_lobes(); ++k) {
+  for (int k = 0; k < layout().num_coded(); ++k) {
     const Eigen::VectorXd z = lobes.code(k);
     if (z.norm() <= 1.0) continue;
     const int first = layout().code(k);
@@ -129,44 +167,41 @@ MaterialPrior KnownMaterial(const Eigen::VectorXd& parameters) {
 
 MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,
                         double code_sigma) {
-  const LobePrior embedding = EmbeddingPrior(model, code_sigma);
-  const int size = model.shape.code_size();
-  const LobeLayout layout = {lobes, size};
-  MaterialPrior prior;
-  prior.code_size = size;
-  prior.mean = Eigen::VectorXd::Zero(layout.num_parameters());
-  Eigen::VectorXd std =
-      Eigen::VectorXd::Constant(prior.mean.size(), code_sigma);
-  const MutableLobeMixture of_mean(layout, prior.mean.data());
-  const MutableLobeMixture of_std(layout, std.data());
-  for (int k = 0; k < lobes; ++k) {
-    of_mean.log_colour(k) =
-        Eigen::Map<const Eigen::Array3d>(embedding.colour_mean);
-    of_std.log_colour(k).setConstant(embedding.colour_sigma);
-  }
-  prior.factor = std.asDiagonal();
-  prior.materials = FittedMaterials(model, lobes);
-  const double longest =
-      kExtraDeviations * code_sigma * std::sqrt(static_cast<double>(size));
-  for (MaterialPrior::Material& m : prior.materials) {
-    while (m.parameters.size() < prior.mean.size()) {
-      AddLobe(size, longest, &m.parameters);
-    }
-  }
+  return IndependentPrior(model, {lobes, model.shape.code_size()}, code_sigma);
+}
+
+LobeLayout FittedLayout(const NeuralBrdfModel& model, int lobes) {
+  const LobeLayout layout = {lobes, model.shape.code_size()};
+  return model.fit_lambertian && lobes >= model.fit_lobes
+             ? layout.WithLambertian()
+             : layout;
+}
+
+MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model,
+                                 const LobeLayout& layout, double code_sigma) {
+  CHECK(!layout.lambertian || FittedLayout(model, layout.num_coded()) == layout)
+      << "no Lambertian lobe was fitted to the materials";
+  MaterialPrior prior = IndependentPrior(model, layout, code_sigma);
+  const std::vector<MaterialPrior::Material> materials =
+      FittedMaterials(model, layout);
+  if (materials.size() < 3) return prior;
+  const MaterialPrior own = GaussianPrior(materials, prior.code_size);
+  // The lobes of the fits come first, but their Lambertian one last.
+  const Eigen::Index plain = layout.lambertian ? 3 : 0;
+  const Eigen::Index size = own.mean.size() - plain;
+  prior.mean.head(size) = own.mean.head(size);
+  prior.mean.tail(plain) = own.mean.tail(plain);
+  prior.factor.topLeftCorner(size, size) = own.factor.topLeftCorner(size, size);
+  prior.factor.bottomLeftCorner(plain, size) =
+      own.factor.bottomLeftCorner(plain, size);
+  prior.factor.bottomRightCorner(plain, plain) =
+      own.factor.bottomRightCorner(plain, plain);
   return prior;
 }
 
 MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
                                  double code_sigma) {
-  MaterialPrior prior = BallPrior(model, lobes, code_sigma);
-  const std::vector<MaterialPrior::Material> materials =
-      FittedMaterials(model, lobes);
-  if (materials.size() < 3) return prior;
-  const MaterialPrior own = GaussianPrior(materials, prior.code_size);
-  const Eigen::Index size = own.mean.size();
-  prior.mean.head(size) = own.mean;
-  prior.factor.topLeftCorner(size, size) = own.factor;
-  return prior;
+  return JointMaterialPrior(model, FittedLayout(model, lobes), code_sigma);
 }
 
 MaterialPrior GaussianPrior(std::vector<MaterialPrior::Material> materials,

@@ -47,19 +47,27 @@ struct MaterialPrior {
 MaterialPrior GaussianPrior(std::vector<MaterialPrior::Material> materials,
                             int code_size);
 
+// So many lobes of the flow, and a Lambertian one beside them where the model's
+// fits have one and are of no more lobes.
+LobeLayout FittedLayout(const NeuralBrdfModel& model, int lobes);
+
 // GaussianPrior of the materials' lobes (NeuralBrdfModel::lobe_fits): how
-// the codes of two lobes and the colours of both go together. Lobes beyond
-// those of the fits are independent: codes N(0, code_sigma^2 I), colours as the
-// embedding's. Without fits, the first lobe has the Gaussian of the materials'
-// mean codes, or that one where there are fewer than three materials.
+// the codes of two lobes, the colours of both and a Lambertian lobe's go
+// together. Lobes beyond those of the fits are independent: codes
+// N(0, code_sigma^2 I), colours as the embedding's. Without fits, the first
+// lobe has the Gaussian of the materials' mean codes, or that one where there
+// are fewer than three materials. layout: FittedLayout, or that without its
+// Lambertian lobe; with a number of lobes FittedLayout.
+MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model,
+                                 const LobeLayout& layout, double code_sigma);
 MaterialPrior JointMaterialPrior(const NeuralBrdfModel& model, int lobes,
                                  double code_sigma);
 
 // One material without codes that is known: no step moves its lobes.
 MaterialPrior KnownMaterial(const Eigen::VectorXd& parameters);
 
-// The paper's: codes N(0, code_sigma^2 I), colours as the embedding's
-// (Chen et al. 2020, Sec. 4.3).
+// The paper's: lobes of the flow alone, codes N(0, code_sigma^2 I), colours as
+// the embedding's (Chen et al. 2020, Sec. 4.3).
 MaterialPrior BallPrior(const NeuralBrdfModel& model, int lobes,
                         double code_sigma);
 

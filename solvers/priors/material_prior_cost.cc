@@ -10,24 +10,24 @@ namespace ibrdf {
 MaterialPriorCost::MaterialPriorCost(const MaterialPrior* prior)
     : prior_(prior) {
   mutable_parameter_block_sizes()->push_back(prior->num_parameters());
-  set_num_residuals(prior->num_parameters() + prior->num_lobes());
+  set_num_residuals(prior->num_parameters() + prior->layout().num_coded());
 }
 
 bool MaterialPriorCost::Evaluate(double const* const* parameters,
                                  double* residuals, double** jacobians) const {
-  const Eigen::Index n = prior_->num_parameters(), lobes = prior_->num_lobes();
+  const LobeLayout layout = prior_->layout();
+  const Eigen::Index n = prior_->num_parameters(), coded = layout.num_coded();
   const Eigen::Map<const Eigen::VectorXd> x(parameters[0], n);
-  Eigen::Map<Eigen::VectorXd> r(residuals, n + lobes);
+  Eigen::Map<Eigen::VectorXd> r(residuals, n + coded);
   const auto lower = prior_->factor.triangularView<Eigen::Lower>();
   r.head(n) = lower.solve(x - prior_->mean);
   double* const jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
   if (jacobian != nullptr) {
-    Eigen::Map<RowMatrix> J(jacobian, n + lobes, n);
+    Eigen::Map<RowMatrix> J(jacobian, n + coded, n);
     J.setZero();
     J.topRows(n) = lower.solve(Eigen::MatrixXd::Identity(n, n));
   }
-  const LobeLayout layout = prior_->layout();
-  for (int k = 0; k < layout.num_lobes; ++k) {
+  for (int k = 0; k < layout.num_coded(); ++k) {
     const auto z = LobeMixture(layout, parameters[0]).code(k);
     const double norm = z.norm();
     r[n + k] = prior_->wall * std::max(0.0, norm - 1.0);

@@ -7,7 +7,7 @@
 namespace ibrdf {
 
 // One block, lobe parameters as LobeModel. Residuals: factor^-1 (x - mean),
-// then per lobe wall * max(0, |z_k| - 1); half their squares are
+// then per code wall * max(0, |z_k| - 1); half their squares are
 // MaterialPrior::Cost.
 class MaterialPriorCost final : public ceres::CostFunction {
  public:

@@ -10,7 +10,7 @@ namespace ibrdf {
 LobePriorCost::LobePriorCost(const LobeLayout& layout, const LobePrior& prior)
     : layout_(layout), prior_(prior) {
   mutable_parameter_block_sizes()->push_back(layout.num_parameters());
-  set_num_residuals(layout.num_parameters() + layout.num_lobes);
+  set_num_residuals(layout.num_parameters() + layout.num_coded());
 }
 
 bool LobePriorCost::Evaluate(double const* const* parameters, double* residuals,
@@ -24,25 +24,26 @@ bool LobePriorCost::Evaluate(double const* const* parameters, double* residuals,
   };
   for (int k = 0; k < layout_.num_lobes; ++k) {
     const auto z = lobes.code(k);
-    const int row = k * (layout_.lobe_size() + 1);
+    int row = k * (layout_.lobe_size() + 1);
     double square = 0.0;
-    for (int d = 0; d < layout_.code_size; ++d) {
-      residuals[row + d] = z[d] / prior_.sigma;
+    for (int d = 0; d < z.size(); ++d, ++row) {
+      residuals[row] = z[d] / prior_.sigma;
       square += z[d] * z[d];
-      if (J != nullptr) jacobian_row(row + d).code(k)[d] = 1 / prior_.sigma;
+      if (J != nullptr) jacobian_row(row).code(k)[d] = 1 / prior_.sigma;
     }
-    const double norm = std::sqrt(square);
-    const int wall = row + layout_.code_size;
-    residuals[wall] = prior_.wall * std::max(0.0, norm - 1.0);
-    if (J != nullptr && norm > 1.0) {
-      jacobian_row(wall).code(k) = prior_.wall * z / norm;
+    if (k < layout_.num_coded()) {
+      const double norm = std::sqrt(square);
+      residuals[row] = prior_.wall * std::max(0.0, norm - 1.0);
+      if (J != nullptr && norm > 1.0) {
+        jacobian_row(row).code(k) = prior_.wall * z / norm;
+      }
+      ++row;
     }
-    for (int c = 0; c < 3; ++c) {
-      residuals[wall + 1 + c] =
-          (lobes.log_colour(k)[c] - prior_.colour_mean[c]) /
-          prior_.colour_sigma;
+    for (int c = 0; c < 3; ++c, ++row) {
+      residuals[row] = (lobes.log_colour(k)[c] - prior_.colour_mean[c]) /
+                       prior_.colour_sigma;
       if (J != nullptr) {
-        jacobian_row(wall + 1 + c).log_colour(k)[c] = 1 / prior_.colour_sigma;
+        jacobian_row(row).log_colour(k)[c] = 1 / prior_.colour_sigma;
       }
     }
   }

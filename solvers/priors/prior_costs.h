@@ -24,7 +24,8 @@ class LobePriorCost final : public ceres::CostFunction {
  public:
   LobePriorCost(const LobeLayout& layout, const LobePrior& prior);
 
-  // parameters[0] as LobeMixture. Residuals per lobe: codes, wall, colours.
+  // parameters[0] as LobeMixture. Residuals per lobe: codes, wall, colours; of
+  // a Lambertian one the colours.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 

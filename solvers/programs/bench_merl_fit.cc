@@ -33,16 +33,20 @@ struct MerlFitFlags {
   Status Check() const { return neural.fit.Check(); }
 };
 
-// Adds `flow` with each number of lobes, for a model that it reads.
+// Adds `flow` and `flow_lambertian` with each number of lobes, for a model that
+// it reads.
 Status AddFlowFitters(const NeuralFitFlags& flags, TableFitters* fitters) {
   const StatusOr<OpenedModel> opened = OpenModel(flags.model);
   if (!opened.ok()) return opened.status();
   const std::string name = std::filesystem::path(flags.model).stem().string();
   const auto fitter = std::make_shared<const LobeTableFitter>(opened->model);
-  for (const int count : flags.lobes) {
-    LobeTableFitOptions options = flags.fit;
-    options.lobes = count;
-    fitters->push_back(FlowFitter(fitter, name, options));
+  for (const bool lambertian : {false, true}) {
+    for (const int count : flags.lobes) {
+      LobeTableFitOptions options = flags.fit;
+      options.lobes = count;
+      options.lambertian = lambertian;
+      fitters->push_back(FlowFitter(fitter, name, options));
+    }
   }
   return OkStatus();
 }
@@ -55,7 +59,9 @@ Status ListFitters(const MerlFitFlags& flags, TableFitters* fitters) {
   const std::vector<std::string>& methods = flags.options.methods;
   const bool wanted =
       methods.empty() ||
-      std::find(methods.begin(), methods.end(), "flow") != methods.end();
+      std::any_of(methods.begin(), methods.end(), [](const std::string& m) {
+        return m == "flow" || m == "flow_lambertian";
+      });
   return wanted ? AddFlowFitters(flags.neural, fitters) : OkStatus();
 }
 
@@ -87,7 +93,7 @@ Status RunMerlFit(const BenchSession& session, MerlFitFlags* flags) {
 
 // Names of --methods, each once.
 std::string MethodNames() {
-  std::string methods = "flow flow_free ";
+  std::string methods = "flow; flow_lambertian; flow_free; ";
   for (const auto& fitter : BaselineFitters()) {
     const std::string name = fitter->method();
     if (methods.find(name + ";") == std::string::npos) methods += name + "; ";
@@ -109,20 +115,22 @@ void AddTableFlags(CLI::App* fit, MerlFitSweepOptions* options) {
 }
 
 void AddNeuralFitFlags(CLI::App* fit, NeuralFitFlags* flags) {
-  fit->add_option("--model", flags->model,
-                  "of the method flow: default, or a model file")
+  fit->add_option(
+         "--model", flags->model,
+         "of the methods flow and flow_lambertian: default, or a model file")
       ->capture_default_str();
-  fit->add_option("--lobes", flags->lobes,
-                  "of the method flow: comma-separated numbers of lobes")
+  fit->add_option(
+         "--lobes", flags->lobes,
+         "of these methods: comma-separated numbers of the flow's lobes")
       ->delimiter(',')
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
   fit->add_option("--starts", flags->fit.starts,
-                  "of the method flow: starts from the embedding, per lobe")
+                  "of these methods: starts from the embedding, per lobe")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   fit->add_option("--prior-sigma", flags->fit.prior_sigma,
-                  "of the method flow: standard deviation of the codes' prior")
+                  "of these methods: standard deviation of the codes' prior")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   fit->add_option("--free-steps", flags->free.steps,

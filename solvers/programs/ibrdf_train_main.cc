@@ -33,6 +33,9 @@ void AddDataFlags(CLI::App* app, TrainFlags* flags) {
                   "random analytic materials to train on beside the tables")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
+  app->add_flag("--lambertian", flags->lambertian,
+                "fits the materials with a Lambertian lobe beside the flow's; "
+                "estimates with the model then have one too");
   app->add_flag("--fresh", flags->fresh, "ignore an existing checkpoint");
 }
 

@@ -134,13 +134,16 @@ std::string Note(const TrainFlags& flags, const TrainerOptions& options,
          std::to_string(options.seed) + ".";
 }
 
-Status FitLobes(const CommonFlags& common, NeuralBrdfModel* model) {
+Status FitLobes(const TrainFlags& flags, const CommonFlags& common,
+                NeuralBrdfModel* model) {
   if (!common.quiet) {
-    std::printf("fitting %d lobes to each of %d materials\n", kFitLobes,
+    std::printf("fitting %d lobes%s to each of %d materials\n", kFitLobes,
+                flags.lambertian ? " and a Lambertian one" : "",
                 model->num_materials());
     std::fflush(stdout);
   }
-  return FitMaterialLobes(kFitLobes, common.threads, &stop_requested, model);
+  return FitMaterialLobes(kFitLobes, flags.lambertian, common.threads,
+                          &stop_requested, model);
 }
 
 }  // namespace
@@ -170,7 +173,7 @@ Status TrainModel(const TrainFlags& flags, const CommonFlags& common) {
   KeepMeasured(tables->measured, &*model);
   model->note =
       Note(flags, options, PrintScores(*model, tables->held_out, common));
-  IBRDF_RETURN_IF_ERROR(FitLobes(common, &*model));
+  IBRDF_RETURN_IF_ERROR(FitLobes(flags, common, &*model));
   IBRDF_RETURN_IF_ERROR(WriteModel(*model, flags.out));
   std::remove(options.checkpoint.c_str());
   return OkStatus();
@@ -183,7 +186,7 @@ Status RefitModel(const TrainFlags& flags, const CommonFlags& common) {
     return InvalidInput(flags.refit, "expected the codes of a material");
   }
   IBRDF_RETURN_IF_ERROR(PrepareFolderOf(flags.out));
-  IBRDF_RETURN_IF_ERROR(FitLobes(common, &*model));
+  IBRDF_RETURN_IF_ERROR(FitLobes(flags, common, &*model));
   return WriteModel(*model, flags.out);
 }
 

@@ -19,6 +19,8 @@ struct TrainFlags {
   // Ten held-out materials score 0.120 without, 0.114 with 48 and 0.123 with
   // 120 of them (docs/notes, reflectance_model).
   int analytic = 48;
+  // Whether estimates with the model have a Lambertian lobe beside the flow's.
+  bool lambertian = false;
   bool fresh = false;  // ignore an existing checkpoint
   std::string flow = "triangular";
   std::vector<int> bins = {32, 16, 16};

@@ -12,7 +12,8 @@ std::vector<LobeSummary> SummariseLobes(const InverseProblem& inverse,
   const std::vector<double>& parameters = solution.lobe_parameters;
   const std::vector<double>& covariance = solution.lobe_covariance;
   if (parameters.empty()) return {};
-  const LobeLayout layout = {inverse.lobes, inverse.model->shape.code_size()};
+  const LobeLayout layout =
+      LobeLayout::OfSize(parameters.size(), inverse.model->shape.code_size());
   const size_t n = parameters.size();
   std::vector<double> deviations;
   for (size_t i = 0; i < n && !covariance.empty(); ++i) {

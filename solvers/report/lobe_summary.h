@@ -14,7 +14,7 @@ inline constexpr char kLobeFormula[] =
     "raw = sum over lobes of colour * density(code) ^ exponent";
 
 struct LobeSummary {
-  std::vector<double> code;      // in the unit ball
+  std::vector<double> code;      // in the unit ball; Lambertian: empty
   std::array<double, 3> colour;  // raw MERL units
   // One standard deviation of the posterior (Laplace, light integrated out);
   // unset where the solution has no covariance.

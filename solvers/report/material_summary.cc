@@ -25,13 +25,15 @@ double Luminance(const Eigen::Array3d& rgb) {
 
 std::vector<NearMaterial> NearestMaterials(const InverseProblem& inverse,
                                            const std::vector<double>& lobes) {
+  const LobeLayout layout =
+      LobeLayout::OfSize(lobes.size(), inverse.model->shape.code_size());
   const LobeDistance distance(
-      FlowLobes::Factory(*inverse.model, inverse.lobes, inverse.num_threads),
+      FlowLobes::Factory(*inverse.model, layout, inverse.num_threads),
       kCoarseGrid);
   const std::vector<double> found = distance.LogValues(lobes);
   std::vector<NearMaterial> all;
   for (const MaterialPrior::Material& material :
-       JointMaterialPrior(*inverse.model, inverse.lobes, inverse.prior_sigma)
+       JointMaterialPrior(*inverse.model, layout, inverse.prior_sigma)
            .materials) {
     if (static_cast<size_t>(material.parameters.size()) != lobes.size()) {
       continue;

@@ -33,13 +33,15 @@ std::string LobeTable(const std::vector<LobeSummary>& lobes) {
   std::vector<std::vector<std::string>> rows;
   for (size_t k = 0; k < lobes.size(); ++k) {
     const auto& deviation = lobes[k].deviation;
-    std::vector<std::string> row = {"lobe\xC2\xA0" + std::to_string(k + 1)};
+    const bool lambertian = lobes[k].code.empty();
+    std::vector<std::string> row = {
+        lambertian ? "Lambertian" : "lobe\xC2\xA0" + std::to_string(k + 1)};
     for (size_t c = 0; c < 3; ++c) {
       row.push_back(ColourInWords(lobes[k].colour[c],
                                   deviation ? deviation->log_colour[c] : kNan));
     }
-    row.push_back(ShortNumber(Norm(lobes[k].code)));
-    row.push_back(deviation
+    row.push_back(lambertian ? "-" : ShortNumber(Norm(lobes[k].code)));
+    row.push_back(deviation && !lambertian
                       ? ShortNumber(Norm(deviation->code) /
                                     std::sqrt(double(deviation->code.size())))
                       : "-");
@@ -56,8 +58,12 @@ std::string LobesInWords(const std::vector<LobeSummary>& lobes) {
              "p", std::string("The estimate is a sum of lobes (brdf.json): ") +
                       kLobeFormula +
                       ". A code is a place among the training materials, whose "
-                      "codes have norms of at most 1. Colours are in raw MERL "
-                      "units.") +
+                      "codes have norms of at most 1. " +
+                      (lobes.back().code.empty()
+                           ? "The Lambertian lobe has no code, and its density "
+                             "is 1. "
+                           : "") +
+                      "Colours are in raw MERL units.") +
          "\n" + LobeTable(lobes) +
          HtmlElement(
              "p",

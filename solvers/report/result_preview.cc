@@ -291,8 +291,10 @@ std::vector<std::pair<std::string, BrdfGrid>> DrawnAlternatives(
         !std::isfinite(other.cost) || other.lobe_parameters.empty()) {
       continue;
     }
-    const FlowLobes lobes(*inverse.model, inverse.lobes, BrdfGridShape(),
-                          inverse.num_threads);
+    const FlowLobes lobes(*inverse.model,
+                          LobeLayout::OfSize(other.lobe_parameters.size(),
+                                             inverse.model->shape.code_size()),
+                          BrdfGridShape(), inverse.num_threads);
     drawn.emplace_back(AlternativeLabel(other),
                        lobes.Grid(other.lobe_parameters.data()));
   }

@@ -82,7 +82,8 @@ StatusOr<Solution> SolveDeveloped(const InverseProblem& problem,
   RestoreUnits(exposure, &*solution);
   if (problem.solver.gauge != SolverGauge::kPrior &&
       !problem.known_map.has_value() && !problem.known_brdf.has_value()) {
-    SetGauge(problem.solver.gauge, problem.lobes, &*solution);
+    SetGauge(problem.solver.gauge, problem.model->shape.code_size(),
+             &*solution);
   }
   return solution;
 }

@@ -113,8 +113,8 @@ void SummariseReflectance(const SolveSetup& setup, const Estimate& estimate,
   solution->brdf = setup.lobes->ToMerl(lobes.data());
   solution->lobe_covariance.assign(covariance.data(),
                                    covariance.data() + covariance.size());
-  const LobeDistance distance(
-      FlowLobes::Factory(*problem.model, problem.lobes, problem.num_threads));
+  const LobeDistance distance(FlowLobes::Factory(
+      *problem.model, setup.lobes->layout(), problem.num_threads));
   if (covariance.size() > 0) {
     solution->spread =
         ReflectanceSpread(distance, lobes, solution->lobe_covariance,

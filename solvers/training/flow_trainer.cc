@@ -29,29 +29,33 @@ double Seconds() {
       .count();
 }
 
-// One code's share of a step: psi of the residuals after the best colour.
-// Returns the sum of squared residuals.
+// One code's share of a step: psi of the residuals after the best colour, 0
+// where nothing was measured. Returns the sum of squared residuals.
 double Residuals(const std::vector<float>& log_density,
                  const std::vector<float>& log_raw, double exponent,
                  double huber, std::vector<float>* psi) {
   const size_t n = log_raw.size();
   std::vector<double> r(n);
-  double mean = 0.0;
+  double mean = 0.0, measured = 0.0;
   for (size_t i = 0; i < n; ++i) {
+    if (log_raw[i] == kNotMeasured) continue;
     r[i] = exponent * log_density[i] - log_raw[i];
     mean += r[i];
+    measured += 1.0;
   }
-  mean /= static_cast<double>(n);
+  mean /= std::max(measured, 1.0);
   double mean_psi = 0.0, sum = 0.0;
   for (size_t i = 0; i < n; ++i) {
+    if (log_raw[i] == kNotMeasured) continue;
     r[i] -= mean;
     sum += r[i] * r[i];
     r[i] = std::clamp(r[i], -huber, huber);
     mean_psi += r[i];
   }
-  mean_psi /= static_cast<double>(n);
+  mean_psi /= std::max(measured, 1.0);
   for (size_t i = 0; i < n; ++i) {
-    (*psi)[i] = static_cast<float>(r[i] - mean_psi);
+    (*psi)[i] =
+        log_raw[i] == kNotMeasured ? 0.0f : static_cast<float>(r[i] - mean_psi);
   }
   return sum;
 }
@@ -282,7 +286,7 @@ class Trainer {
   Chunk chunks_[kChunks];
 };
 
-// Calls f(distribution, log density, log raw) at every bin.
+// Calls f(distribution, log density, log raw) at every bin that was measured.
 template <typename F>
 void ForEachBin(const NeuralBrdfModel& model, const TrainingData& data,
                 int num_threads, F f) {
@@ -296,6 +300,7 @@ void ForEachBin(const NeuralBrdfModel& model, const TrainingData& data,
     for (int c = 0; c < columns; ++c) {
       const float* log_raw = data.LogRaw(m, c);
       for (int i = 0; i < data.count[c]; ++i) {
+        if (log_raw[i] == kNotMeasured) continue;
         f(m, value[static_cast<size_t>(i) * columns + c], log_raw[i]);
       }
     }
@@ -311,7 +316,8 @@ void FitColours(const TrainingData& data, int num_threads,
     count[m] += 1;
   });
   for (int m = 0; m < model->num_codes(); ++m) {
-    model->log_colours[m] = static_cast<float>(sum[m] / count[m]);
+    model->log_colours[m] =
+        static_cast<float>(sum[m] / std::max(count[m], 1.0));
   }
 }
 

@@ -1,11 +1,13 @@
 #include "ibrdf/solvers/training/lobe_table_fit.h"
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 #include <glog/logging.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -24,6 +26,14 @@ constexpr double kFreeColours = 1e3;  // standard deviation of log colours: none
 // Log colours tried for a further lobe, relative to the one that would make it
 // fit alone, go down to this.
 constexpr double kFaintest = -5.0;
+// A Lambertian lobe starts at this share of the table's values in order, and
+// is held there by a Gaussian of its log colours: a table without a matte part
+// would drive them to minus infinity. The deviation leaves it less than a
+// twentieth of the darkest tenth of the bins.
+constexpr double kDarkShare = 0.1;
+constexpr double kLambertianDeviation = 5.0;
+// Beside a finished fit it starts so much fainter, and hardly spoils it.
+constexpr double kFaintLambertian = -2.0;
 
 // Which theta_h of a column of `count` stands for stratum i of n.
 int Stratum(int i, int n, int count) {
@@ -44,6 +54,17 @@ FlowColumns ThinColumns(const std::vector<int>& columns, int points) {
   return thin;
 }
 
+// The measured ones of channel c's log raw values, of [channels][n].
+std::vector<float> Measured(const std::vector<float>& log_raw, int c,
+                            int channels = 3) {
+  const size_t n = log_raw.size() / channels;
+  std::vector<float> values;
+  std::copy_if(log_raw.begin() + c * n, log_raw.begin() + (c + 1) * n,
+               std::back_inserter(values),
+               [](float v) { return v != kNotMeasured; });
+  return values;
+}
+
 // log raw [3][points][columns] of the same bins.
 StatusOr<std::vector<float>> ThinTable(const MerlTable& table,
                                        const std::vector<int>& columns,
@@ -56,20 +77,23 @@ StatusOr<std::vector<float>> ThinTable(const MerlTable& table,
     for (int i = 0; i < points; ++i) {
       for (int k = 0; k < n; ++k) {
         const float v = all.LogRaw(c, k)[Stratum(i, points, all.count[k])];
-        if (!std::isfinite(v)) {
+        if (!std::isfinite(v) && v != kNotMeasured) {
           return InvalidInput("table", "expected finite values");
         }
         log_raw.push_back(v);
       }
+    }
+    if (Measured(log_raw, c, c + 1).empty()) {
+      return InvalidInput("table", "expected more bins that have values");
     }
   }
   return log_raw;
 }
 
 // Puts codes beyond the unit ball on its sphere.
-void ProjectCodes(int lobes, int code_size, std::vector<double>* parameters) {
-  const MutableLobeMixture mixture({lobes, code_size}, parameters->data());
-  for (int k = 0; k < lobes; ++k) {
+void ProjectCodes(const LobeLayout& layout, std::vector<double>* parameters) {
+  const MutableLobeMixture mixture(layout, parameters->data());
+  for (int k = 0; k < layout.num_coded(); ++k) {
     // As ClampCodes, but the squares are summed in their order: the bits of
     // trained models.
     const auto z = mixture.code(k);
@@ -77,6 +101,36 @@ void ProjectCodes(int lobes, int code_size, std::vector<double>* parameters) {
         std::sqrt(std::inner_product(z.begin(), z.end(), z.begin(), 0.0));
     for (double& value : mixture.code(k)) value /= std::max(norm, 1.0);
   }
+}
+
+double CountMeasured(const std::vector<float>& log_raw) {
+  return static_cast<double>(log_raw.size() - std::count(log_raw.begin(),
+                                                         log_raw.end(),
+                                                         kNotMeasured));
+}
+
+// The log colours at which a Lambertian lobe starts, for log raw values [3][n].
+std::vector<double> DarkColours(const std::vector<float>& log_raw) {
+  std::vector<double> colours;
+  for (int c = 0; c < 3; ++c) {
+    std::vector<float> values = Measured(log_raw, c);
+    const auto dark =
+        values.begin() + static_cast<size_t>(kDarkShare * values.size());
+    std::nth_element(values.begin(), dark, values.end());
+    colours.push_back(*dark);
+  }
+  return colours;
+}
+
+// (a - mean) / kLambertianDeviation for the last log colours of a mixture.
+ceres::CostFunction* HoldLambertian(const LobeLayout& layout,
+                                    const std::vector<double>& mean) {
+  const int n = layout.num_parameters();
+  ceres::Matrix A = ceres::Matrix::Zero(3, n);
+  A.rightCols(3).diagonal().setConstant(1.0 / kLambertianDeviation);
+  ceres::Vector b = ceres::Vector::Zero(n);
+  for (int c = 0; c < 3; ++c) b[n - 3 + c] = mean[c];
+  return new ceres::NormalPrior(A, b);
 }
 
 }  // namespace
@@ -106,10 +160,14 @@ class LobeTableFitter::Search {
         n_(fitter.search_points_.num_points()),
         codes_(fitter.model_.num_codes()) {}
 
-  // The `count` best starts with one lobe more than `base` (which may be
-  // empty), no two with the same new material.
+  // The `count` best starts with one lobe of the flow more than `base` (which
+  // may be empty), no two with the same new material.
   std::vector<std::vector<double>> Extend(const std::vector<double>& base,
                                           int count) const {
+    const LobeLayout of_base = fitter_.LayoutOf(base);
+    const LobeLayout layout = {of_base.num_lobes + 1, of_base.code_size,
+                               of_base.lambertian};
+    const int added = of_base.num_coded();
     const std::vector<float> log_base = LogSum(base);
     std::vector<std::pair<double, int>> order;
     std::vector<Eigen::Array3d> colours(codes_);
@@ -133,15 +191,15 @@ class LobeTableFitter::Search {
       }
       taken.push_back(material);
       std::vector<double> start = base;
-      LobeLayout layout = LayoutOf(base);
-      const int last = layout.num_lobes++;
-      start.resize(layout.num_parameters());
+      start.insert(start.begin() + of_base.code(added), layout.lobe_size(),
+                   0.0);
       const MutableLobeMixture lobes(layout, start.data());
-      lobes.code(last) = Eigen::Map<const Eigen::VectorXf>(
-                             fitter_.model_.codes.data() + m * layout.code_size,
-                             layout.code_size)
-                             .cast<double>();
-      lobes.log_colour(last) = colours[m];
+      lobes.code(added) =
+          Eigen::Map<const Eigen::VectorXf>(
+              fitter_.model_.codes.data() + m * layout.code_size,
+              layout.code_size)
+              .cast<double>();
+      lobes.log_colour(added) = colours[m];
       starts.push_back(start);
       if (static_cast<int>(starts.size()) == count) break;
     }
@@ -149,20 +207,19 @@ class LobeTableFitter::Search {
   }
 
  private:
-  LobeLayout LayoutOf(const std::vector<double>& parameters) const {
-    return LobeLayout::OfSize(parameters.size(),
-                              fitter_.model_.shape.code_size());
-  }
-
   // log of the sum of lobes [3][n]; -inf where there are none.
   std::vector<float> LogSum(const std::vector<double>& parameters) const {
     std::vector<float> sum(3 * n_, -std::numeric_limits<float>::infinity());
-    const LobeMixture lobes(LayoutOf(parameters), parameters.data());
+    const LobeMixture lobes(fitter_.LayoutOf(parameters), parameters.data());
     std::vector<float> value(n_);
     for (int k = 0; k < lobes.num_lobes(); ++k) {
-      const Eigen::VectorXf code = lobes.code(k).cast<float>();
-      fitter_.flow_->LogDensityOnColumns(fitter_.search_points_, code.data(), 1,
-                                         value.data(), nullptr);
+      if (k < lobes.layout().num_coded()) {
+        const Eigen::VectorXf code = lobes.code(k).cast<float>();
+        fitter_.flow_->LogDensityOnColumns(fitter_.search_points_, code.data(),
+                                           1, value.data(), nullptr);
+      } else {
+        std::fill(value.begin(), value.end(), 0.0f);
+      }
       for (int c = 0; c < 3; ++c) {
         for (size_t i = 0; i < n_; ++i) {
           const double v =
@@ -187,12 +244,17 @@ class LobeTableFitter::Search {
     const float* q = fitter_.embedding_.data() + m * n_;
     const float* target = log_raw_.data() + c * n_;
     const float* b = base.data() + c * n_;
-    double mean = 0.0;
-    for (size_t i = 0; i < n_; ++i) mean += target[i] - q[i];
-    mean /= static_cast<double>(n_);
+    double mean = 0.0, measured = 0.0;
+    for (size_t i = 0; i < n_; ++i) {
+      if (target[i] == kNotMeasured) continue;
+      mean += target[i] - q[i];
+      measured += 1.0;
+    }
+    mean /= measured;
     if (std::isinf(b[0])) {
       double error = 0.0;
       for (size_t i = 0; i < n_; ++i) {
+        if (target[i] == kNotMeasured) continue;
         const double r = mean + q[i] - target[i];
         error += r * r;
       }
@@ -202,6 +264,7 @@ class LobeTableFitter::Search {
     for (double shift = 1.0; shift >= kFaintest; shift -= 1.0) {
       double error = 0.0;
       for (size_t i = 0; i < n_; i += 2) {
+        if (target[i] == kNotMeasured) continue;
         const double v = mean + shift + q[i];
         const double top = std::max<double>(b[i], v);
         const double r =
@@ -251,34 +314,76 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
   const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
                              std::move(*target)};
 
+  const Search search(*this, std::move(*seen));
   // All starts are refined roughly, the best one to the end.
-  std::vector<double> best =
-      BestStart(rough, Search(*this, std::move(*seen)), options);
-  if (best.empty()) {
+  Start best = AddLobes({}, rough, search, options);
+  if (best.parameters.empty()) {
     return InvalidInput("table", "no start of the fit has a finite cost");
   }
-  Refine(columns, options.lobes, options.max_iterations, options, &best);
-  ProjectCodes(options.lobes, model_.shape.code_size(), &best);
-  const double log_rmse = LogRmse(columns, best, options);
-  return LobeTableFit{std::move(best), log_rmse};
+  Finish(columns, options, &best);
+  if (options.lambertian) {
+    FinishWithLambertian(columns, options, &best);
+    // The lobe from the start leads to other lobes of the flow, often to better
+    // ones.
+    Start matte = AddLobes(DarkColours(rough.log_raw), rough, search, options);
+    if (!matte.parameters.empty()) {
+      Finish(columns, options, &matte);
+      if (matte.cost < best.cost) best = std::move(matte);
+    }
+  }
+  return FitOf(columns, options, std::move(best.parameters));
 }
 
-std::vector<double> LobeTableFitter::BestStart(
-    const TableColumns& rough, const Search& search,
+StatusOr<LobeTableFit> LobeTableFitter::AddLambertian(
+    const MerlTable& table, const LobeTableFit& fit,
     const LobeTableFitOptions& options) const {
-  std::vector<double> best;
+  IBRDF_RETURN_IF_ERROR(options.Check());
+  StatusOr<std::vector<float>> target =
+      ThinTable(table, fit_columns_, kFitPoints);
+  if (!target.ok()) return target.status();
+  const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
+                             std::move(*target)};
+  Start start = {fit.parameters, fit.log_rmse};
+  FinishWithLambertian(columns, options, &start);
+  return FitOf(columns, options, std::move(start.parameters));
+}
+
+LobeTableFit LobeTableFitter::FitOf(const TableColumns& columns,
+                                    const LobeTableFitOptions& options,
+                                    std::vector<double> parameters) const {
+  ProjectCodes(LayoutOf(parameters), &parameters);
+  const double log_rmse = LogRmse(columns, parameters, options);
+  return LobeTableFit{std::move(parameters), log_rmse};
+}
+
+void LobeTableFitter::Finish(const TableColumns& columns,
+                             const LobeTableFitOptions& options,
+                             Start* start) const {
+  start->cost =
+      Refine(columns, options.max_iterations, options, &start->parameters);
+}
+
+void LobeTableFitter::FinishWithLambertian(const TableColumns& columns,
+                                           const LobeTableFitOptions& options,
+                                           Start* start) const {
+  for (const double colour : DarkColours(columns.log_raw)) {
+    start->parameters.push_back(colour + kFaintLambertian);
+  }
+  Finish(columns, options, start);
+}
+
+LobeTableFitter::Start LobeTableFitter::AddLobes(
+    std::vector<double> base, const TableColumns& rough, const Search& search,
+    const LobeTableFitOptions& options) const {
+  Start best = {std::move(base), 0.0};
   for (int lobes = 1; lobes <= options.lobes; ++lobes) {
-    std::vector<double> winner;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::vector<double>& start : search.Extend(best, options.starts)) {
-      const double cost =
-          Refine(rough, lobes, kRoughIterations, options, &start);
-      if (cost < least) {
-        least = cost;
-        winner = start;
-      }
+    Start winner = {{}, std::numeric_limits<double>::infinity()};
+    for (std::vector<double>& start :
+         search.Extend(best.parameters, options.starts)) {
+      const double cost = Refine(rough, kRoughIterations, options, &start);
+      if (cost < winner.cost) winner = {start, cost};
     }
-    if (winner.empty()) return {};
+    if (winner.parameters.empty()) return winner;
     best = winner;
   }
   return best;
@@ -287,35 +392,43 @@ std::vector<double> LobeTableFitter::BestStart(
 double LobeTableFitter::LogRmse(const TableColumns& columns,
                                 const std::vector<double>& parameters,
                                 const LobeTableFitOptions& options) const {
-  const LogTableCost cost(*flow_, model_.shape.code_size(), model_.exponent,
-                          options.lobes, columns, kLogFloor, 1.0,
-                          options.num_threads);
+  const LogTableCost cost(*flow_, LayoutOf(parameters), model_.exponent,
+                          columns, kLogFloor, 1.0, options.num_threads);
   std::vector<double> residuals(columns.log_raw.size());
   const double* block = parameters.data();
   cost.Evaluate(&block, residuals.data(), nullptr);
   const double square = std::inner_product(residuals.begin(), residuals.end(),
                                            residuals.begin(), 0.0);
-  return std::sqrt(square / static_cast<double>(residuals.size()));
+  return std::sqrt(square / CountMeasured(columns.log_raw));
 }
 
-double LobeTableFitter::Refine(const TableColumns& columns, int lobes,
-                               int iterations,
+LobeLayout LobeTableFitter::LayoutOf(
+    const std::vector<double>& parameters) const {
+  return LobeLayout::OfSize(parameters.size(), model_.shape.code_size());
+}
+
+double LobeTableFitter::Refine(const TableColumns& columns, int iterations,
                                const LobeTableFitOptions& options,
                                std::vector<double>* parameters) const {
-  const int size = model_.shape.code_size();
+  const LobeLayout layout = LayoutOf(*parameters);
   LobePrior prior;
   prior.sigma = options.prior_sigma;
   prior.wall = options.wall;
   prior.colour_sigma = kFreeColours;
   ceres::Problem problem;
   problem.AddResidualBlock(
-      new LogTableCost(*flow_, size, model_.exponent, lobes, columns, kLogFloor,
-                       options.independent_bins /
-                           static_cast<double>(columns.log_raw.size()),
-                       options.num_threads),
+      new LogTableCost(
+          *flow_, layout, model_.exponent, columns, kLogFloor,
+          options.independent_bins / CountMeasured(columns.log_raw),
+          options.num_threads),
       nullptr, parameters->data());
-  problem.AddResidualBlock(new LobePriorCost({lobes, size}, prior), nullptr,
+  problem.AddResidualBlock(new LobePriorCost(layout, prior), nullptr,
                            parameters->data());
+  if (layout.lambertian) {
+    problem.AddResidualBlock(
+        HoldLambertian(layout, DarkColours(columns.log_raw)), nullptr,
+        parameters->data());
+  }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   solver.max_num_iterations = iterations;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
+#include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/flow/brdf_flow.h"
 #include "ibrdf/flow/neural_brdf_model.h"
@@ -15,8 +16,9 @@ namespace ibrdf {
 struct TableColumns;
 
 struct LobeTableFitOptions {
-  int lobes = 2;
-  int starts = 4;  // combinations of embedding codes that are refined
+  int lobes = 2;            // of the flow
+  bool lambertian = false;  // a Lambertian lobe beside them
+  int starts = 4;           // combinations of embedding codes that are refined
   int max_iterations = 60;
   // Relative decrease of the cost to stop at, and the stiffness of the wall at
   // the unit ball: a stiffer one holds up steps along it. A stiff wall and a
@@ -35,7 +37,9 @@ struct LobeTableFitOptions {
 };
 
 struct LobeTableFit {
-  // As LobeModel's: per lobe the code, then log colours in raw units.
+  // As LobeModel's: per lobe the code, then log colours in raw units. Of a
+  // table that has no matte part the Lambertian lobe's stay where the lobe is a
+  // few per cent of the darkest bins: further down they would mean nothing.
   std::vector<double> parameters;
   double log_rmse = 0.0;  // over the bins that the fit saw
 };
@@ -49,24 +53,49 @@ class LobeTableFitter {
 
   // Least squares of log(f + 1e-6) - log(raw + 1e-6) (the log-RMSE of
   // CompareBrdfs) over columns of the table, by Levenberg-Marquardt from the
-  // best combinations of embedding codes; lobes are added one by one. Codes
-  // stay in the unit ball. Fails on a table without a positive red value and on
-  // non-finite values; the message starts with "table".
+  // best combinations of embedding codes; lobes are added one by one. Bins of
+  // negative raw values play no part. Codes stay in the unit ball. Fails on a
+  // table without a positive red value and on non-finite values; the message
+  // starts with "table".
   StatusOr<LobeTableFit> Fit(const MerlTable& table,
                              const LobeTableFitOptions& options) const;
+
+  // A Lambertian lobe beside the lobes of a table's fit without one, all of
+  // them refined from there: near the same lobes of the flow, where Fit with
+  // `lambertian` may find others that fit better.
+  StatusOr<LobeTableFit> AddLambertian(
+      const MerlTable& table, const LobeTableFit& fit,
+      const LobeTableFitOptions& options) const;
 
   const NeuralBrdfModel& model() const { return model_; }
 
  private:
   class Search;
-  // Lobes at the few columns of the search; empty where no start has a finite
-  // cost.
-  std::vector<double> BestStart(const TableColumns& rough, const Search& search,
-                                const LobeTableFitOptions& options) const;
+  struct Start {
+    std::vector<double> parameters;  // empty where no cost is finite
+    double cost = 0.0;
+  };
+  // Lobes of the flow added one by one to `base`, which may be empty, at the
+  // few columns of the search.
+  Start AddLobes(std::vector<double> base, const TableColumns& rough,
+                 const Search& search,
+                 const LobeTableFitOptions& options) const;
+  // Refines a start at all columns of the fit.
+  void Finish(const TableColumns& columns, const LobeTableFitOptions& options,
+              Start* start) const;
+  // The same with a faint Lambertian lobe beside the start's.
+  void FinishWithLambertian(const TableColumns& columns,
+                            const LobeTableFitOptions& options,
+                            Start* start) const;
+  LobeTableFit FitOf(const TableColumns& columns,
+                     const LobeTableFitOptions& options,
+                     std::vector<double> parameters) const;
   // Levenberg-Marquardt in place; returns the cost, infinite where it failed.
-  double Refine(const TableColumns& columns, int lobes, int iterations,
+  double Refine(const TableColumns& columns, int iterations,
                 const LobeTableFitOptions& options,
                 std::vector<double>* parameters) const;
+  // Of as many lobes as the parameters make.
+  LobeLayout LayoutOf(const std::vector<double>& parameters) const;
 
   // Root mean square of the residuals over the columns.
   double LogRmse(const TableColumns& columns,

@@ -22,14 +22,21 @@ float Peakedness(const BrdfFlow& flow, const Eigen::VectorXd& code) {
   return value[0] - value[1];
 }
 
-// Codes and log colours of one material's lobes, the most peaked first.
+// Codes and log colours of one material's lobes, the most peaked first. With a
+// Lambertian lobe the flow's lobes stay near those without one: a prior of
+// others misled joint estimates (docs/notes, lambertian_lobe).
 StatusOr<std::vector<double>> FitMaterial(const LobeTableFitter& fitter,
                                           const BrdfFlow& flow,
                                           const MerlTable& table,
-                                          const LobeTableFitOptions& options) {
-  const StatusOr<LobeTableFit> fit = fitter.Fit(table, options);
+                                          const LobeTableFitOptions& options,
+                                          bool lambertian) {
+  StatusOr<LobeTableFit> fit = fitter.Fit(table, options);
+  if (fit.ok() && lambertian) {
+    fit = fitter.AddLambertian(table, *fit, options);
+  }
   if (!fit.ok()) return fit.status();
-  const LobeMixture fitted({options.lobes, fitter.model().shape.code_size()},
+  const LobeMixture fitted(LobeLayout::OfSize(fit->parameters.size(),
+                                              fitter.model().shape.code_size()),
                            fit->parameters.data());
   std::vector<int> order(options.lobes);
   std::iota(order.begin(), order.end(), 0);
@@ -41,12 +48,16 @@ StatusOr<std::vector<double>> FitMaterial(const LobeTableFitter& fitter,
     const auto lobe = fitted.lobe(k);
     lobes.insert(lobes.end(), lobe.begin(), lobe.end());
   }
+  if (lambertian) {
+    const auto lobe = fitted.lobe(options.lobes);
+    lobes.insert(lobes.end(), lobe.begin(), lobe.end());
+  }
   return lobes;
 }
 
 }  // namespace
 
-Status FitMaterialLobes(int lobes, int num_threads,
+Status FitMaterialLobes(int lobes, bool lambertian, int num_threads,
                         const std::atomic<bool>* stop, NeuralBrdfModel* model) {
   const int materials = model->num_materials();
   const LobeTableFitter fitter(*model);
@@ -64,8 +75,8 @@ Status FitMaterialLobes(int lobes, int num_threads,
     if (stop != nullptr && *stop) return;
     const std::vector<double> channels =
         MaterialLobes(*model, 3 * static_cast<int>(m));
-    fits[m] =
-        FitMaterial(fitter, *flow, by_channel.ToMerl(channels.data()), options);
+    fits[m] = FitMaterial(fitter, *flow, by_channel.ToMerl(channels.data()),
+                          options, lambertian);
   });
   for (int m = 0; m < materials; ++m) {
     if (fits[m].ok()) continue;
@@ -75,6 +86,7 @@ Status FitMaterialLobes(int lobes, int num_threads,
                         status.message());
   }
   model->fit_lobes = lobes;
+  model->fit_lambertian = lambertian;
   model->lobe_fits.clear();
   for (const StatusOr<std::vector<double>>& fit : fits) {
     model->lobe_fits.insert(model->lobe_fits.end(), fit->begin(), fit->end());

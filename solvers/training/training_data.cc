@@ -100,7 +100,8 @@ void AddTable(const MerlTable& table, const std::vector<int>& columns,
       for (int i = 0; i < kMerlThetaH; ++i) {
         const double raw = table.Raw(c, i * kMerlThetaD * kMerlPhiD + column);
         data->log_raw.push_back(
-            static_cast<float>(std::log(std::max(raw, 0.0) + kLogFloor)));
+            raw < 0.0 ? kNotMeasured
+                      : static_cast<float>(std::log(raw + kLogFloor)));
       }
     }
   }

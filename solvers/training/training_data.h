@@ -1,6 +1,7 @@
 // Measured tables as columns of the flow's unit cube.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,13 @@
 namespace ibrdf {
 
 inline constexpr double kLogFloor = 1e-6;
+// In the place of a logarithm: the bin has no value. Tables mark one by a
+// negative raw value.
+inline constexpr float kNotMeasured = -std::numeric_limits<float>::infinity();
 
 // Columns of constant (theta_d, phi_d), the same for all materials, with the
 // logarithm of raw value + kLogFloor of every distribution (material and
-// channel) at the theta_h above the horizon.
+// channel) at the theta_h above the horizon, or kNotMeasured.
 struct TrainingData {
   std::vector<std::string> names;  // "material.red", ".green", ".blue", ...
   FlowColumns columns;             // points: the kMerlThetaH of a table

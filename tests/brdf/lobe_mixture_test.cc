@@ -44,6 +44,44 @@ TEST_F(LobeMixtureTest, LobesWithoutCodesAreColours) {
   EXPECT_EQ(5.0, lobes.log_colour(1)[1]);
 }
 
+TEST_F(LobeMixtureTest, LambertianLobeIsLastAndHasColoursAlone) {
+  const LobeLayout layout = kLayout.WithLambertian();
+  EXPECT_EQ(3, layout.num_lobes);
+  EXPECT_EQ(2, layout.num_coded());
+  EXPECT_EQ(17, layout.num_parameters());
+  EXPECT_EQ(layout, layout.WithLambertian());
+  EXPECT_EQ(layout, LobeLayout::OfSize(17, 4));
+  EXPECT_EQ(kLayout, LobeLayout::OfSize(14, 4));
+  // Alone, and where no lobe has numbers in its code.
+  EXPECT_EQ((LobeLayout{1, 4, true}), LobeLayout::OfSize(3, 4));
+  EXPECT_EQ((LobeLayout{3, 0}), LobeLayout::OfSize(9, 0));
+  std::vector<double> x = parameters_;
+  x.insert(x.end(), {-1.0, -2.0, -3.0});
+  const MutableLobeMixture lobes(layout, x.data());
+  EXPECT_EQ(0, lobes.code(2).size());
+  EXPECT_EQ(3, lobes.lobe(2).size());
+  EXPECT_EQ(7, lobes.lobe(1).size());
+  EXPECT_EQ(-2.0, lobes.log_colour(2)[1]);
+  EXPECT_EQ(std::exp(-3.0), lobes.RawColours()(2, 2));
+  lobes.ShiftColours({1.0, 2.0, 4.0});
+  EXPECT_EQ(1.0, x[16]);
+  // The others are where they were.
+  EXPECT_EQ(Eigen::VectorXd(lobes.code(1)), Eigen::VectorXd(lobes_.code(1)));
+  lobes.code(1) *= 50.0;
+  lobes.ClampCodes();
+  EXPECT_NEAR(1.0, lobes.code(1).norm(), 1e-15);
+  EXPECT_EQ(1.0, x[16]);
+}
+
+// Black to the last bit, however dark.
+TEST_F(LobeMixtureTest, DarkestColoursAreZeroWithoutSlope) {
+  for (const double a : {-800.0, -1e300}) {
+    mutable_.log_colour(1).setConstant(a);
+    EXPECT_TRUE((lobes_.Colours().col(1) == 0.0).all());
+    EXPECT_TRUE((lobes_.ColourSlopes().col(1) == 0.0).all());
+  }
+}
+
 TEST_F(LobeMixtureTest, ColoursAreExponentialsInTheChannelsScale) {
   const Eigen::Array3Xd colours = lobes_.Colours(), raw = lobes_.RawColours();
   for (int k = 0; k < 2; ++k) {

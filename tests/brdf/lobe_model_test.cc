@@ -251,5 +251,66 @@ TEST_F(LobeModelTest, ThreadsDoNotChangeBits) {
             many.ToMerl(parameters_.data()).raw);
 }
 
+// A sum of lobes, and the same beside a Lambertian one.
+class LambertianLobeTest : public LobeModelTest {
+ protected:
+  std::vector<double> With(double log_colour) const {
+    std::vector<double> p = parameters_;
+    p.insert(p.end(), {log_colour, log_colour + 0.3, log_colour - 0.2});
+    return p;
+  }
+  const FlowLobes with_{model_, lobes_.layout().WithLambertian(), kGrid, 1};
+};
+
+TEST_F(LambertianLobeTest, IsOneFieldOfOnesWithoutDerivatives) {
+  EXPECT_EQ(3, with_.num_lobes());
+  EXPECT_EQ(17, with_.num_parameters());
+  EXPECT_EQ(11, with_.num_fields());
+  const size_t n = kGrid.num_nodes();
+  std::vector<float> fast, slow, without;
+  for (const bool derivatives : {false, true}) {
+    with_.Tabulate(With(2.0).data(), derivatives, &fast);
+    with_.TabulateReference(With(2.0).data(), derivatives, &slow);
+    lobes_.Tabulate(parameters_.data(), derivatives, &without);
+    ASSERT_EQ(n * (derivatives ? 11 : 3), fast.size());
+    ASSERT_EQ(fast.size(), slow.size());
+    ASSERT_EQ(fast.size(), without.size() + n);
+    for (size_t i = 0; i < fast.size(); ++i) {
+      const bool of_flow = i < without.size();
+      EXPECT_EQ(of_flow ? without[i] : 1.0f, fast[i]);
+      if (!of_flow) EXPECT_EQ(1.0f, slow[i]);
+    }
+  }
+}
+
+TEST_F(LambertianLobeTest, AddsItsColourEverywhere) {
+  const std::vector<double> p = With(2.0);
+  const BrdfGrid grid = with_.Grid(p.data()), without = Combined(parameters_);
+  const MerlTable table = with_.ToMerl(p.data());
+  const MerlTable table_without = lobes_.ToMerl(parameters_.data());
+  for (int c = 0; c < 3; ++c) {
+    const double raw = std::exp(p[14 + c]), colour = raw * kMerlScale[c];
+    for (int i = 0; i < kGrid.num_nodes(); ++i) {
+      const double expected = without.Channel(c)[i] + colour;
+      EXPECT_NEAR(expected, grid.Channel(c)[i], 1e-6 * expected);
+    }
+    for (int bin = 0; bin < kMerlBins; bin += 97) {
+      const double before = table_without.Raw(c, bin);
+      const double expected = before < 0.0 ? before : before + raw;
+      EXPECT_NEAR(expected, table.Raw(c, bin), 1e-12 * std::abs(expected));
+    }
+  }
+}
+
+TEST_F(LambertianLobeTest, IsNothingWhereItsColourIsVeryDark) {
+  const BrdfGrid without = Combined(parameters_);
+  for (const double dark : {-60.0, -1e3, -1e300}) {
+    const BrdfGrid grid = with_.Grid(With(dark).data());
+    EXPECT_EQ(without.values, grid.values);
+    EXPECT_EQ(lobes_.ToMerl(parameters_.data()).raw,
+              with_.ToMerl(With(dark).data()).raw);
+  }
+}
+
 }  // namespace
 }  // namespace ibrdf

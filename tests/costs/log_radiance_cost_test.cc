@@ -157,6 +157,21 @@ TEST(LobePriorCost, ResidualsAndJacobianInsideAndOutsideTheBall) {
   ExpectBlock(cost, {outside}, 0, 1e-6, "outside");
 }
 
+TEST(LobePriorCost, LambertianLobeHasItsColoursAlone) {
+  LobePrior prior;
+  prior.colour_mean[1] = 2.0;
+  const LobePriorCost cost({2, 3, true}, prior);
+  const std::vector<double> p = {0.1, -0.2, 0.3, 1, 2, 3, 4, 5, 6};
+  ASSERT_EQ(10, cost.num_residuals());
+  const Evaluation e = Evaluate(cost, {p});
+  EXPECT_DOUBLE_EQ(4.0 / prior.colour_sigma, e.residuals[7]);
+  EXPECT_DOUBLE_EQ((5.0 - 2.0) / prior.colour_sigma, e.residuals[8]);
+  ExpectBlock(cost, {p}, 0, kSmoothTolerance, "Lambertian");
+  std::vector<double> dark = p;
+  for (int c = 0; c < 3; ++c) dark[6 + c] = -1e3;
+  ExpectBlock(cost, {dark}, 0, kSmoothTolerance, "dark");
+}
+
 TEST(LobePriorCost, IsFiniteAtZeroAndOnTheSphere) {
   const LobePriorCost cost({1, 2}, {});
   for (const std::vector<double>& p : {std::vector<double>{0, 0, 0, 0, 0},
@@ -442,6 +457,49 @@ TEST_F(RadianceCosts, LobeJacobianMatchesDifferencesAtExtremePoints) {
   for (int c = 0; c < 3; ++c) faint[11 + c] = -30.0;
   likelihood_.epsilon = 1e-30;
   ExpectBlock(*Cost(map_), {faint}, 0, kJacobianTolerance, "both faint");
+}
+
+// From as bright as the other lobes to black. Where it is far below the noise
+// of the float kernels its columns are its own image, and nothing else moves.
+TEST_F(RadianceCosts, LambertianLobeMatchesDifferencesFromBrightToBlack) {
+  const FlowLobes lobes(scene_.model, scene_.lobes.layout().WithLambertian(),
+                        TinyTransportOptions().grid, 1);
+  const LobeRadianceCost cost(&scene_.transport, &lobes, map_, &observed_,
+                              likelihood_);
+  const LobeRadianceCost without(&scene_.transport, &scene_.lobes, map_,
+                                 &observed_, likelihood_);
+  std::vector<double> p = scene_.Parameters();
+  p.insert(p.end(), {4.0, 3.0, 3.5});
+  ExpectBlock(cost, {p}, 0, kJacobianTolerance, "matte");
+  for (int c = 0; c < 3; ++c) p[14 + c] = 20.0;
+  ExpectBlock(cost, {p}, 0, kJacobianTolerance, "white");
+  for (int c = 0; c < 3; ++c) p[14 + c] = kMaxLogColour + 1.0;
+  ExpectBlock(cost, {p}, 0, kJacobianTolerance, "beyond the largest colour");
+  const Evaluation alone = Evaluate(without, {scene_.Parameters()});
+  for (const double dark : {-40.0, -1e3, -1e300}) {
+    for (int c = 0; c < 3; ++c) p[14 + c] = dark;
+    const Evaluation e = Evaluate(cost, {p});
+    ASSERT_TRUE(e.ok);
+    for (size_t row = 0; row < e.residuals.size(); ++row) {
+      EXPECT_NEAR(alone.residuals[row], e.residuals[row], 1e-12);
+      for (int k = 0; k < 14; ++k) {
+        const double expected = alone.jacobians[0][row * 14 + k];
+        EXPECT_NEAR(expected, e.jacobians[0][row * 17 + k],
+                    1e-12 * (1.0 + std::abs(expected)));
+      }
+      for (int k = 14; k < 17; ++k) {
+        EXPECT_NEAR(0.0, e.jacobians[0][row * 17 + k], 1e-12);
+      }
+    }
+  }
+  // Alone, it is a white sphere whose level is all that matters.
+  for (const int k : {4, 5, 6, 11, 12, 13}) p[k] = -1e3;
+  for (int c = 0; c < 3; ++c) p[14 + c] = -25.0;
+  RobustLogLikelihood exact = likelihood_;
+  exact.epsilon = 1e-30;
+  const LobeRadianceCost faint(&scene_.transport, &lobes, map_, &observed_,
+                               exact);
+  ExpectBlock(faint, {p}, 0, kJacobianTolerance, "alone and faint");
 }
 
 TEST_F(RadianceCosts, LobeJacobianUnderAOneTexelSun) {

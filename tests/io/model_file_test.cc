@@ -48,10 +48,17 @@ class ModelFile : public ::testing::Test {
     const size_t at = header.find(from);
     ASSERT_NE(std::string::npos, at) << header;
     header.replace(at, from.size(), to);
-    std::string changed = "ibrdf-model 3\n" + std::to_string(header.size()) +
-                          "\n" + header + bytes.substr(begin + length);
+    std::string changed = bytes.substr(0, bytes.find('\n') + 1) +
+                          std::to_string(header.size()) + "\n" + header +
+                          bytes.substr(begin + length);
     Seal(&changed);
     WriteBytes(path_, changed);
+  }
+  void SetVersion(char version) {
+    std::string bytes = ReadBytes(path_);
+    bytes[12] = version;
+    Seal(&bytes);
+    WriteBytes(path_, bytes);
   }
   void ExpectRefused(const std::string& field) const {
     const Status status = ReadModel(path_).status();
@@ -115,6 +122,31 @@ TEST_F(ModelFile, LobeFitsRoundTrip) {
   ExpectRefused("expected");
   ASSERT_TRUE(WriteModel(model, path_).ok());
   Rewrite("\"fit_lobes\":2", "\"fit_lobes\":9");
+  ExpectRefused("fit_lobes");
+}
+
+TEST_F(ModelFile, FitsWithALambertianLobeAreOfVersionFour) {
+  NeuralBrdfModel model = model_;
+  model.fit_lobes = 2;
+  model.fit_lambertian = true;
+  for (int i = 0; i < model.num_materials() * model.fit_size(); ++i) {
+    model.lobe_fits.push_back(0.1f * static_cast<float>(i) - 3.0f);
+  }
+  ASSERT_TRUE(WriteModel(model, path_).ok());
+  const StatusOr<NeuralBrdfModel> read = ReadModel(path_);
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_TRUE(read->fit_lambertian);
+  EXPECT_EQ(model.lobe_fits, read->lobe_fits);
+  // A lobe beside none is refused, and so are its numbers under version 3.
+  Rewrite("\"fit_lobes\":2", "\"fit_lobes\":0");
+  ExpectRefused("fit_lobes");
+  ASSERT_TRUE(WriteModel(model, path_).ok());
+  SetVersion('3');
+  ExpectRefused("expected");
+  // A model without the lobe is of version 3, as before.
+  ASSERT_TRUE(WriteModel(model_, path_).ok());
+  EXPECT_FALSE(ReadModel(path_)->fit_lambertian);
+  SetVersion('4');
   ExpectRefused("fit_lobes");
 }
 
@@ -182,12 +214,10 @@ TEST_F(ModelFile, DamageUnderAValidChecksumNeverCrashes) {
 
 TEST_F(ModelFile, OtherVersionsAndFilesAreNamed) {
   const std::string bytes = ReadBytes(path_);
-  for (const char version : {'1', '4'}) {
-    std::string other = bytes;
-    other[12] = version;
-    Seal(&other);
-    WriteBytes(path_, other);
-    ExpectRefused(std::string("version: expected 3, found ") + version);
+  for (const char version : {'1', '5'}) {
+    WriteBytes(path_, bytes);
+    SetVersion(version);
+    ExpectRefused(std::string("version: expected 3 or 4, found ") + version);
   }
   WriteBytes(path_, "PNG or something");
   ExpectRefused("not a model file");

@@ -214,6 +214,35 @@ INSTANTIATE_TEST_SUITE_P(
                                          JointBlocks::kLight)),
     Name);
 
+// Forward, in reverse and against differences; as bright as the others, and
+// black.
+TEST(JointObjective, GradientOfALambertianLobeMatchesDifferences) {
+  JointScene scene(false, 8, true);
+  JointObjective objective(scene.Terms());
+  for (const double moved : {0.0, -50.0, -1000.0}) {
+    JointState state = scene.State(0.3);
+    for (int c = 0; c < 3; ++c) state.lobes[14 + c] += moved;
+    Eigen::VectorXd reverse;
+    objective.Gradient(state, &reverse);
+    objective.Linearise(state);
+    const Eigen::VectorXd forward = objective.gradient();
+    ASSERT_TRUE(forward.allFinite());
+    EXPECT_LT((forward - reverse).norm(), kRounding * forward.norm());
+    for (const int i : {0, 7, 13, 14, 15, 16}) {
+      const Eigen::VectorXd v = Eigen::VectorXd::Unit(forward.size(), i);
+      const double numeric = Differentiate(
+          [&](double t) {
+            return std::vector<double>{
+                objective.Evaluate(objective.Moved(state, v, t)).total()};
+          },
+          0.1)[0];
+      EXPECT_NEAR(numeric, forward[i],
+                  kDifferenceTolerance * (1.0 + std::abs(numeric)))
+          << moved << " " << i;
+    }
+  }
+}
+
 TEST(JointObjective, KnownBlocksCostTheSameAsHeldOnes) {
   JointScene scene(false);
   const JointState state{scene.truth, scene.State(0.3).light};

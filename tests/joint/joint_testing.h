@@ -40,13 +40,18 @@ inline IlluminationUnetOptions TiniestUnetOptions() {
 // A sphere of some 100 points, two lobes, a map of 16x8 of a tiny UNet or of
 // free texels; observations without noise of the scene's lobes under SmoothMap.
 struct JointScene {
-  explicit JointScene(bool unet, int size = 12)
+  explicit JointScene(bool unet, int size = 12, bool lambertian = false)
       : points(SpherePoints(size)),
         transport(points, 8, 16, TinyTransportOptions()),
         light(unet ? MakeUnetIllumination(TiniestUnetOptions())
                    : MakeFreeIllumination(16, 8)) {
     truth = TinyScene().Parameters();
-    grid = lobes.Grid(truth.data());
+    if (lambertian) {
+      lobes_with.emplace(model, lobes.layout().WithLambertian(),
+                         TinyTransportOptions().grid, 1);
+      truth.insert(truth.end(), {3.0, 3.5, 2.5});
+    }
+    grid = Lobes().Grid(truth.data());
     std::vector<double> L_o(3 * points.size());
     transport.Render(grid, SmoothMap(8, 16).rgb.data(), L_o.data());
     observed = MakeObservations(L_o);
@@ -59,7 +64,7 @@ struct JointScene {
     terms.observed = &observed;
     terms.likelihood.scale = 0.1;
     terms.transport = &transport;
-    terms.lobes = &lobes;
+    terms.lobes = &Lobes();
     for (double& m : terms.lobe_prior.colour_mean) m = 4.0;
     terms.illumination = light.get();
     terms.light_mean = mean;
@@ -81,6 +86,8 @@ struct JointScene {
     return terms;
   }
 
+  const FlowLobes& Lobes() const { return lobes_with ? *lobes_with : lobes; }
+
   // The lobes that made the image, off by `away`; light by as many standard
   // deviations from the constant map.
   JointState State(double away, unsigned seed = 3) const {
@@ -101,6 +108,7 @@ struct JointScene {
   const Transport transport;
   const NeuralBrdfModel model = SmoothTinyModel(2);
   const FlowLobes lobes{model, 2, TinyTransportOptions().grid, 1};
+  std::optional<FlowLobes> lobes_with;  // a Lambertian one
   const std::unique_ptr<IlluminationModel> light;
   ProcessPrior process{8, 16, LightProcess(), LightHyperparameters::Average(),
                        0.0};

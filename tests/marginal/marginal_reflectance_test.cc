@@ -91,6 +91,50 @@ TEST_F(MarginalReflectanceTest, GradientOfCookTorranceMatchesDifferences) {
   }
 }
 
+// As bright as the others, faint, and black: then it is as if it were not
+// there.
+TEST_F(MarginalReflectanceTest, GradientOfALambertianLobeMatchesDifferences) {
+  const LobeLayout layout = {3, model_.shape.code_size(), true};
+  const MarginalReflectance reflectance(FlowLobes::Factory(model_, layout, 1),
+                                        points_, MakeObservations(radiance_),
+                                        LightProcess(), resolution_, 1,
+                                        kDirectionalLights);
+  ASSERT_EQ(21, reflectance.num_parameters());
+  for (const double level : {4.0, -3.0, -1000.0}) {
+    std::vector<double> x = truth_;
+    x.insert(x.end(), {level, level + 0.4, level - 0.3});
+    x.insert(x.end(), {0.02, -0.03, 0.0, 0.04});
+    ExpectGradient(reflectance, x, {0, 4, 8, 13, 14, 15, 16, 17, 20});
+  }
+}
+
+TEST_F(MarginalReflectanceTest, BlackLambertianLobeChangesNothing) {
+  const LobeLayout layout = {3, model_.shape.code_size(), true};
+  const MarginalReflectance with(FlowLobes::Factory(model_, layout, 1), points_,
+                                 MakeObservations(radiance_), LightProcess(),
+                                 resolution_, 1);
+  const MarginalReflectance without(FlowLobes::Factory(model_, 2, 1), points_,
+                                    MakeObservations(radiance_), LightProcess(),
+                                    resolution_, 1);
+  const DataErrors errors = {
+      Eigen::VectorXd::Constant(3 * with.bins().num_bins(), 0.0025), {}};
+  std::vector<double> x = truth_;
+  x.insert(x.end(), 3, -1e3);
+  LightMode mode, mode_without;
+  std::vector<double> gradient, gradient_without;
+  const MarginalValue value =
+      with.Evaluate(x.data(), errors, {}, 1e-9, &mode, &gradient);
+  const MarginalValue expected = without.Evaluate(
+      truth_.data(), errors, {}, 1e-9, &mode_without, &gradient_without);
+  EXPECT_EQ(expected.cost, value.cost);
+  for (int i = 0; i < 14; ++i) EXPECT_EQ(gradient_without[i], gradient[i]);
+  for (int i = 14; i < 17; ++i) EXPECT_EQ(0.0, gradient[i]);
+  const Eigen::MatrixXd information =
+      with.Information(x.data(), errors, {}, mode);
+  ASSERT_TRUE(information.allFinite());
+  EXPECT_EQ(0.0, information.middleRows(14, 3).norm());
+}
+
 // Outside a cube, and in it, where no light of the map comes.
 TEST_F(MarginalReflectanceTest, CellsThatSeeNoLightAreLeftOut) {
   const Scene scene = Scene::FromMesh(CubeMesh()).value();

@@ -49,6 +49,10 @@ RC_GTEST_PROP(FileProperty, ModelsKeepEveryBit, ()) {
       model.lobe_fits.push_back(static_cast<float>(*Between(-30.0, 30.0)));
     }
   }
+  model.fit_lambertian = model.fit_lobes > 0 && *rc::gen::arbitrary<bool>();
+  for (int i = 0; model.fit_lambertian && i < 3 * model.num_materials(); ++i) {
+    model.lobe_fits.push_back(static_cast<float>(*Between(-30.0, 30.0)));
+  }
   RC_ASSERT(WriteModel(model, dir.File("m.ibrdf")).ok());
   const StatusOr<NeuralBrdfModel> back = ReadModel(dir.File("m.ibrdf"));
   RC_ASSERT(back.ok());
@@ -57,6 +61,7 @@ RC_GTEST_PROP(FileProperty, ModelsKeepEveryBit, ()) {
   RC_ASSERT(SameBits(model.log_colours, back->log_colours));
   RC_ASSERT(SameBits(model.lobe_fits, back->lobe_fits));
   RC_ASSERT(model.fit_lobes == back->fit_lobes);
+  RC_ASSERT(model.fit_lambertian == back->fit_lambertian);
   RC_ASSERT(model.exponent == back->exponent);
   RC_ASSERT(model.names == back->names && model.note == back->note);
 }

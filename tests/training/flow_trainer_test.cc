@@ -177,6 +177,20 @@ TEST_F(TrainerTest, DataAreTheTablesInOrderOfName) {
   }
 }
 
+TEST_F(TrainerTest, NegativeValuesAreNotMeasured) {
+  MerlTable table = ReadMerl(dir_->File("c_red.binary")).value();
+  const std::vector<int> columns = DrawColumns(2, 7);
+  const int bin = 3 * kMerlThetaD * kMerlPhiD + columns[1];
+  table.raw[kMerlBins + bin] = -1.0;
+  table.raw[size_t{2} * kMerlBins + bin] = 0.0;
+  TrainingData data = ColumnsOfTable(columns);
+  AddTable(table, columns, "m", &data);
+  EXPECT_TRUE(std::isfinite(data.LogRaw(0, 1)[3]));
+  EXPECT_EQ(kNotMeasured, data.LogRaw(1, 1)[3]);
+  EXPECT_FLOAT_EQ(static_cast<float>(std::log(kLogFloor)),
+                  data.LogRaw(2, 1)[3]);
+}
+
 TEST_F(TrainerTest, ColumnsAreDifferentAndDrawnByTheirBins) {
   const int all = kMerlThetaD * kMerlPhiD;
   std::vector<int> columns = DrawColumns(all + 5, 3);
@@ -296,6 +310,27 @@ TEST_P(FlowTrainerTest, TrainingLowersTheHeldOutScore) {
     double square = 0.0;
     for (int k = 0; k < 4; ++k) square += std::pow(last->codes[4 * i + k], 2);
     EXPECT_LE(std::sqrt(square), 1 + 1e-6);
+  }
+}
+
+// Where junk would be, it is as good as without it.
+TEST_P(FlowTrainerTest, BinsThatWereNotMeasuredPlayNoPart) {
+  TrainerOptions options = ParamOptions(300);
+  options.learning_rate = 1e-2;
+  const double whole = Score(Run(options));
+  for (const float value : {kNotMeasured, 9.0f}) {
+    TrainingData data = Train();
+    for (size_t i = 0; i < data.log_raw.size(); i += 3) data.log_raw[i] = value;
+    const StatusOr<NeuralBrdfModel> model =
+        TrainFlow(data, HeldOut(), options, nullptr, nullptr);
+    ASSERT_TRUE(model.ok());
+    const double score = Score(*model);
+    if (value == kNotMeasured) {
+      EXPECT_LT(score, 1.3 * whole);
+      for (const double s : ScoreModel(*model, data, 1)) EXPECT_LT(s, 1.0);
+    } else {
+      EXPECT_GT(score, 1.5 * whole);
+    }
   }
 }
 

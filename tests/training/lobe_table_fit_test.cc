@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/solvers/bench/neural_fitters.h"
 #include "ibrdf/solvers/costs/log_table_cost.h"
+#include "ibrdf/solvers/training/training_data.h"
 #include "tests/support/solver_testing.h"
 
 namespace ibrdf {
@@ -20,9 +22,10 @@ constexpr BrdfGridShape kNoGrid{2, 2, 1};
 
 MerlTable TableOf(const NeuralBrdfModel& model,
                   const std::vector<double>& parameters) {
-  const int lobe = model.shape.code_size() + 3;
-  return FlowLobes(model, static_cast<int>(parameters.size()) / lobe, kNoGrid,
-                   1)
+  return FlowLobes(
+             model,
+             LobeLayout::OfSize(parameters.size(), model.shape.code_size()),
+             kNoGrid, 1)
       .ToMerl(parameters.data());
 }
 
@@ -42,7 +45,9 @@ TableColumns SmallTable() {
   return table;
 }
 
-class LogTableCostTest : public ::testing::TestWithParam<double> {};
+// The log colour of the second lobe, and whether it is Lambertian.
+class LogTableCostTest
+    : public ::testing::TestWithParam<std::tuple<double, bool>> {};
 
 TEST_P(LogTableCostTest, JacobianMatchesDifferences) {
   // The share of the column's largest entry; float kernels against Ridders'
@@ -51,13 +56,15 @@ TEST_P(LogTableCostTest, JacobianMatchesDifferences) {
   const NeuralBrdfModel model = SmoothTinyModel(2);
   const auto flow = BrdfFlow::Create(model.shape, model.weights);
   const TableColumns table = SmallTable();
+  const auto [colour, lambertian] = GetParam();
   // A floor among the values, so that its share matters.
-  const LogTableCost cost(*flow, 4, 1.5, 2, table, 0.3, 2.0, 1);
+  const LogTableCost cost(*flow, {2, 4, lambertian}, 1.5, table, 0.3, 2.0, 1);
   ASSERT_EQ(60, cost.num_residuals());
-  // GetParam(): log colour of the second lobe; far below the floor it vanishes.
-  const std::vector<double> at = {0.3,  -0.4,       0.2,        0.1,       0.5,
-                                  0.3,  -0.8,       -0.5,       0.1,       0.3,
-                                  -0.2, GetParam(), GetParam(), GetParam()};
+  // Far below the floor the second lobe vanishes.
+  std::vector<double> at = {0.3, -0.4, 0.2, 0.1, 0.5, 0.3, -0.8};
+  if (!lambertian) at.insert(at.end(), {-0.5, 0.1, 0.3, -0.2});
+  at.insert(at.end(), 3, colour);
+  const int n = static_cast<int>(at.size());
   const auto evaluate = [&](const std::vector<double>& p, double* jacobian) {
     std::vector<double> r(60);
     const double* block = p.data();
@@ -65,11 +72,11 @@ TEST_P(LogTableCostTest, JacobianMatchesDifferences) {
                               jacobian == nullptr ? nullptr : &jacobian));
     return r;
   };
-  std::vector<double> jacobian(60 * 14);
+  std::vector<double> jacobian(60 * n);
   const std::vector<double> with = evaluate(at, jacobian.data());
   const std::vector<double> without = evaluate(at, nullptr);
   for (int i = 0; i < 60; ++i) EXPECT_EQ(with[i], without[i]);
-  for (int k = 0; k < 14; ++k) {
+  for (int k = 0; k < n; ++k) {
     const std::vector<double> numeric = testing::Differentiate(
         [&](double t) {
           std::vector<double> p = at;
@@ -80,19 +87,21 @@ TEST_P(LogTableCostTest, JacobianMatchesDifferences) {
     double scale = 1e-3;
     for (const double v : numeric) scale = std::max(scale, std::abs(v));
     for (int i = 0; i < 60; ++i) {
-      EXPECT_NEAR(numeric[i], jacobian[i * 14 + k], kTolerance * scale)
+      EXPECT_NEAR(numeric[i], jacobian[i * n + k], kTolerance * scale)
           << "parameter " << k << " residual " << i;
     }
   }
 }
 INSTANTIATE_TEST_SUITE_P(Colours, LogTableCostTest,
-                         ::testing::Values(0.4, 6.0, -40.0));
+                         ::testing::Combine(::testing::Values(0.4, 6.0, -40.0,
+                                                              -1000.0),
+                                            ::testing::Bool()));
 
 TEST(LogTableCost, ExtremeColoursStayFiniteAndInfiniteOnesAreRefused) {
   const NeuralBrdfModel model = TinyModel(2);
   const auto flow = BrdfFlow::Create(model.shape, model.weights);
   const TableColumns table = SmallTable();
-  const LogTableCost cost(*flow, 4, 1.0, 1, table, 1e-6, 1.0, 1);
+  const LogTableCost cost(*flow, {1, 4}, 1.0, table, 1e-6, 1.0, 1);
   std::vector<double> r(60), jacobian(60 * 7);
   double* j = jacobian.data();
   for (const double colour : {-1e4, -30.0, 700.0, 1e4}) {
@@ -140,6 +149,101 @@ TEST_F(LobeTableFitTest, TwoLobesOfDifferentHueNeedTwo) {
   const double one = Score(table, 1), two = Score(table, 2);
   EXPECT_LT(two, 0.05);
   EXPECT_GT(one, 2 * two);
+}
+
+// What a Lambertian lobe is for: a white standard, and a lobe of the flow on a
+// matte body, neither of which the flow has.
+TEST_F(LobeTableFitTest, LambertianLobeHoldsWhatIsMatte) {
+  options_.lambertian = true;
+  for (const double gloss : {-20.0, 3.0}) {
+    const std::vector<double> truth = {0.35,  -0.2,  0.25, -0.3, gloss,
+                                       gloss, gloss, 4.5,  4.0,  3.0};
+    const MerlTable table = TableOf(model_, truth);
+    EXPECT_LT(Score(table, 1), 0.01) << gloss;
+    options_.lambertian = false;
+    EXPECT_GT(Score(table, 1), 0.03) << gloss;
+    options_.lambertian = true;
+  }
+}
+
+// From a fit without the lobe: its own lobes stay the first ones.
+TEST_F(LobeTableFitTest, LambertianLobeIsAddedToAFit) {
+  const MerlTable table =
+      TableOf(model_, {0.35, -0.2, 0.25, -0.3, 3.0, 3.0, 3.0, 3.2, 3.1, 3.0});
+  options_.lobes = 1;
+  const StatusOr<LobeTableFit> flow = fitter_.Fit(table, options_);
+  ASSERT_TRUE(flow.ok());
+  const StatusOr<LobeTableFit> both =
+      fitter_.AddLambertian(table, *flow, options_);
+  ASSERT_TRUE(both.ok());
+  ASSERT_EQ(10u, both->parameters.size());
+  EXPECT_LT(both->log_rmse, 0.5 * flow->log_rmse);
+  MerlTable broken = table;
+  std::fill(broken.raw.begin(), broken.raw.end(),
+            std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(StatusCode::kInvalidInput,
+            fitter_.AddLambertian(broken, *flow, options_).status().code());
+}
+
+// Its log colours do not run away, and the fit is none the worse.
+TEST_F(LobeTableFitTest, LambertianLobeIsHarmlessWhereNothingIsMatte) {
+  const MerlTable table =
+      TableOf(model_, {0.35, -0.2, 0.25, -0.3, 4.0, 3.0, 2.0});
+  options_.lambertian = true;
+  options_.lobes = 1;
+  const StatusOr<LobeTableFit> fit = fitter_.Fit(table, options_);
+  ASSERT_TRUE(fit.ok());
+  ASSERT_EQ(10u, fit->parameters.size());
+  EXPECT_LT(CompareBrdfs(TableOf(model_, fit->parameters), table)->log_rmse,
+            0.02);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_LT(fit->parameters[7 + c], fit->parameters[4 + c] - 2.0);
+    EXPECT_GT(fit->parameters[7 + c], -20.0);
+  }
+}
+
+TEST(LogTableCost, BinsThatWereNotMeasuredCostNothing) {
+  const NeuralBrdfModel model = TinyModel(2);
+  const auto flow = BrdfFlow::Create(model.shape, model.weights);
+  TableColumns table = SmallTable();
+  const LogTableCost cost(*flow, {1, 4}, 1.0, table, 1e-6, 1.0, 1);
+  const std::vector<double> p = {0.3, -0.4, 0.2, 0.1, 0.5, 0.3, -0.8};
+  const double* block = p.data();
+  std::vector<double> all(60), some(60), jacobian(60 * 7, 1.0);
+  double* j = jacobian.data();
+  ASSERT_TRUE(cost.Evaluate(&block, all.data(), nullptr));
+  table.log_raw[17] = kNotMeasured;
+  ASSERT_TRUE(cost.Evaluate(&block, some.data(), &j));
+  for (int i = 0; i < 60; ++i) {
+    EXPECT_EQ(i == 17 ? 0.0 : all[i], some[i]);
+    double largest = 0.0;
+    for (int k = 0; k < 7; ++k) {
+      largest = std::max(largest, std::abs(jacobian[7 * i + k]));
+    }
+    EXPECT_EQ(i == 17, largest == 0.0) << i;
+  }
+}
+
+// A third of the bins is void; elsewhere the table is a model's.
+TEST_F(LobeTableFitTest, VoidBinsPlayNoPart) {
+  const MerlTable table =
+      TableOf(model_, {0.35, -0.2, 0.25, -0.3, 4.0, 3.0, 2.0});
+  MerlTable part = table;
+  for (size_t i = 0; i < part.raw.size(); i += 3) part.raw[i] = -1.0;
+  for (const bool lambertian : {false, true}) {
+    options_.lambertian = lambertian;
+    options_.lobes = 1;
+    const StatusOr<LobeTableFit> fit = fitter_.Fit(part, options_);
+    ASSERT_TRUE(fit.ok());
+    EXPECT_LT(CompareBrdfs(TableOf(model_, fit->parameters), table)->log_rmse,
+              0.02);
+    EXPECT_LT(fit->log_rmse, 0.02);
+  }
+  // No value in one channel.
+  std::fill(part.raw.begin() + kMerlBins, part.raw.begin() + 2 * kMerlBins,
+            -1.0);
+  EXPECT_EQ(StatusCode::kInvalidInput,
+            fitter_.Fit(part, options_).status().code());
 }
 
 TEST_F(LobeTableFitTest, CodesStayInTheBallAndScoreIsThatOfTheTable) {
@@ -208,6 +312,11 @@ TEST_F(LobeTableFitTest, FittersOfTheSweepDoTheSame) {
   const auto flow =
       FlowFitter(std::make_shared<LobeTableFitter>(model_), "tiny", options_);
   EXPECT_EQ("flow", flow->method());
+  LobeTableFitOptions matte = options_;
+  matte.lambertian = true;
+  EXPECT_EQ("flow_lambertian",
+            FlowFitter(std::make_shared<LobeTableFitter>(model_), "tiny", matte)
+                ->method());
   EXPECT_EQ("1", flow->lobes());
   EXPECT_EQ("tiny", flow->model());
   const StatusOr<FittedTable> fit = flow->Fit(table, context);

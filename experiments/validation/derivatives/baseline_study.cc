@@ -182,7 +182,7 @@ void StudyLogTableCost(int count, std::mt19937_64* rng, ErrorTable* table) {
                              -0.5, 0.1,  0.3, -0.2, 1.0, 0.5, 0.3};
     for (const int k : {4, 5, 6, 11, 12, 13}) p[k] += colour;
     const double floor = 1e-6;
-    LogTableCost cost(*flow, 4, 1.0, 2, columns, floor, 2.0, 1);
+    LogTableCost cost(*flow, {2, 4}, 1.0, columns, floor, 2.0, 1);
     std::vector<double> r(3 * count), J(r.size() * p.size());
     const double* block[] = {p.data()};
     double* jacobians[] = {J.data()};

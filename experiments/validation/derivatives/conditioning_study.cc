@@ -57,7 +57,7 @@ void StudyMarginalHessian(const NeuralBrdfModel& model,
   resolution.map_width = 16;
   resolution.map_height = 8;
   const MarginalReflectance reflectance(
-      FlowLobes::Factory(model, prior.num_lobes(), 1), points,
+      FlowLobes::Factory(model, prior.layout(), 1), points,
       MakeObservations(radiance), LightProcess(), resolution, 0);
   const DataErrors errors = {
       Eigen::VectorXd::Constant(3 * reflectance.bins().num_bins(), 0.0025), {}};
@@ -116,7 +116,9 @@ std::vector<ConditioningRow> StudyConditioning(const NeuralBrdfModel& model,
   for (const char* name : {"white-fabric", "red-plastic", "chrome"}) {
     const Eigen::VectorXd both = ParametersOf(two, name);
     Eigen::VectorXd same = both;
-    same.tail(same.size() / 2) = same.head(same.size() / 2);
+    const LobeLayout layout = two.layout();
+    const MutableLobeMixture lobes_of_same(layout, same.data());
+    lobes_of_same.lobe(1) = lobes_of_same.lobe(0);
     const struct {
       const char* lobes;
       const MaterialPrior* prior;
@@ -125,7 +127,7 @@ std::vector<ConditioningRow> StudyConditioning(const NeuralBrdfModel& model,
                  {"2", &two, both},
                  {"2 that coincide", &two, same}};
     for (const auto& c : cases) {
-      const FlowLobes lobes(model, c.prior->num_lobes(), options.grid, 0);
+      const FlowLobes lobes(model, c.prior->layout(), options.grid, 0);
       std::vector<double> L_o;
       CHECK(RenderLobeModel(transport, lobes, c.x.data(), map.rgb.data(), &L_o,
                             nullptr));

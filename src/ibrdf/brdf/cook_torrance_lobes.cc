@@ -20,7 +20,7 @@ constexpr int kDiffuse = 0, kSpecular = 1;
 }  // namespace
 
 CookTorranceLobes::CookTorranceLobes(const BrdfGridShape& grid, int num_threads)
-    : LobeModel(kLobes, kCode, grid), num_threads_(num_threads) {
+    : LobeModel(kLayout, grid), num_threads_(num_threads) {
   for (int i = 0; i < grid.num_nodes(); ++i) {
     node_angles_.push_back(grid.NodeAngles(i));
   }

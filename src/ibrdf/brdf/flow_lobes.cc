@@ -1,5 +1,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,12 +28,13 @@ float ShapeSlope(double exponent, float shape) {
 
 }  // namespace
 
-FlowLobes::FlowLobes(const NeuralBrdfModel& model, int num_lobes,
+FlowLobes::FlowLobes(const NeuralBrdfModel& model, const LobeLayout& layout,
                      const BrdfGridShape& grid, int num_threads)
-    : LobeModel(num_lobes, model.shape.code_size(), grid),
+    : LobeModel(layout, grid),
       model_(model),
       flow_(BrdfFlow::Create(model.shape, model.weights)),
       num_threads_(num_threads) {
+  CHECK_EQ(layout.code_size, model.shape.code_size());
   nodes_ = FlowColumns(grid.d * grid.p, grid.h);
   for (int i = 0; i < grid.h; ++i) {
     for (int c = 0; c < nodes_.columns; ++c) {
@@ -43,20 +46,32 @@ FlowLobes::FlowLobes(const NeuralBrdfModel& model, int num_lobes,
   }
 }
 
+FlowLobes::FlowLobes(const NeuralBrdfModel& model, int num_lobes,
+                     const BrdfGridShape& grid, int num_threads)
+    : FlowLobes(model, LobeLayout{num_lobes, model.shape.code_size()}, grid,
+                num_threads) {}
+
+LobeFactory FlowLobes::Factory(const NeuralBrdfModel& model,
+                               const LobeLayout& layout, int num_threads) {
+  return [model, layout, num_threads](const BrdfGridShape& grid) {
+    return std::make_unique<FlowLobes>(model, layout, grid, num_threads);
+  };
+}
+
 LobeFactory FlowLobes::Factory(const NeuralBrdfModel& model, int num_lobes,
                                int num_threads) {
-  return [model, num_lobes, num_threads](const BrdfGridShape& grid) {
-    return std::make_unique<FlowLobes>(model, num_lobes, grid, num_threads);
-  };
+  return Factory(model, LobeLayout{num_lobes, model.shape.code_size()},
+                 num_threads);
 }
 
 void FlowLobes::Tabulate(const double* parameters, bool derivatives,
                          std::vector<float>* fields) const {
   const size_t n = grid_shape().num_nodes();
   const int stride = derivatives ? 1 + code_size() : 1;
-  fields->resize(n * stride * num_lobes());
+  fields->resize(n * (derivatives ? num_fields() : num_lobes()));
+  if (layout().lambertian) std::fill(fields->end() - n, fields->end(), 1.0f);
   const LobeMixture lobes = Mixture(parameters);
-  for (int k = 0; k < num_lobes(); ++k) {
+  for (int k = 0; k < layout().num_coded(); ++k) {
     const Eigen::VectorXf code = lobes.code(k).cast<float>();
     float* value = fields->data() + static_cast<size_t>(k) * stride * n;
     flow_->LogDensityOnColumns(nodes_, code.data(), num_threads_, value,
@@ -75,10 +90,11 @@ void FlowLobes::TabulateReference(const double* parameters, bool derivatives,
                                   std::vector<float>* fields) const {
   const size_t n = grid_shape().num_nodes();
   const int stride = derivatives ? 1 + code_size() : 1;
-  fields->resize(n * stride * num_lobes());
+  fields->resize(n * (derivatives ? num_fields() : num_lobes()));
+  if (layout().lambertian) std::fill(fields->end() - n, fields->end(), 1.0f);
   const ReferenceFlow flow(model_);
   const LobeMixture lobes = Mixture(parameters);
-  for (int k = 0; k < num_lobes(); ++k) {
+  for (int k = 0; k < layout().num_coded(); ++k) {
     const double* z = lobes.code(k).data();
     float* value = fields->data() + static_cast<size_t>(k) * stride * n;
     ParallelFor(static_cast<int64_t>(n), num_threads_, [&](int64_t i, int) {
@@ -108,14 +124,16 @@ MerlTable FlowLobes::ToMerl(const double* parameters) const {
       bins.push_back(bin);
     }
   }
+  const LobeMixture lobes = Mixture(parameters);
+  const Eigen::Array3Xd colours = lobes.RawColours();
   MerlTable table;
   table.raw.assign(size_t{3} * kMerlBins, -1.0);
   for (int c = 0; c < 3; ++c) {
-    for (const int bin : bins) table.raw[size_t{kMerlBins} * c + bin] = 0.0;
+    const double plain =
+        layout().lambertian ? colours(c, num_lobes() - 1) : 0.0;
+    for (const int bin : bins) table.raw[size_t{kMerlBins} * c + bin] = plain;
   }
-  const LobeMixture lobes = Mixture(parameters);
-  const Eigen::Array3Xd colours = lobes.RawColours();
-  for (int k = 0; k < num_lobes(); ++k) {
+  for (int k = 0; k < layout().num_coded(); ++k) {
     const Eigen::VectorXf code = lobes.code(k).cast<float>();
     flow_->LogDensityOnColumns(columns, code.data(), num_threads_, value.data(),
                                nullptr);

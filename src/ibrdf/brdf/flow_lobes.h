@@ -10,13 +10,20 @@
 namespace ibrdf {
 
 // Shapes s_k = q(x | z_k)^exponent of the flow's density q (Chen et al. 2020,
-// Eq. 5; the exponent is ours, see neural_brdf_model.h).
+// Eq. 5; the exponent is ours, see neural_brdf_model.h), and a Lambertian lobe
+// beside them where the layout has one.
 class FlowLobes final : public LobeModel {
  public:
+  // layout: with codes of the model's size.
+  FlowLobes(const NeuralBrdfModel& model, const LobeLayout& layout,
+            const BrdfGridShape& grid, int num_threads);
+  // Lobes of the flow alone.
   FlowLobes(const NeuralBrdfModel& model, int num_lobes,
             const BrdfGridShape& grid, int num_threads);
 
   // `model` is copied.
+  static LobeFactory Factory(const NeuralBrdfModel& model,
+                             const LobeLayout& layout, int num_threads);
   static LobeFactory Factory(const NeuralBrdfModel& model, int num_lobes,
                              int num_threads);
 

@@ -46,7 +46,7 @@ void MutableLobeMixture::ShiftColours(const Eigen::Array3d& shift) const {
 }
 
 void MutableLobeMixture::ClampCodes() const {
-  for (int k = 0; k < num_lobes(); ++k) {
+  for (int k = 0; k < layout().num_coded(); ++k) {
     code(k) /= std::max(code(k).norm(), 1.0);
   }
 }

@@ -4,9 +4,9 @@
 
 namespace ibrdf {
 
-LobeModel::LobeModel(int num_lobes, int code_size, const BrdfGridShape& grid)
-    : layout_{num_lobes, code_size}, grid_(grid) {
-  CHECK_GE(num_lobes, 1);
+LobeModel::LobeModel(const LobeLayout& layout, const BrdfGridShape& grid)
+    : layout_(layout), grid_(grid) {
+  CHECK_GE(layout.num_lobes, 1);
 }
 
 void LobeModel::ShiftColours(const double* shift, double* parameters) const {

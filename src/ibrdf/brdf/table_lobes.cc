@@ -14,7 +14,7 @@ constexpr double kBlack = -1000.0;
 }  // namespace
 
 TableLobes::TableLobes(const BrdfGrid& brdf, const BrdfGridShape& grid)
-    : LobeModel(kChannels, 0, grid),
+    : LobeModel({kChannels, 0}, grid),
       shapes_(size_t{kChannels} * grid.num_nodes()) {
   const size_t nodes = grid.num_nodes();
   for (size_t i = 0; i < nodes; ++i) {

@@ -25,15 +25,22 @@ struct NeuralBrdfModel {
 
   // The training materials (three codes each, in order) as lobes that share
   // their code between channels, the most peaked first, each as of LobeModel:
-  // [materials][fit_lobes][code_size + 3]; fit_lobes 0: none. What an estimate
-  // expects of lobes before it sees an image.
+  // [materials][fit_lobes][code_size + 3]; fit_lobes 0: none. With
+  // fit_lambertian the log colours [3] of a Lambertian lobe follow those of
+  // each material: [materials][fit_size()]. What an estimate expects of lobes
+  // before it sees an image.
   int fit_lobes = 0;
+  bool fit_lambertian = false;
   std::vector<float> lobe_fits;
 
   std::string note;  // data, licence, command and score of the training
 
   int num_codes() const { return static_cast<int>(names.size()); }
   int num_materials() const { return num_codes() / 3; }
+  // Numbers of a material in lobe_fits.
+  int fit_size() const {
+    return fit_lobes * (shape.code_size() + 3) + (fit_lambertian ? 3 : 0);
+  }
 };
 
 }  // namespace ibrdf
