@@ -104,9 +104,9 @@ struct GeometrySpec {
 // How the reflectance varies over the object, in the order of the schema.
 // kAuto: kAlbedo where the photograph shows several materials
 // (photograph_check).
-enum class ReflectanceVariation { kAuto, kNone, kAlbedo };
-inline constexpr int kNumReflectanceVariations = 3;
-// "auto", "none", "albedo".
+enum class ReflectanceVariation { kAuto, kNone, kAlbedo, kLabels };
+inline constexpr int kNumReflectanceVariations = 4;
+// "auto", "none", "albedo", "labels".
 const char* ReflectanceVariationName(ReflectanceVariation variation);
 
 // Paint over a known reflectance, f = a(x) f_matte + f_gloss.
@@ -123,6 +123,7 @@ struct ReflectanceSpec {
   int lobes = 2;             // [1, 8]
   double prior_sigma = 0.5;  // of the codes, > 0
   ReflectanceVariation variation = ReflectanceVariation::kAuto;
+  std::string labels;  // image of the materials, of kLabels alone
   // Known reflectance: at most one is set.
   std::string known_file;                // MERL .binary
   std::optional<CookTorrance> analytic;  // `lambertian` too: specular 0

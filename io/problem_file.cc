@@ -205,11 +205,28 @@ void ReadKnownBrdf(ProblemReader reader, ReflectanceSpec* reflectance) {
   reflectance->analytic = brdf;
 }
 
+void ReadVariation(ProblemReader* reader, ReflectanceSpec* reflectance) {
+  ReflectanceVariation& variation = reflectance->variation;
+  reader->Read("variation", &variation);
+  reader->Read("labels", &reflectance->labels);
+  if (!reader->Has("labels")) return;
+  if (variation == ReflectanceVariation::kAuto) {
+    variation = ReflectanceVariation::kLabels;
+  }
+  if (variation != ReflectanceVariation::kLabels) {
+    reader->Fail("labels", std::string("expected without variation: ") +
+                               ReflectanceVariationName(variation));
+  }
+  if (reader->Has("known")) {
+    reader->Fail("labels", "expected without reflectance.known");
+  }
+}
+
 void ReadReflectance(ProblemReader reader, ReflectanceSpec* reflectance) {
   reader.Read("model", &reflectance->model);
   reader.Read("lobes", &reflectance->lobes);
   reader.Read("prior_sigma", &reflectance->prior_sigma);
-  reader.Read("variation", &reflectance->variation);
+  ReadVariation(&reader, reflectance);
   const ConfigNode* known = reader.Find("known");
   if (known == nullptr) return;
   if (known->kind == Kind::kMap) {
@@ -399,6 +416,9 @@ void ReadKeys(ProblemReader root, Problem* problem) {
     if (variation == ReflectanceVariation::kAlbedo) {
       root.Below("reflectance")
           .Fail("variation", "expected none with solver.estimator: maximum");
+    } else if (variation == ReflectanceVariation::kLabels) {
+      root.Below("reflectance")
+          .Fail("labels", "expected without solver.estimator: maximum");
     }
     variation = ReflectanceVariation::kNone;
   }
@@ -447,6 +467,7 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
       {"problem", problem.path},
       {"image.file", problem.image.file},
       {"image.mask", problem.image.mask},
+      {"reflectance.labels", problem.reflectance.labels},
       {kShapes[static_cast<size_t>(problem.geometry.kind)],
        problem.geometry.file},
       {"reflectance.model", problem.reflectance.model},
@@ -478,6 +499,11 @@ Status CheckSolvable(const Problem& problem) {
                 "expected one for each of image.brackets, " +
                     std::to_string(problem.image.brackets.size()) + ", found " +
                     std::to_string(problem.image.bracket_exposures.size()));
+  }
+  if (problem.reflectance.variation == ReflectanceVariation::kLabels &&
+      problem.reflectance.labels.empty()) {
+    return fail("reflectance.labels",
+                "expected this key with variation: labels, found nothing");
   }
   for (const Effect approximation : {Effect::kHarmonics, Effect::kGaussians}) {
     if (problem.effects.Lists(approximation)) {

@@ -115,10 +115,13 @@ json ReflectanceJson(const ReflectanceSpec& reflectance) {
   if (reflectance.known()) {
     return {{"known", KnownReflectanceJson(reflectance)}};
   }
-  return {{"model", reflectance.model.empty() ? "default" : reflectance.model},
-          {"lobes", reflectance.lobes},
-          {"prior_sigma", reflectance.prior_sigma},
-          {"variation", ReflectanceVariationName(reflectance.variation)}};
+  json out = {
+      {"model", reflectance.model.empty() ? "default" : reflectance.model},
+      {"lobes", reflectance.lobes},
+      {"prior_sigma", reflectance.prior_sigma},
+      {"variation", ReflectanceVariationName(reflectance.variation)}};
+  if (!reflectance.labels.empty()) out["labels"] = reflectance.labels;
+  return out;
 }
 
 std::string FrameJson(const std::optional<MapFrame>& frame) {

@@ -433,7 +433,15 @@ Keys ReflectanceKeys() {
                    {"none", "One material."},
                    {"albedo",
                     "One gloss over paint: the albedo of what is matte is "
-                    "found at every pixel, in `albedo.exr`."}})
+                    "found at every pixel, in `albedo.exr`."},
+                   {"labels",
+                    "Several materials, where `reflectance.labels` says."}})
+          .UsedBy(kUnknownReflectance),
+      Row("reflectance.labels",
+          "Image of the materials, of the image's size: pixels of one value "
+          "are of one material. At most 16 values on the object, without "
+          "smoothed edges. Implies `variation: labels`.")
+          .Path(".png")
           .UsedBy(kUnknownReflectance),
       Row("reflectance.known",
           "The known BRDF: a MERL table, or one of `brdf`, `lambertian` and "

@@ -50,7 +50,8 @@ bool BinsBlur(const SolveSetup& setup, const SolveContext& context,
               const Estimate& estimate) {
   // Points in shadow are not binned. And what pixels tell beyond bins of an
   // estimated reflectance is as much its errors as the map.
-  if (setup.transport.visibility != nullptr || setup.lobes_unknown()) {
+  if (setup.transport.visibility != nullptr || setup.lobes_unknown() ||
+      !setup.problem->estimated_brdfs.empty()) {
     return false;
   }
   if (context.StopAfter(1.0)()) return false;

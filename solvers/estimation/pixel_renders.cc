@@ -25,7 +25,7 @@ void RenderPixels(const SolveSetup& setup, MapSize size,
         std::vector<ShadingPoint>(points.begin() + begin, points.begin() + end),
         size.height, size.width, setup.transport);
     for (const PixelRender& render : renders) {
-      transport.Render(*render.brdf, render.map,
+      transport.Render(render.brdfs, render.map,
                        render.radiance->data() + 3 * begin);
     }
   }

@@ -2,16 +2,16 @@
 #pragma once
 #include <vector>
 
-#include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
+#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 
 // What is rendered, and where to.
 struct PixelRender {
-  const BrdfGrid* brdf = nullptr;
+  MaterialGrids brdfs;
   const float* map = nullptr;               // radiance [H, W, 3]
   std::vector<double>* radiance = nullptr;  // receives [pixels * 3]
 };

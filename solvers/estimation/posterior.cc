@@ -122,8 +122,9 @@ PosteriorObjective ObjectiveOn(ObservedPixels* pixels, const SolveSetup& setup,
     terms.lobes = setup.lobes.get();
     terms.lobe_prior = setup.lobe_prior;
   } else {
-    out.known_brdf = std::make_unique<LightOperator>(
-        transport.ByLight(*setup.problem->known_brdf));
+    const std::vector<BrdfGrid> grids = setup.GridsOf({});
+    out.known_brdf =
+        std::make_unique<LightOperator>(transport.ByLight(ByMaterial(grids)));
     terms.known_brdf = out.known_brdf.get();
   }
   if (setup.light_unknown()) {

@@ -21,6 +21,19 @@ constexpr double kFloor = 1e-9;  // 1/sr
 // mean log radiance (experiments/light_statistics).
 constexpr double kLightChromaStd = 0.35;
 
+// Lobes, and a table's raw values, times exp(shift).
+void ScaleReflectance(const Eigen::Array3d& shift, int code_size,
+                      std::vector<double>* lobes, std::vector<double>* raw) {
+  MutableLobeMixture(LobeLayout::OfSize(lobes->size(), code_size),
+                     lobes->data())
+      .ShiftColours(shift);
+  const Eigen::Array3d scale = shift.exp();
+  for (size_t i = 0; i < raw->size(); ++i) {
+    // Negative values mark invalid bins.
+    if ((*raw)[i] > 0.0) (*raw)[i] *= scale[i / kMerlBins];
+  }
+}
+
 }  // namespace
 
 LevelGauge::LevelGauge(const NeuralBrdfModel& model, const MaterialPrior& prior,
@@ -37,6 +50,14 @@ double LevelGauge::Fix(double* parameters) const {
   const double level = mean_ - MeanLog(parameters);
   lobes_.Mixture(parameters).ShiftColours(Eigen::Array3d::Constant(level));
   return level;
+}
+
+void LevelGauge::Shift(double level, int num_materials,
+                       double* parameters) const {
+  for (int m = 0; m < num_materials; ++m) {
+    lobes_.Mixture(parameters + m * lobes_.num_parameters())
+        .ShiftColours(Eigen::Array3d::Constant(level));
+  }
 }
 
 double LevelGauge::MeanLog(const double* parameters) const {
@@ -105,13 +126,11 @@ void SetGauge(SolverGauge gauge, int code_size, Solution* solution) {
   for (size_t i = 0; i < map.size(); ++i) {
     map[i] = static_cast<float>(map[i] / scale[i % 3]);
   }
-  std::vector<double>& lobes = solution->lobe_parameters;
-  MutableLobeMixture(LobeLayout::OfSize(lobes.size(), code_size), lobes.data())
-      .ShiftColours(shift);
-  std::vector<double>& raw = solution->brdf.raw;
-  for (size_t i = 0; i < raw.size(); ++i) {
-    // Negative values mark invalid bins.
-    if (raw[i] > 0.0) raw[i] *= scale[i / kMerlBins];
+  ScaleReflectance(shift, code_size, &solution->lobe_parameters,
+                   &solution->brdf.raw);
+  for (MaterialSolution& material : solution->materials) {
+    ScaleReflectance(shift, code_size, &material.lobe_parameters,
+                     &material.brdf.raw);
   }
   std::vector<float>& albedo = solution->albedo.rgb;
   for (size_t i = 0; i < albedo.size(); ++i) {

@@ -36,6 +36,8 @@ class LevelGauge {
   // Adds the same to the log colours of all lobes and channels of `parameters`
   // [lobes * (code + 3)] and returns it; finite for any finite parameters.
   double Fix(double* parameters) const;
+  // The same by a level of the caller's, for materials one after the other.
+  void Shift(double level, int num_materials, double* parameters) const;
 
  private:
   double MeanLog(const double* parameters) const;

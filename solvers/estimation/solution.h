@@ -45,6 +45,15 @@ struct CurveEstimate {
   double cost = 0.0;  // -log evidence, nats, above the best one's
 };
 
+// The reflectance of one of several materials, as Solution has it of one.
+struct MaterialSolution {
+  std::vector<double> lobe_parameters, lobe_covariance;
+  double spread = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Alternative> alternatives;  // of all materials at once
+  MerlTable brdf;
+  std::string start;
+};
+
 struct Solution {
   // Where the curve was unknown: the best of each family, the best first.
   std::vector<CurveEstimate> curves;
@@ -61,8 +70,11 @@ struct Solution {
   // kept.
   Image map_std;
   MerlTable brdf;  // empty if known
-  Image map;       // [H, W]; the known one if known
-  Image render;    // radiance at the object's pixels, else 0
+  // Of labelled materials, by ShadingPoint::material; what is above is then
+  // that of most pixels. Empty: no labels.
+  std::vector<MaterialSolution> materials;
+  Image map;     // [H, W]; the known one if known
+  Image render;  // radiance at the object's pixels, else 0
   // Where the albedo varies, has_paint(): that of what is matte, at the
   // object's pixels, else 0; and the radiance that is gloss. Else empty.
   Image albedo, gloss;

@@ -82,6 +82,18 @@ bool SolveSetup::joint_maximum() const {
          problem->solver.estimator == SolverEstimator::kMaximum;
 }
 
+std::vector<BrdfGrid> SolveSetup::GridsOf(
+    const std::vector<double>& parameters) const {
+  if (!problem->estimated_brdfs.empty()) return problem->estimated_brdfs;
+  if (!lobes_unknown()) return {*problem->known_brdf};
+  std::vector<BrdfGrid> grids;
+  const size_t size = lobes->num_parameters();
+  for (size_t first = 0; first < parameters.size(); first += size) {
+    grids.push_back(lobes->Grid(&parameters[first]));
+  }
+  return grids;
+}
+
 StatusOr<SolveSetup> SetUp(const InverseProblem& problem) {
   SolveSetup setup;
   setup.problem = &problem;

@@ -51,6 +51,9 @@ struct SolveSetup {
   bool light_unknown() const { return !problem->known_map.has_value(); }
   // Both at once, as published (Chen et al. 2020, Eq. 8).
   bool joint_maximum() const;
+  // BRDFs of the points, by material: the known or estimated ones, or those of
+  // lobes [materials][lobes' parameters].
+  std::vector<BrdfGrid> GridsOf(const std::vector<double>& parameters) const;
   MapSize map_size() const { return {problem->map_width, problem->map_height}; }
 };
 

@@ -18,7 +18,7 @@ MarginalObjective::MarginalObjective(const MarginalReflectance* reflectance,
       errors_(std::move(errors)),
       mode_(mode),
       mode_tolerance_(mode_tolerance) {
-  CHECK_EQ(reflectance->lobes().num_parameters(), prior->num_parameters());
+  CHECK_EQ(reflectance->num_lobe_parameters(), prior->num_parameters());
 }
 
 int MarginalObjective::NumParameters() const {

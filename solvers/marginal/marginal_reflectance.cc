@@ -23,22 +23,24 @@ constexpr double kDirectionalLightStep = 1e-3;
 // hidden has 1e-4 left at the horizon, which the steps of VisibilityGrid cut.
 constexpr double kLeastSeen = 1e-3;
 
-// Bins that a map of constant radiance lights.
-std::vector<bool> LitCells(const NormalBins& bins, const Transport& transport) {
+// Adds which of some bins, whose points come from first_point on, a map of
+// constant radiance lights.
+void AddLitCells(const NormalBins& bins, int first_bin, int num_bins,
+                 int first_point, const Transport& transport,
+                 std::vector<bool>* lit) {
   BrdfGrid white;
   white.shape = transport.grid_shape();
   white.values.assign(3 * white.shape.num_nodes(), 1.0f);
   const std::vector<float> map(
       size_t{3} * transport.map_height() * transport.map_width(), 1.0f);
-  std::vector<double> L_o(3 * bins.points.size());
+  std::vector<double> L_o(size_t{3} * transport.num_points());
   transport.Render(white, map.data(), L_o.data());
-  std::vector<bool> lit;
-  for (int i = 0; i < bins.num_bins(); ++i) {
-    lit.push_back(std::any_of(L_o.begin() + 3 * bins.first[i],
-                              L_o.begin() + 3 * bins.first[i + 1],
-                              [](double e) { return e > kLeastSeen; }));
+  for (int i = first_bin; i < first_bin + num_bins; ++i) {
+    lit->push_back(
+        std::any_of(L_o.begin() + 3 * (bins.first[i] - first_point),
+                    L_o.begin() + 3 * (bins.first[i + 1] - first_point),
+                    [](double e) { return e > kLeastSeen; }));
   }
-  return lit;
 }
 
 // log mean I - log mean(I / e^a) of the bins' points [3 * bins]: the paint of
@@ -76,36 +78,33 @@ MarginalReflectance::MarginalReflectance(
     const Observations& observed, const LightProcess& process,
     const MarginalResolution& resolution, int num_threads,
     std::vector<Eigen::Vector3d> directional_lights,
-    const std::optional<PaintPrior>& paint)
+    const std::optional<PaintPrior>& paint, int num_materials)
     : resolution_(resolution),
       binned_(BinByNormal(points, observed, resolution.bins)),
       directional_lights_(std::move(directional_lights)) {
   CHECK_GT(binned_.num_bins(), 0);
-  TransportOptions options;
-  options.grid = resolution.grid;
-  options.num_threads = num_threads;
-  options.quadrature = resolution.quadrature;
-  options.visibility = resolution.visibility;
-  const auto transport = [&] {
-    return std::make_unique<Transport>(binned_.points, resolution.map_height,
-                                       resolution.map_width, options);
-  };
-  transport_ = transport();
+  blocks_ = MakeBlocks(num_materials, num_threads);
   Eigen::VectorXd mean_paint;
   if (paint) {
     mean_paint = MeanPaint(points, observed, paint->mean, resolution, binned_);
   }
   if (resolution.visibility != nullptr) {
     // No light explains radiance where none of the map is seen.
-    const std::vector<bool> lit = LitCells(binned_, *transport_);
+    std::vector<bool> lit;
+    for (const Block& block : blocks_) {
+      if (block.transport == nullptr) continue;
+      AddLitCells(binned_, block.first_bin, block.num_bins, block.first_point,
+                  *block.transport, &lit);
+    }
     const auto count = std::count(lit.begin(), lit.end(), true);
     if (count > 0 && count < binned_.num_bins()) {
       binned_ = KeepBins(binned_, lit);
       mean_paint = KeepRows(mean_paint, lit);
-      transport_ = transport();
+      blocks_ = MakeBlocks(num_materials, num_threads);
     }
   }
   lobes_ = lobes(resolution.grid);
+  CHECK(!paint || num_materials == 1);
   Eigen::MatrixXd covariance;
   if (paint) {
     covariance =
@@ -118,9 +117,41 @@ MarginalReflectance::MarginalReflectance(
       std::move(covariance), std::move(mean_paint));
 }
 
+std::vector<MarginalReflectance::Block> MarginalReflectance::MakeBlocks(
+    int num_materials, int num_threads) const {
+  TransportOptions options;
+  options.grid = resolution_.grid;
+  options.num_threads = num_threads;
+  options.quadrature = resolution_.quadrature;
+  options.visibility = resolution_.visibility;
+  std::vector<Block> blocks;
+  int bin = 0;
+  for (int material = 0; material < num_materials; ++material) {
+    Block block;
+    block.first_bin = bin;
+    block.first_point = binned_.first[bin];
+    while (bin < binned_.num_bins() &&
+           (num_materials == 1 ||
+            binned_.points[binned_.first[bin]].material == material)) {
+      ++bin;
+    }
+    block.num_bins = bin - block.first_bin;
+    block.num_points = binned_.first[bin] - block.first_point;
+    if (block.num_points > 0) {
+      const auto first = binned_.points.begin() + block.first_point;
+      block.transport = std::make_unique<Transport>(
+          std::vector<ShadingPoint>(first, first + block.num_points),
+          resolution_.map_height, resolution_.map_width, options);
+    }
+    blocks.push_back(std::move(block));
+  }
+  CHECK_EQ(bin, binned_.num_bins());
+  return blocks;
+}
+
 Eigen::VectorXd MarginalReflectance::WithDirectionalLights(
     const Eigen::VectorXd& lobes) const {
-  CHECK_EQ(lobes.size(), lobes_->num_parameters());
+  CHECK_EQ(lobes.size(), num_lobe_parameters());
   Eigen::VectorXd all = Eigen::VectorXd::Zero(num_parameters());
   all.head(lobes.size()) = lobes;
   return all;
@@ -129,7 +160,7 @@ Eigen::VectorXd MarginalReflectance::WithDirectionalLights(
 std::vector<Eigen::Vector3d> MarginalReflectance::DirectionalLightDirections(
     const double* parameters) const {
   std::vector<Eigen::Vector3d> directions;
-  const double* offsets = parameters + lobes_->num_parameters();
+  const double* offsets = parameters + num_lobe_parameters();
   for (const Eigen::Vector3d& directional_light : directional_lights_) {
     directions.push_back(MovedDirectionalLight(directional_light, offsets));
     offsets += 2;
@@ -144,29 +175,45 @@ DirectionalLightResponses MarginalReflectance::DirectionalLights(
                                    DirectionalLightDirections(parameters));
 }
 
+MarginalReflectance::Fields MarginalReflectance::Tabulate(
+    const double* parameters, bool derivatives) const {
+  Fields fields(num_materials());
+  for (int m = 0; m < num_materials(); ++m) {
+    lobes_->Tabulate(parameters + m * lobes_->num_parameters(), derivatives,
+                     &fields[m]);
+  }
+  return fields;
+}
+
 std::vector<RowMatrix> MarginalReflectance::DirectionalLightSlopes(
-    const double* parameters, const std::vector<float>& fields,
-    int stride) const {
+    const double* parameters, const Fields& fields, int stride) const {
   const size_t nodes = lobes_->grid_shape().num_nodes();
   const int num_lobes = lobes_->num_lobes();
   const auto num_directional_lights =
       static_cast<Eigen::Index>(directional_lights_.size());
   std::vector<RowMatrix> slopes(
-      num_lobes,
+      num_materials() * num_lobes,
       RowMatrix::Zero(binned_.num_bins(), 2 * num_directional_lights));
   if (num_directional_lights == 0) return slopes;
   for (int axis = 0; axis < 2; ++axis) {
     for (const double step : {kDirectionalLightStep, -kDirectionalLightStep}) {
       std::vector<double> moved(parameters, parameters + num_parameters());
       for (Eigen::Index k = 0; k < num_directional_lights; ++k) {
-        moved[lobes_->num_parameters() + 2 * k + axis] += step;
+        moved[num_lobe_parameters() + 2 * k + axis] += step;
       }
       const DirectionalLightResponses responses =
           DirectionalLights(moved.data());
-      for (int lobe = 0; lobe < num_lobes; ++lobe) {
-        const RowMatrix of = responses.Of(&fields[lobe * stride * nodes]);
+      for (size_t i = 0; i < slopes.size(); ++i) {
+        const Block& block = blocks_[i / num_lobes];
+        const float* const field =
+            &fields[i / num_lobes][i % num_lobes * stride * nodes];
+        const RowMatrix of =
+            responses.Of(field).middleRows(block.first_bin, block.num_bins);
         for (Eigen::Index k = 0; k < num_directional_lights; ++k) {
-          slopes[lobe].col(2 * k + axis) += of.col(k) / (2.0 * step);
+          slopes[i]
+              .col(2 * k + axis)
+              .segment(block.first_bin, block.num_bins) +=
+              of.col(k) / (2.0 * step);
         }
       }
     }
@@ -201,57 +248,81 @@ std::vector<double> MarginalReflectance::LogRadiance(
 }
 
 MarginalReflectance::FloatMatrix MarginalReflectance::CellMatrix(
-    const DirectionalLightResponses& directional_lights,
+    const Block& block, const DirectionalLightResponses& directional_lights,
     const float* field) const {
   const Eigen::Index t = likelihood_->num_texels();
-  FloatMatrix by_point(static_cast<Eigen::Index>(binned_.points.size()), t);
-  transport_->LightMatrix(field, by_point.data());
-  FloatMatrix by_bin(binned_.num_bins(), likelihood_->num_sources());
-  for (int i = 0; i < binned_.num_bins(); ++i) {
-    const int begin = binned_.first[i], count = binned_.first[i + 1] - begin;
-    by_bin.row(i).head(t) = by_point.middleRows(begin, count).colwise().mean();
+  FloatMatrix by_bin(block.num_bins, likelihood_->num_sources());
+  if (block.transport == nullptr) return by_bin;
+  FloatMatrix by_point(block.num_points, t);
+  block.transport->LightMatrix(field, by_point.data());
+  const int* const first = &binned_.first[block.first_bin];
+  for (int i = 0; i < block.num_bins; ++i) {
+    by_bin.row(i).head(t) =
+        by_point
+            .middleRows(first[i] - block.first_point, first[i + 1] - first[i])
+            .colwise()
+            .mean();
   }
   by_bin.rightCols(directional_lights.num_directional_lights()) =
-      directional_lights.Of(field).cast<float>();
+      directional_lights.Of(field)
+          .middleRows(block.first_bin, block.num_bins)
+          .cast<float>();
   return by_bin;
 }
 
 void MarginalReflectance::CellMatrixGradient(
-    const DirectionalLightResponses& directional_lights,
+    const Block& block, const DirectionalLightResponses& directional_lights,
     const FloatMatrix& adjoint, float* gradient) const {
+  if (block.transport == nullptr) {
+    std::fill_n(gradient, lobes_->grid_shape().num_nodes(), 0.0f);
+    return;
+  }
   const Eigen::Index t = likelihood_->num_texels();
-  FloatMatrix by_point(static_cast<Eigen::Index>(binned_.points.size()), t);
-  for (int i = 0; i < binned_.num_bins(); ++i) {
-    const int begin = binned_.first[i], count = binned_.first[i + 1] - begin;
-    by_point.middleRows(begin, count).rowwise() =
+  FloatMatrix by_point(block.num_points, t);
+  const int* const first = &binned_.first[block.first_bin];
+  for (int i = 0; i < block.num_bins; ++i) {
+    const int count = first[i + 1] - first[i];
+    by_point.middleRows(first[i] - block.first_point, count).rowwise() =
         adjoint.row(i).head(t) / static_cast<float>(count);
   }
-  transport_->LightMatrixGradient(by_point.data(), gradient);
-  directional_lights.AddGradient(
-      adjoint.rightCols(directional_lights.num_directional_lights()), gradient);
+  block.transport->LightMatrixGradient(by_point.data(), gradient);
+  const int lights = directional_lights.num_directional_lights();
+  FloatMatrix of_lights = FloatMatrix::Zero(binned_.num_bins(), lights);
+  of_lights.middleRows(block.first_bin, block.num_bins) =
+      adjoint.rightCols(lights);
+  directional_lights.AddGradient(of_lights, gradient);
 }
 
 std::vector<MarginalReflectance::FloatMatrix>
 MarginalReflectance::ShapeMatrices(
-    const DirectionalLightResponses& directional_lights,
-    const std::vector<float>& fields, int stride) const {
+    const DirectionalLightResponses& directional_lights, const Fields& fields,
+    int stride) const {
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<FloatMatrix> shapes;
-  for (int k = 0; k < lobes_->num_lobes(); ++k) {
-    shapes.push_back(
-        CellMatrix(directional_lights, &fields[k * stride * nodes]));
+  for (int m = 0; m < num_materials(); ++m) {
+    for (int k = 0; k < lobes_->num_lobes(); ++k) {
+      shapes.push_back(CellMatrix(blocks_[m], directional_lights,
+                                  &fields[m][k * stride * nodes]));
+    }
   }
   return shapes;
 }
 
 std::array<RowMatrix, 3> MarginalReflectance::Coloured(
     const double* parameters, const std::vector<FloatMatrix>& shapes) const {
-  const Eigen::Array3Xd colours = lobes_->Mixture(parameters).Colours();
+  const int num_lobes = lobes_->num_lobes();
   std::array<RowMatrix, 3> matrices;
-  for (int c = 0; c < 3; ++c) {
-    matrices[c].setZero(shapes[0].rows(), shapes[0].cols());
-    for (int k = 0; k < colours.cols(); ++k) {
-      matrices[c] += colours(c, k) * shapes[k].cast<double>();
+  for (RowMatrix& matrix : matrices) {
+    matrix.setZero(binned_.num_bins(), shapes[0].cols());
+  }
+  for (int m = 0; m < num_materials(); ++m) {
+    const Block& block = blocks_[m];
+    const Eigen::Array3Xd colours = MixtureOf(m, parameters).Colours();
+    for (int c = 0; c < 3; ++c) {
+      for (int k = 0; k < num_lobes; ++k) {
+        matrices[c].middleRows(block.first_bin, block.num_bins) +=
+            colours(c, k) * shapes[m * num_lobes + k].cast<double>();
+      }
     }
   }
   return matrices;
@@ -259,10 +330,8 @@ std::array<RowMatrix, 3> MarginalReflectance::Coloured(
 
 std::array<RowMatrix, 3> MarginalReflectance::Matrices(
     const double* parameters) const {
-  std::vector<float> fields;
-  lobes_->Tabulate(parameters, false, &fields);
-  return Coloured(parameters,
-                  ShapeMatrices(DirectionalLights(parameters), fields, 1));
+  return Coloured(parameters, ShapeMatrices(DirectionalLights(parameters),
+                                            Tabulate(parameters, false), 1));
 }
 
 std::array<RowMatrix, 3> MarginalReflectance::MatteMatrices(
@@ -270,18 +339,15 @@ std::array<RowMatrix, 3> MarginalReflectance::MatteMatrices(
   if (!likelihood_->has_paint()) return {};
   return Coloured(parameters,
                   ShapeMatrices(DirectionalLights(parameters),
-                                MatteShapes(*lobes_, parameters), 1));
+                                {MatteShapes(*lobes_, parameters)}, 1));
 }
 
 MarginalValue MarginalReflectance::Evaluate(
     const double* parameters, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, double tolerance,
     LightMode* mode, std::vector<double>* gradient) const {
-  const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
-  const int stride = gradient != nullptr ? 1 + size : 1;
-  const size_t nodes = lobes_->grid_shape().num_nodes();
-  std::vector<float> fields;
-  lobes_->Tabulate(parameters, gradient != nullptr, &fields);
+  const int stride = gradient != nullptr ? 1 + lobes_->code_size() : 1;
+  const Fields fields = Tabulate(parameters, gradient != nullptr);
   const DirectionalLightResponses directional_lights =
       DirectionalLights(parameters);
   const std::vector<FloatMatrix> shapes =
@@ -294,24 +360,47 @@ MarginalValue MarginalReflectance::Evaluate(
   gradient->assign(num_parameters() + LightHyperparameters::kCount, 0.0);
   const std::vector<RowMatrix> slopes =
       DirectionalLightSlopes(parameters, fields, stride);
+  for (int m = 0; m < num_materials(); ++m) {
+    AddGradient(m, parameters, fields[m], directional_lights, shapes, slopes,
+                by_matrix, gradient->data());
+  }
+  std::copy(by_matrix.hyperparameters.begin(), by_matrix.hyperparameters.end(),
+            gradient->end() - LightHyperparameters::kCount);
+  return value;
+}
+
+void MarginalReflectance::AddGradient(
+    int material, const double* parameters, const std::vector<float>& fields,
+    const DirectionalLightResponses& directional_lights,
+    const std::vector<FloatMatrix>& shapes,
+    const std::vector<RowMatrix>& slopes, const MarginalGradient& by_matrix,
+    double* gradient) const {
+  const int num_lobes = lobes_->num_lobes();
+  const int stride = 1 + lobes_->code_size();
+  const size_t nodes = lobes_->grid_shape().num_nodes();
   const Eigen::Index t = likelihood_->num_texels();
+  const Block& block = blocks_[material];
   std::vector<float> by_node(nodes);
-  const LobeMixture lobes = lobes_->Mixture(parameters);
+  const LobeMixture lobes = MixtureOf(material, parameters);
   const Eigen::Array3Xd colours = lobes.Colours();
   const Eigen::Array3Xd colour_slopes = lobes.ColourSlopes();
-  const MutableLobeMixture by_lobe = lobes_->Mixture(gradient->data());
+  const MutableLobeMixture by_lobe = MixtureOf(material, gradient);
   for (int k = 0; k < num_lobes; ++k) {
-    FloatMatrix adjoint = FloatMatrix::Zero(shapes[k].rows(), shapes[k].cols());
+    const FloatMatrix& shape = shapes[material * num_lobes + k];
+    const RowMatrix& slope = slopes[material * num_lobes + k];
+    FloatMatrix adjoint = FloatMatrix::Zero(shape.rows(), shape.cols());
     for (int c = 0; c < 3; ++c) {
-      adjoint += (colours(c, k) * by_matrix.matrices[c]).cast<float>();
+      const auto by_row =
+          by_matrix.matrices[c].middleRows(block.first_bin, block.num_bins);
+      adjoint += (colours(c, k) * by_row).cast<float>();
       by_lobe.log_colour(k)[c] =
-          colour_slopes(c, k) *
-          by_matrix.matrices[c].cwiseProduct(shapes[k].cast<double>()).sum();
+          colour_slopes(c, k) * by_row.cwiseProduct(shape.cast<double>()).sum();
     }
-    CellMatrixGradient(directional_lights, adjoint, by_node.data());
-    for (Eigen::Index i = 0; i < slopes[k].cols(); ++i) {
-      (*gradient)[lobes_->num_parameters() + i] +=
-          adjoint.col(t + i / 2).cast<double>().dot(slopes[k].col(i));
+    CellMatrixGradient(block, directional_lights, adjoint, by_node.data());
+    for (Eigen::Index i = 0; i < slope.cols(); ++i) {
+      gradient[num_lobe_parameters() + i] +=
+          adjoint.col(t + i / 2).cast<double>().dot(
+              slope.col(i).segment(block.first_bin, block.num_bins));
     }
     for (int d = 0; d < lobes.code(k).size(); ++d) {
       const float* derivative = &fields[(k * stride + 1 + d) * nodes];
@@ -322,21 +411,36 @@ MarginalValue MarginalReflectance::Evaluate(
       by_lobe.code(k)[d] = sum;
     }
   }
-  std::copy(by_matrix.hyperparameters.begin(), by_matrix.hyperparameters.end(),
-            gradient->end() - LightHyperparameters::kCount);
-  return value;
 }
 
 RowMatrix MarginalReflectance::LogRadianceJacobian(
-    const double* parameters, const std::vector<float>& fields,
+    const double* parameters, const Fields& fields,
     const DirectionalLightResponses& directional_lights,
     const LightMode& mode) const {
+  RowMatrix jacobian =
+      RowMatrix::Zero(Eigen::Index{3} * binned_.num_bins(), num_parameters());
+  const std::vector<RowMatrix> slopes =
+      DirectionalLightSlopes(parameters, fields, 1 + lobes_->code_size());
+  for (int m = 0; m < num_materials(); ++m) {
+    if (blocks_[m].transport == nullptr) continue;
+    AddLogRadianceJacobian(m, parameters, fields, directional_lights, slopes,
+                           mode, &jacobian);
+  }
+  return jacobian;
+}
+
+void MarginalReflectance::AddLogRadianceJacobian(
+    int material, const double* parameters, const Fields& fields,
+    const DirectionalLightResponses& directional_lights,
+    const std::vector<RowMatrix>& slopes, const LightMode& mode,
+    RowMatrix* jacobian) const {
+  const Block& block = blocks_[material];
   const int num_lobes = lobes_->num_lobes(), size = lobes_->code_size();
   const int num_fields = lobes_->num_fields();
   const Eigen::Index P = binned_.num_bins();
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<const float*> field(num_fields);
-  for (int i = 0; i < num_fields; ++i) field[i] = &fields[i * nodes];
+  for (int i = 0; i < num_fields; ++i) field[i] = &fields[material][i * nodes];
   const Eigen::Index t = likelihood_->num_texels(),
                      n = likelihood_->num_sources();
   // The level of the light cancels in the ratios below.
@@ -351,25 +455,23 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
            .array() -
        highest)
           .exp();
-  std::vector<float> by_point(size_t{3} * binned_.points.size() * num_fields);
-  transport_->RenderLobes(field.data(), num_fields, map.data(),
-                          by_point.data());
+  std::vector<float> by_point(size_t{3} * block.num_points * num_fields);
+  block.transport->RenderLobes(field.data(), num_fields, map.data(),
+                               by_point.data());
   std::vector<RowMatrix> under_directional_lights;  // of a field [bins][3]
   for (int f = 0; f < num_fields; ++f) {
     under_directional_lights.push_back(directional_lights.Of(field[f]) *
                                        of_directional_lights.transpose());
   }
-  const std::vector<RowMatrix> slopes =
-      DirectionalLightSlopes(parameters, fields, 1 + size);
-  const LobeMixture lobes = lobes_->Mixture(parameters);
+  const LobeMixture lobes = MixtureOf(material, parameters);
   const Eigen::Array3Xd colours = lobes.Colours();
   const Eigen::Array3Xd colour_slopes = lobes.ColourSlopes();
-  RowMatrix jacobian = RowMatrix::Zero(3 * P, num_parameters());
   std::vector<double> sum(size_t{3} * num_fields);
-  for (Eigen::Index i = 0; i < P; ++i) {
+  for (Eigen::Index i = block.first_bin; i < block.first_bin + block.num_bins;
+       ++i) {
     std::fill(sum.begin(), sum.end(), 0.0);
     for (int p = binned_.first[i]; p < binned_.first[i + 1]; ++p) {
-      const float* out = &by_point[p * sum.size()];
+      const float* out = &by_point[(p - block.first_point) * sum.size()];
       for (size_t k = 0; k < sum.size(); ++k) sum[k] += out[k];
     }
     const double count = binned_.first[i + 1] - binned_.first[i];
@@ -382,17 +484,17 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
         radiance += colours(c, k) * sum[3 * k * (1 + size) + c];
       }
       for (Eigen::Index j = 0; j < slopes[0].cols(); ++j) {
-        double& slope = jacobian(c * P + i, lobes_->num_parameters() + j);
+        double& slope = (*jacobian)(c * P + i, num_lobe_parameters() + j);
         for (int k = 0; k < num_lobes; ++k) {
-          slope += colours(c, k) * slopes[k](i, j);
+          slope += colours(c, k) * slopes[material * num_lobes + k](i, j);
         }
         slope *= of_directional_lights(c, j / 2) / radiance;
       }
+      const MutableLobeMixture row =
+          MixtureOf(material, jacobian->row(c * P + i).data());
       for (int k = 0; k < num_lobes; ++k) {
         const double share = colours(c, k) / radiance;
         const double* of_lobe = &sum[3 * k * (1 + size) + c];
-        const MutableLobeMixture row =
-            lobes_->Mixture(jacobian.row(c * P + i).data());
         for (int d = 0; d < row.code(k).size(); ++d) {
           row.code(k)[d] = share * of_lobe[3 * (1 + d)];
         }
@@ -400,14 +502,12 @@ RowMatrix MarginalReflectance::LogRadianceJacobian(
       }
     }
   }
-  return jacobian;
 }
 
 Eigen::MatrixXd MarginalReflectance::Information(
     const double* parameters, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, const LightMode& mode) const {
-  std::vector<float> fields;
-  lobes_->Tabulate(parameters, true, &fields);
+  const Fields fields = Tabulate(parameters, true);
   const DirectionalLightResponses directional_lights =
       DirectionalLights(parameters);
   const RowMatrix G =

@@ -29,7 +29,10 @@ struct MarginalResolution {
 // keep; may be used from several threads.
 class MarginalReflectance {
  public:
-  // CHECKs that at least one point can be used. paint: the albedo varies over
+  // CHECKs that at least one point can be used. num_materials: of the points
+  // (ShadingPoint::material); the lobes are as many for each, one material's
+  // after the other's, and light points of their own material alone. paint: the
+  // albedo varies over
   // the points, as this prior says, and a bin's mean is that of its points'
   // radiance without it; unset: it does not.
   MarginalReflectance(const LobeFactory& lobes,
@@ -37,15 +40,21 @@ class MarginalReflectance {
                       const Observations& observed, const LightProcess& process,
                       const MarginalResolution& resolution, int num_threads,
                       std::vector<Eigen::Vector3d> directional_lights = {},
-                      const std::optional<PaintPrior>& paint = std::nullopt);
+                      const std::optional<PaintPrior>& paint = std::nullopt,
+                      int num_materials = 1);
 
-  const LobeModel& lobes() const { return *lobes_; }
+  const LobeModel& lobes() const { return *lobes_; }  // of one material
   const MarginalLikelihood& likelihood() const { return *likelihood_; }
   const NormalBins& bins() const { return binned_; }
   const MarginalResolution& resolution() const { return resolution_; }
 
+  int num_materials() const { return static_cast<int>(blocks_.size()); }
+  // Of the lobes of all materials.
+  int num_lobe_parameters() const {
+    return num_materials() * lobes_->num_parameters();
+  }
   int num_parameters() const {
-    return lobes_->num_parameters() +
+    return num_lobe_parameters() +
            2 * static_cast<int>(directional_lights_.size());
   }
   // Parameters of lobes, with all directional lights where the constructor was
@@ -78,35 +87,68 @@ class MarginalReflectance {
 
  private:
   using FloatMatrix = DirectionalLightResponses::Matrix;
+  // The bins of a material and their points, in a row.
+  struct Block {
+    int first_bin = 0, num_bins = 0;
+    int first_point = 0, num_points = 0;
+    std::unique_ptr<Transport> transport;  // of the points; null: none
+  };
+  std::vector<Block> MakeBlocks(int num_materials, int num_threads) const;
+  // Fields of each material's lobes (LobeModel::Tabulate).
+  using Fields = std::vector<std::vector<float>>;
+  Fields Tabulate(const double* parameters, bool derivatives) const;
+  // Of a material's lobes, in parameters or a gradient.
+  template <typename Number>
+  auto MixtureOf(int material, Number* parameters) const {
+    return lobes_->Mixture(parameters + material * lobes_->num_parameters());
+  }
+  // Adds a material's part of the gradient. fields: of the material, with
+  // derivatives; shapes and slopes: of all lobes.
+  void AddGradient(int material, const double* parameters,
+                   const std::vector<float>& fields,
+                   const DirectionalLightResponses& directional_lights,
+                   const std::vector<FloatMatrix>& shapes,
+                   const std::vector<RowMatrix>& slopes,
+                   const MarginalGradient& by_matrix, double* gradient) const;
   // d log L_o / d parameters [3 * bins][num_parameters], the light held.
   RowMatrix LogRadianceJacobian(
-      const double* parameters, const std::vector<float>& fields,
+      const double* parameters, const Fields& fields,
       const DirectionalLightResponses& directional_lights,
       const LightMode& mode) const;
+  // The rows of a material's bins and the columns of its lobes. slopes: of
+  // DirectionalLightSlopes.
+  void AddLogRadianceJacobian(
+      int material, const double* parameters, const Fields& fields,
+      const DirectionalLightResponses& directional_lights,
+      const std::vector<RowMatrix>& slopes, const LightMode& mode,
+      RowMatrix* jacobian) const;
   DirectionalLightResponses DirectionalLights(const double* parameters) const;
   // d DirectionalLights().Of(field) by the directional lights' offsets,
   // [bins][2 directional lights]: by central differences, as the fields are
   // linear between their nodes.
-  std::vector<RowMatrix> DirectionalLightSlopes(
-      const double* parameters, const std::vector<float>& fields,
-      int stride) const;
-  // The matrix of each lobe's shape, the first of its `stride` fields.
+  std::vector<RowMatrix> DirectionalLightSlopes(const double* parameters,
+                                                const Fields& fields,
+                                                int stride) const;
+  // The matrix of each lobe's shape, the first of its `stride` fields, one
+  // material's after the other's: [bins of the material][sources].
   std::vector<FloatMatrix> ShapeMatrices(
-      const DirectionalLightResponses& directional_lights,
-      const std::vector<float>& fields, int stride) const;
+      const DirectionalLightResponses& directional_lights, const Fields& fields,
+      int stride) const;
   // T_c of lobes of those shapes and the parameters' colours.
   std::array<RowMatrix, 3> Coloured(
       const double* parameters, const std::vector<FloatMatrix>& shapes) const;
-  // [bins][sources] of a scalar field, and its transpose.
-  FloatMatrix CellMatrix(const DirectionalLightResponses& directional_lights,
+  // [bins of a material][sources] of a scalar field, and its transpose.
+  FloatMatrix CellMatrix(const Block& block,
+                         const DirectionalLightResponses& directional_lights,
                          const float* field) const;
-  void CellMatrixGradient(const DirectionalLightResponses& directional_lights,
+  void CellMatrixGradient(const Block& block,
+                          const DirectionalLightResponses& directional_lights,
                           const FloatMatrix& adjoint, float* gradient) const;
 
   MarginalResolution resolution_;
   NormalBins binned_;
   std::vector<Eigen::Vector3d> directional_lights_;
-  std::unique_ptr<Transport> transport_;
+  std::vector<Block> blocks_;  // by material
   std::unique_ptr<const LobeModel> lobes_;
   std::unique_ptr<MarginalLikelihood> likelihood_;
 };

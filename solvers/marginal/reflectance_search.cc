@@ -12,6 +12,7 @@
 #include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/base/pi.h"
+#include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/marginal/marginal_descent.h"
 #include "ibrdf/solvers/marginal/marginal_objective.h"
 #include "ibrdf/solvers/optim/conditioning.h"
@@ -49,19 +50,59 @@ std::vector<char> ClippedPoints(const Observations& observed) {
   return clipped;
 }
 
-// The lights that the caller knows, and others that highlights show.
+bool IsNearOneOf(const std::vector<Eigen::Vector3d>& lights,
+                 const Eigen::Vector3d& direction) {
+  const double reach = std::cos(kReach * kDegree);
+  return std::any_of(lights.begin(), lights.end(), [&](const auto& light) {
+    return light.dot(direction) >= reach;
+  });
+}
+
+// The lights that a material's highlights show: where two materials meet, the
+// brighter one has none.
+std::vector<Eigen::Vector3d> LightsOfMaterial(
+    const std::vector<ShadingPoint>& points, const Observations& observed,
+    int material, const ReflectanceSearchOptions& options) {
+  const std::vector<char> clipped = ClippedPoints(observed);
+  if (options.num_materials == 1) {
+    return FindDirectionalLights(points, observed.radiance,
+                                 options.most_directional_lights, clipped);
+  }
+  std::vector<ShadingPoint> of_material;
+  std::vector<double> radiance;
+  std::vector<char> of_clipped;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (points[i].material != material) continue;
+    of_material.push_back(points[i]);
+    radiance.insert(radiance.end(), &observed.radiance[3 * i],
+                    &observed.radiance[3 * i] + 3);
+    if (!clipped.empty()) of_clipped.push_back(clipped[i]);
+  }
+  return FindDirectionalLights(of_material, radiance,
+                               options.most_directional_lights, of_clipped);
+}
+
+// The lights that the caller knows, and others that highlights show: the
+// brightest of each material first.
 std::vector<Eigen::Vector3d> DirectionalLights(
     const std::vector<ShadingPoint>& points, const Observations& observed,
     const ReflectanceSearchOptions& options) {
+  std::vector<std::vector<Eigen::Vector3d>> found;
+  for (int m = 0; m < options.num_materials; ++m) {
+    found.push_back(LightsOfMaterial(points, observed, m, options));
+  }
   std::vector<Eigen::Vector3d> lights = options.directional_lights;
-  const double reach = std::cos(kReach * kDegree);
-  for (const Eigen::Vector3d& found : FindDirectionalLights(
-           points, observed.radiance, options.most_directional_lights,
-           ClippedPoints(observed))) {
-    const bool known = std::any_of(
-        options.directional_lights.begin(), options.directional_lights.end(),
-        [&](const auto& d) { return d.dot(found) >= reach; });
-    if (!known) lights.push_back(found);
+  // Those of one material are apart.
+  const std::vector<Eigen::Vector3d>& others =
+      options.num_materials == 1 ? options.directional_lights : lights;
+  for (size_t rank = 0;
+       rank < static_cast<size_t>(options.most_directional_lights); ++rank) {
+    for (const std::vector<Eigen::Vector3d>& of_material : found) {
+      if (rank >= of_material.size()) continue;
+      if (!IsNearOneOf(others, of_material[rank])) {
+        lights.push_back(of_material[rank]);
+      }
+    }
   }
   if (static_cast<int>(lights.size()) > options.most_directional_lights) {
     lights.resize(options.most_directional_lights);
@@ -91,7 +132,8 @@ class SearchLevel {
       : prior_(prior),
         options_(options),
         reflectance_(lobes, points, observed, options.process, resolution,
-                     options.num_threads, directional_lights, options.paint) {}
+                     options.num_threads, directional_lights, options.paint,
+                     options.num_materials) {}
 
   const MarginalReflectance& reflectance() const { return reflectance_; }
 
@@ -143,6 +185,17 @@ class SearchLevel {
     optimum.cost = descent.cost;
     optimum.value = objective.last_value();
     return optimum;
+  }
+
+  // Mean log radiance of a mode's light, by channel.
+  Eigen::Array3d LightLevel(const Eigen::VectorXd& parameters,
+                            const LightMode& mode) const {
+    const std::vector<double> log_radiance =
+        reflectance_.LogRadiance(parameters.data(), mode);
+    const MarginalResolution& r = reflectance_.resolution();
+    return LogMap({r.map_width, r.map_height},
+                  {log_radiance.begin(), log_radiance.end()})
+        .Mean();
   }
 
   // Laplace's covariance of the lobe parameters, by the Gauss-Newton Hessian;
@@ -334,7 +387,7 @@ class Search {
   // Without the directional lights.
   std::vector<double> Lobes(const Candidate& candidate) const {
     const double* all = candidate.parameters.data();
-    return {all, all + best_level_->reflectance().lobes().num_parameters()};
+    return {all, all + best_level_->reflectance().num_lobe_parameters()};
   }
   bool Stopped() const {
     return options_.should_stop && options_.should_stop();
@@ -410,6 +463,8 @@ class Search {
            objective.HyperparametersOf(optimum.y.data()), optimum.cost});
       material.cost = optimum.cost;
       material.parameters = ToVector(objective.LobesOf(optimum.y.data()));
+      material.light_level =
+          level.LightLevel(reached.back().parameters, optimum.mode);
       if (!what.empty())
         Report(what + material.name, optimum.cost, optimum.value.misfit);
       // With the noise taken anew an optimum may cost more than before.

@@ -48,6 +48,9 @@ struct ReflectanceSearchOptions {
   // model can render: were it free to fall to the noise, light and reflectance
   // would bend to every error of the model.
   double sigma = 0.03;
+  // Of the points; lobes, prior and results hold as many lobes for each, one
+  // material's after the other's.
+  int num_materials = 1;
   // The prior of albedo that varies over the surface; unset: it does not.
   std::optional<PaintPrior> paint;
   bool covariance = true;
@@ -80,6 +83,8 @@ struct MaterialCandidate {
   // candidate was dropped before.
   double cost = 0.0;
   std::vector<double> parameters;  // at the optimum
+  // Mean log radiance of the light there, by channel; 0: not refined.
+  Eigen::Array3d light_level = Eigen::Array3d::Zero();
 };
 
 struct ReflectanceSearchResult {

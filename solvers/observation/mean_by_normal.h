@@ -15,7 +15,8 @@ struct BinMeans {
   Observations observed;
 };
 
-// Joins points of like normals, seen along like directions: a point of distant
+// Joins points of one material and like normals, seen along like directions: a
+// point of distant
 // light without shadows says no more than these two, so that a bin's mean
 // radiance is that of its mean normal but for the second order in the bin's
 // size, and the noise of its pixels averages out. bins_across > 0: of the

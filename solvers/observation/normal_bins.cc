@@ -58,8 +58,9 @@ NormalBins BinByNormal(const std::vector<ShadingPoint>& points,
     const std::optional<Eigen::Vector2d> normal =
         NormalInView(points[i], options.min_cosine);
     if (!observed.valid[i] || !normal.has_value()) continue;
-    members[bin_of(normal->y()) * options.bins_across + bin_of(normal->x())]
-        .push_back(i);
+    const int row =
+        points[i].material * options.bins_across + bin_of(normal->y());
+    members[row * options.bins_across + bin_of(normal->x())].push_back(i);
   }
   NormalBins bins;
   bins.first.push_back(0);

@@ -113,21 +113,22 @@ std::vector<std::string> CheckLines(const PhotographCheck& check) {
 std::vector<std::string> CheckWarnings(const PhotographCheck& check,
                                        const std::string& image_file,
                                        const std::string& normals_file,
-                                       bool paint_is_sought) {
+                                       MaterialsSought sought) {
   std::vector<std::string> warnings;
-  if (check.SeveralMaterials()) {
+  if (check.SeveralMaterials() && sought != MaterialsSought::kLabelled) {
     warnings.push_back(
         image_file +
         ": the object looks painted or of several materials: pixels of like "
         "normals far apart differ in colour by " +
         Three(check.colours.excess) +
         " (log of a ratio of channels, noise taken off). " +
-        (paint_is_sought
+        (sought == MaterialsSought::kPainted
              ? "Its albedo is taken to vary, one gloss over all; for one "
                "material set reflectance.variation: none"
              : "One material explains that as mirrored light. Mask one "
-               "material alone, or look for paint: reflectance.variation: "
-               "albedo"));
+               "material alone, say where which is (reflectance.labels), or "
+               "look "
+               "for paint: reflectance.variation: albedo"));
   }
   if (const NormalScore* better = check.BetterNormals()) {
     warnings.push_back(normals_file +

@@ -10,12 +10,14 @@ namespace ibrdf {
 // A short block for a terminal, a line each, without line ends.
 std::vector<std::string> CheckLines(const PhotographCheck& check);
 
+// What an estimate takes an object for: a single material is misled by paint.
+enum class MaterialsSought { kOne, kPainted, kLabelled };
+
 // What makes the inputs doubtful: sentences that name the files.
-// paint_is_sought: the estimate holds it; a single material is misled by paint.
-std::vector<std::string> CheckWarnings(const PhotographCheck& check,
-                                       const std::string& image_file,
-                                       const std::string& normals_file,
-                                       bool paint_is_sought = false);
+std::vector<std::string> CheckWarnings(
+    const PhotographCheck& check, const std::string& image_file,
+    const std::string& normals_file,
+    MaterialsSought sought = MaterialsSought::kOne);
 
 // "as given", or "as given or x and y flipped, not told apart", or "y flipped".
 std::string NormalsVerdict(const PhotographCheck& check);

@@ -109,17 +109,28 @@ constexpr double kKnownStd = 1e-9;
 
 }  // namespace
 
+std::vector<int> MaterialPrior::FirstOfCodes() const {
+  const LobeLayout of_one = layout();
+  std::vector<int> first;
+  for (int m = 0; m < num_materials; ++m) {
+    for (int k = 0; k < of_one.num_coded(); ++k) {
+      first.push_back(m * of_one.num_parameters() + of_one.code(k));
+    }
+  }
+  return first;
+}
+
 double MaterialPrior::WallCost(const Eigen::VectorXd& x,
                                Eigen::VectorXd* gradient) const {
   double cost = 0.0;
-  const LobeMixture lobes(layout(), x.data());
-  for (int k = 0; k < layout().num_coded(); ++k) {
-    const double norm = lobes.code(k).norm();
+  for (const int first : FirstOfCodes()) {
+    const auto z = x.segment(first, code_size);
+    const double norm = z.norm();
     if (norm <= 1.0) continue;
     cost += 0.5 * wall * wall * (norm - 1.0) * (norm - 1.0);
     if (gradient != nullptr) {
-      MutableLobeMixture(layout(), gradient->data()).code(k) +=
-          wall * wall * (norm - 1.0) / norm * lobes.code(k);
+      gradient->segment(first, code_size) +=
+          wall * wall * (norm - 1.0) / norm * z;
     }
   }
   return cost;
@@ -127,11 +138,9 @@ double MaterialPrior::WallCost(const Eigen::VectorXd& x,
 
 void MaterialPrior::AddWallInformation(const Eigen::VectorXd& x,
                                        Eigen::MatrixXd* information) const {
-  const LobeMixture lobes(layout(), x.data());
-  for (int k = 0; k < layout().num_coded(); ++k) {
-    const Eigen::VectorXd z = lobes.code(k);
+  for (const int first : FirstOfCodes()) {
+    const Eigen::VectorXd z = x.segment(first, code_size);
     if (z.norm() <= 1.0) continue;
-    const int first = layout().code(k);
     const Eigen::VectorXd outward = wall * z.normalized();
     information->block(first, first, code_size, code_size) +=
         outward * outward.transpose();

@@ -20,26 +20,35 @@ struct MaterialPrior {
   Eigen::MatrixXd factor;  // lower; covariance = factor factor^T
   std::vector<Material> materials;
   int code_size = 0;
+  // That many materials of the same layout, one's parameters after the other's
+  // (RepeatPrior).
+  int num_materials = 1;
   // Weight of the wall where the unit ball of codes ends (LobePrior::wall).
   double wall = 30.0;
 
   int num_parameters() const { return static_cast<int>(mean.size()); }
+  // Of one material.
   LobeLayout layout() const {
-    return LobeLayout::OfSize(mean.size(), code_size);
+    return LobeLayout::OfSize(mean.size() / num_materials, code_size);
   }
   int num_lobes() const { return layout().num_lobes; }
 
   // 1/2 |factor^-1 (x - mean)|^2 + 1/2 wall^2 sum_k max(0, |z_k| - 1)^2;
   // gradient (may be null) is added to.
   double Cost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;
-  // The least of it over one level added to the log colours of all lobes and
-  // channels: what the prior says where a gauge has set the level.
+  // Of one material: the least of it over one level added to the log colours of
+  // all lobes and channels: what the prior says where a gauge has set the
+  // level.
   double CostAtBestLevel(const Eigen::VectorXd& x) const;
   // The wall's part alone, with y = factor^-1 (x - mean) in its place.
   double WallCost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;
   // Adds the wall's Gauss-Newton Hessian to the first rows and columns.
   void AddWallInformation(const Eigen::VectorXd& x,
                           Eigen::MatrixXd* information) const;
+
+ private:
+  // Where the code of each lobe that has one begins.
+  std::vector<int> FirstOfCodes() const;
 };
 
 // Mean and covariance of materials, at least three, of parameters of one size.

@@ -14,6 +14,7 @@
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/effects/effects_plan.h"
 #include "ibrdf/solvers/problem/dark_pixels.h"
+#include "ibrdf/solvers/problem/load_labels.h"
 #include "ibrdf/solvers/problem/load_object.h"
 #include "ibrdf/solvers/problem/unknown_curve.h"
 #include "ibrdf/transport/transport.h"
@@ -44,6 +45,11 @@ struct InverseProblem {
   // kAuto: as the solve finds (IsProbablyPainted).
   ReflectanceVariation variation = ReflectanceVariation::kNone;
   std::optional<BrdfGrid> known_brdf;
+  // The labels of the points' materials; empty: they are not labelled.
+  std::vector<MaterialLabel> materials;
+  // Beside known_brdf, which is then not read: the estimated reflectance of
+  // each material, while the light is sought. Empty: there is none.
+  std::vector<BrdfGrid> estimated_brdfs;
 
   // Size of the map; known: its radiance at that size.
   int map_width = 128, map_height = 64;

@@ -71,6 +71,33 @@ StatusOr<Problem> WithSphereOutline(const Problem& problem, const Mask& mask,
   return placed;
 }
 
+MaterialsSought SoughtIn(ReflectanceVariation variation) {
+  switch (variation) {
+    case ReflectanceVariation::kAlbedo:
+      return MaterialsSought::kPainted;
+    case ReflectanceVariation::kLabels:
+      return MaterialsSought::kLabelled;
+    case ReflectanceVariation::kAuto:
+    case ReflectanceVariation::kNone:
+      break;
+  }
+  return MaterialsSought::kOne;
+}
+
+// Sets the points' materials; those of labels that are left out go.
+Status TakeLabels(const Problem& problem, const Image& radiance,
+                  PhotographedObject* object) {
+  if (problem.reflectance.labels.empty()) return OkStatus();
+  StatusOr<MaterialLabels> labels =
+      LoadLabels(problem.reflectance.labels, radiance, &object->points);
+  if (!labels.ok()) return labels.status();
+  object->materials = std::move(labels->labels);
+  for (std::string& warning : labels->warnings) {
+    object->warnings.push_back(std::move(warning));
+  }
+  return OkStatus();
+}
+
 }  // namespace
 
 StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
@@ -101,11 +128,11 @@ StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
       FindSilhouette(object.scene, problem.camera, width, height,
                      observed->mask, object.points, num_threads);
   IBRDF_RETURN_IF_ERROR(CheckSilhouette(problem, silhouette, &object.warnings));
+  IBRDF_RETURN_IF_ERROR(TakeLabels(problem, observed->radiance, &object));
   object.look = Look(problem, *observed, object, std::move(silhouette));
   for (std::string& warning : CheckWarnings(
            object.look->check, problem.image.file, problem.geometry.file,
-           ChosenVariation(problem, object.look->check) ==
-               ReflectanceVariation::kAlbedo)) {
+           SoughtIn(ChosenVariation(problem, object.look->check)))) {
     object.warnings.push_back(std::move(warning));
   }
   object.radiance = std::move(observed->radiance);

@@ -12,6 +12,7 @@
 #include "ibrdf/io/problem.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/photograph_check/photograph_check.h"
+#include "ibrdf/solvers/problem/load_labels.h"
 #include "ibrdf/solvers/problem/unknown_curve.h"
 
 namespace ibrdf {
@@ -33,13 +34,14 @@ struct PhotographedObject {
   std::optional<RadianceBounds> bounds;
   std::optional<UnknownCurve> unknown_curve;
   Scene scene = Scene::UnitSphere();
-  std::vector<ShadingPoint> points;  // at the centres of the mask's pixels
+  std::vector<ShadingPoint> points;      // at the centres of the mask's pixels
+  std::vector<MaterialLabel> materials;  // of the points; empty: not labelled
   std::shared_ptr<const ObjectLook> look;
   std::vector<std::string> warnings;  // sentences that name the file
 };
 
 // What reflectance.variation comes to, auto by the look: kNone or kAlbedo, or
-// kAuto where the solve is to decide.
+// kAuto where the solve is to decide. kLabels stays.
 ReflectanceVariation ChosenVariation(const Problem& problem,
                                      const PhotographCheck& check);
 

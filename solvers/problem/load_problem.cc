@@ -227,6 +227,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   inverse.bounds = std::move(object.bounds);
   inverse.unknown_curve = std::move(object.unknown_curve);
   inverse.points = std::move(object.points);
+  inverse.materials = std::move(object.materials);
   inverse.look = std::move(object.look);
   inverse.variation = ChosenVariation(problem, inverse.look->check);
   IBRDF_RETURN_IF_ERROR(LoadReflectance(problem.reflectance, &inverse));

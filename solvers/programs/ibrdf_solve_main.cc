@@ -104,7 +104,8 @@ Status WriteBefore(const AskedProblem& asked, const PhotographedObject& object,
   IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
   std::vector<std::string> paths = CheckPaths(folder);
   if (!flags.check) {
-    const std::vector<std::string> results = ResultPaths(asked.problem, folder);
+    const std::vector<std::string> results =
+        ResultPaths(asked.problem, folder, object.materials);
     paths.insert(paths.end(), results.begin(), results.end());
   }
   IBRDF_RETURN_IF_ERROR(CheckNothingReplaced(asked.problem, paths));

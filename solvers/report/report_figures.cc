@@ -159,7 +159,7 @@ std::vector<ReportGroup> MakeReportGroups(const ResultPanels& panels,
   }
   if (!panels.spheres.empty()) {
     groups.push_back(Group("Reflectance", kSphereNote, panels.spheres));
-    if (panels.spheres.size() > 2) groups.back().text += kScaleNote;
+    if (panels.spheres_compared) groups.back().text += kScaleNote;
     if (!material.empty()) groups.back().text += " " + material;
   }
   if (!panels.relit.empty()) {

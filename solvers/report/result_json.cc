@@ -12,6 +12,7 @@
 #include "ibrdf/solvers/report/check_json.h"
 #include "ibrdf/solvers/report/gauge_words.h"
 #include "ibrdf/solvers/report/lobe_summary.h"
+#include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/report/verdict.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
@@ -201,6 +202,34 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
   return out;
 }
 
+// Of labelled materials, in the order of their labels; empty where there are no
+// labels.
+Json MaterialsJson(const InverseProblem& inverse, const Solution& solution) {
+  Json out = Json::array();
+  for (size_t m = 0; m < solution.materials.size(); ++m) {
+    const MaterialLabel& label = inverse.materials[m];
+    const Solution one = OfMaterial(solution, static_cast<int>(m));
+    Json material = {
+        {"label", label.value},
+        {"pixels", label.pixels},
+        {"colour_in_labels_png", ColourOfMaterial(static_cast<int>(m)).name},
+        {"files",
+         {MaterialFile(label) + ".binary", MaterialFile(label) + ".json"}},
+        {"start", one.start},
+        {"material", MaterialJson(SummariseMaterial(inverse, one))},
+        {"posterior", PosteriorJson(inverse, one)}};
+    out.push_back(std::move(material));
+  }
+  return out;
+}
+
+// How the reflectance that was found varies.
+ReflectanceVariation VariationOf(const Solution& solution) {
+  if (!solution.materials.empty()) return ReflectanceVariation::kLabels;
+  return solution.has_paint() ? ReflectanceVariation::kAlbedo
+                              : ReflectanceVariation::kNone;
+}
+
 std::string Text(const Json& document) {
   // Paths need not be UTF-8.
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -227,14 +256,12 @@ std::string ResultJson(const SolvedProblem& solved,
                {"start", solution.start},
                {"material", MaterialJson(material)},
                {"posterior", PosteriorJson(inverse, solution)},
+               {"materials", MaterialsJson(inverse, solution)},
                {"curves", CurvesJson(solution.curves)},
                {"seed", inverse.seed},
                {"pixels_used", solution.pixels_used},
                {"pixels_of_object", inverse.points.size()},
-               {"variation",
-                ReflectanceVariationName(solution.has_paint()
-                                             ? ReflectanceVariation::kAlbedo
-                                             : ReflectanceVariation::kNone)},
+               {"variation", ReflectanceVariationName(VariationOf(solution))},
                {"dark_pixels", DarkPixelsJson(solved)},
                {"likelihood",
                 {{"scale", solution.scale}, {"epsilon", solution.epsilon}}},

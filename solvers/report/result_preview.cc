@@ -12,6 +12,7 @@
 #include "ibrdf/solvers/drawing/crop.h"
 #include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/report/brdf_sphere.h"
+#include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/preview.h"
 #include "ibrdf/solvers/report/report_limits.h"
 #include "ibrdf/solvers/report/result_images.h"
@@ -29,6 +30,7 @@ constexpr double kMapWhite = 97.0;  // bright lights and the sun may burn out
 constexpr int kSphereSize = 288, kSphereSamples = 2;
 constexpr int kSkySphereSize = 128;
 constexpr int kSkyHeight = 64;
+constexpr size_t kMostInRow = 4;  // panels
 
 using Row = std::vector<PreviewPanel>;
 
@@ -66,6 +68,9 @@ Row ImagePanels(const ResultPreviewInput& input) {
               "at the 98th percentile of its magnitude",
               Crop(input.residual, box), Crop(used, box), 1.0,
               PreviewPanel::Kind::kSignedResidual));
+  if (!input.labels.empty()) {
+    row.push_back(Picture("Materials", Crop(input.labels, box), mask, 1.0));
+  }
   return row;
 }
 
@@ -233,7 +238,41 @@ Row SpherePanels(const ResultPreviewInput& input, const Spheres& estimate) {
   return row;
 }
 
-Row RelitPanels(const ResultPreviewInput& input, const Spheres& estimate) {
+// A sphere of each material, at an exposure of its own.
+Row MaterialPanels(const ResultPreviewInput& input,
+                   const std::vector<Spheres>& materials) {
+  Row row;
+  for (size_t m = 0; m < materials.size(); ++m) {
+    const Image& sphere = materials[m].directional;
+    row.push_back(SpherePanel("BRDF of " + input.materials[m].first +
+                                  ", directional lights, at its own exposure",
+                              sphere, SphereExposure(sphere)));
+  }
+  return row;
+}
+
+// RelitObject, each point in the light of its material's sphere.
+Image RelitMaterials(const std::vector<const Image*>& spheres,
+                     const std::vector<ShadingPoint>& points, int width,
+                     int height) {
+  if (spheres.size() == 1) {
+    return RelitObject(*spheres[0], points, width, height);
+  }
+  Image all(width, height);
+  for (size_t m = 0; m < spheres.size(); ++m) {
+    std::vector<ShadingPoint> of_material;
+    for (const ShadingPoint& point : points) {
+      if (point.material == static_cast<int>(m)) of_material.push_back(point);
+    }
+    const Image one = RelitObject(*spheres[m], of_material, width, height);
+    for (size_t i = 0; i < all.rgb.size(); ++i) all.rgb[i] += one.rgb[i];
+  }
+  return all;
+}
+
+// spheres: of each material.
+Row RelitPanels(const ResultPreviewInput& input,
+                const std::vector<Spheres>& spheres) {
   if (input.points == nullptr || input.points->empty()) return {};
   const int width = input.input.width, height = input.input.height;
   const PixelBox box = BoxAround(input.mask, width, height);
@@ -241,14 +280,16 @@ Row RelitPanels(const ResultPreviewInput& input, const Spheres& estimate) {
   const std::string what =
       input.albedo.empty() ? "The object" : "The object, unpainted,";
   Row row;
-  const auto add = [&](const Image& sphere, const std::string& light) {
+  const auto add = [&](Image Spheres::*of, const std::string& light) {
+    std::vector<const Image*> lit;
+    for (const Spheres& material : spheres) lit.push_back(&(material.*of));
     const Image relit =
-        Crop(RelitObject(sphere, *input.points, width, height), box);
+        Crop(RelitMaterials(lit, *input.points, width, height), box);
     row.push_back(Picture(what + " relit: " + light + ", without shadows",
                           relit, mask, ExposureOf(relit, mask, kImageWhite)));
   };
-  add(estimate.directional, "directional lights");
-  add(estimate.small_sky, "sky");
+  add(&Spheres::directional, "directional lights");
+  add(&Spheres::small_sky, "sky");
   return row;
 }
 
@@ -342,9 +383,19 @@ ResultPanels MakeRows(const ResultPreviewInput& input) {
   panels.paint = PaintPanels(input);
   panels.maps = MapPanels(input);
   if (input.brdf.raw.empty()) return panels;
+  if (input.materials.size() > 1) {
+    std::vector<Spheres> materials;
+    for (const auto& [label, brdf] : input.materials) {
+      materials.push_back(RenderSpheres(brdf, input.num_threads));
+    }
+    panels.spheres = MaterialPanels(input, materials);
+    panels.relit = RelitPanels(input, materials);
+    return panels;
+  }
   const Spheres estimate = RenderSpheres(input.brdf, input.num_threads);
   panels.spheres = SpherePanels(input, estimate);
-  panels.relit = RelitPanels(input, estimate);
+  panels.spheres_compared = !input.reference_brdf.raw.empty();
+  panels.relit = RelitPanels(input, {estimate});
   panels.alternatives = AlternativePanels(input, estimate);
   return panels;
 }
@@ -356,7 +407,11 @@ Rgb8Image ComposeOverview(const ResultPanels& rows,
   for (const Row* row : {&rows.images, &rows.paint, &rows.maps, &rows.spheres,
                          &rows.alternatives}) {
     if (row == &rows.spheres) of_spheres = shown.size();
-    if (!row->empty()) shown.push_back(*row);
+    // Materials may be more than fit in a row.
+    for (size_t k = 0; k < row->size(); k += kMostInRow) {
+      shown.emplace_back(row->begin() + k,
+                         row->begin() + std::min(k + kMostInRow, row->size()));
+    }
   }
   // Two spheres leave room for the object in their lights.
   if (rows.spheres.size() == 2) {
@@ -366,7 +421,7 @@ Rgb8Image ComposeOverview(const ResultPanels& rows,
     shown.push_back(rows.relit);
   }
   std::vector<std::string> notes = input.metrics;
-  if (rows.maps.size() > 1 || rows.spheres.size() > 2) {
+  if (rows.maps.size() > 1 || rows.spheres_compared) {
     notes.push_back(kScaleFootnote);
   }
   return ComposePanels(shown, input.title, notes);
@@ -395,6 +450,15 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   input.brdf = solved.solution.brdf;
   input.reference_brdf = solved.truth.brdf;
   input.alternatives = DrawnAlternatives(solved);
+  if (solved.inverse.materials.size() > 1) {
+    input.labels = LabelImage(solved.inverse);
+    for (size_t m = 0; m < solved.solution.materials.size(); ++m) {
+      input.materials.emplace_back(
+          "label " + solved.inverse.materials[m].value + " (" +
+              ColourOfMaterial(static_cast<int>(m)).name + ")",
+          solved.solution.materials[m].brdf);
+    }
+  }
   input.points = &solved.inverse.points;
   input.metrics = MetricLines(solved.metrics);
   input.num_threads = solved.inverse.num_threads;
@@ -416,7 +480,7 @@ Status WriteResultPreviews(const ResultPanels& rows,
   IBRDF_RETURN_IF_ERROR(
       WritePng(ComposeOverview(rows, input), out_dir + "/overview.png"));
   const char* const names[] = {"input.png", "render.png", "residual.png"};
-  for (size_t i = 0; i < rows.images.size(); ++i) {
+  for (size_t i = 0; i < std::min<size_t>(rows.images.size(), 3); ++i) {
     IBRDF_RETURN_IF_ERROR(WritePng(ComposePanels({{rows.images[i]}}, ""),
                                    out_dir + "/" + names[i]));
   }

@@ -33,6 +33,11 @@ struct ResultPreviewInput {
   std::string middle_of_map = "-z";  // of the pictures of maps, in words
   MerlTable brdf;
   MerlTable reference_brdf;
+  // Of labelled materials, by ShadingPoint::material, each with its label in
+  // words; and the labels in colours, of the input's size. Both empty: one
+  // material. Two or more are drawn in the place of `brdf`.
+  std::vector<std::pair<std::string, MerlTable>> materials;
+  Image labels;
   // Other reflectances that explain the image too, each with its label.
   std::vector<std::pair<std::string, BrdfGrid>> alternatives;
   // Of the object, to relight it with `brdf`; null: not drawn.
@@ -55,11 +60,13 @@ Rgb8Image MakeOverview(const ResultPreviewInput& input);
 
 // The overview's rows of panels; empty where there is nothing to show.
 struct ResultPanels {
-  std::vector<PreviewPanel> images;   // input, render, residual
-  std::vector<PreviewPanel> paint;    // albedo, gloss, repainted grey
-  std::vector<PreviewPanel> maps;     // estimate, reference; or known
-  std::vector<PreviewPanel> spheres;  // of each light, estimate and reference
-  std::vector<PreviewPanel> relit;    // the object, under each light
+  std::vector<PreviewPanel> images;  // input, render, residual, labels
+  std::vector<PreviewPanel> paint;   // albedo, gloss, repainted grey
+  std::vector<PreviewPanel> maps;    // estimate, reference; or known
+  // Of each light, estimate and reference; or of each material.
+  std::vector<PreviewPanel> spheres;
+  bool spheres_compared = false;           // with references
+  std::vector<PreviewPanel> relit;         // the object, under each light
   std::vector<PreviewPanel> alternatives;  // estimate, then the others
 };
 

@@ -382,8 +382,8 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
   n.object_pixels = static_cast<int64_t>(solved.inverse.points.size());
   n.used_pixels = solution.pixels_used;
   if (solved.inverse.look != nullptr) TakeLook(solved.inverse.look->check, &n);
-  // Paint that is sought is not taken for light.
-  if (solution.has_paint()) {
+  // What is sought is not taken for light.
+  if (solution.has_paint() || solution.materials.size() > 1) {
     n.several_materials = false;
     n.floor = 0.0;
   }

@@ -5,6 +5,8 @@
 #include "ibrdf/io/map_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/output_paths.h"
+#include "ibrdf/io/png.h"
+#include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/material_summary.h"
 #include "ibrdf/solvers/report/report_figures.h"
 #include "ibrdf/solvers/report/report_page.h"
@@ -33,7 +35,38 @@ std::vector<std::string> EarlierNames(const Solution& solution) {
     names.insert(names.end(),
                  {"albedo.exr", "gloss.exr", "albedo.png", "gloss.png"});
   }
+  if (solution.materials.empty()) names.emplace_back("labels.png");
   return names;
+}
+
+// Those of labelled materials beside the main one's.
+Status WriteMaterials(const SolvedProblem& solved, const std::string& folder) {
+  const std::vector<MaterialLabel>& labels = solved.inverse.materials;
+  if (solved.solution.materials.empty()) return OkStatus();
+  for (size_t m = 0; m < labels.size(); ++m) {
+    const Solution one = OfMaterial(solved.solution, static_cast<int>(m));
+    const std::string path = folder + "/" + MaterialFile(labels[m]);
+    IBRDF_RETURN_IF_ERROR(WriteMerl(one.brdf, path + ".binary"));
+    IBRDF_RETURN_IF_ERROR(WriteFileAtomically(
+        path + ".json", BrdfJson({solved.problem, solved.inverse, solved.truth,
+                                  one, solved.metrics})));
+  }
+  return WritePng(LabelPicture(solved.inverse), folder + "/labels.png");
+}
+
+// In words, each of labelled materials by itself.
+std::string WordsOf(const SolvedProblem& solved,
+                    const MaterialSummary& material) {
+  const Solution& solution = solved.solution;
+  if (solution.materials.size() < 2) return MaterialWords(material);
+  std::string words;
+  for (size_t m = 0; m < solution.materials.size(); ++m) {
+    words += (m == 0 ? "Label " : " Label ") +
+             solved.inverse.materials[m].value + ": " +
+             MaterialWords(SummariseMaterial(
+                 solved.inverse, OfMaterial(solution, static_cast<int>(m))));
+  }
+  return words;
 }
 
 Status WriteReflectance(const SolvedProblem& solved,
@@ -69,8 +102,9 @@ double PredictWriteSeconds(const InverseProblem& inverse) {
   return kWriteSeconds + kWriteSecondsPerMegapixel * megapixels;
 }
 
-std::vector<std::string> ResultPaths(const Problem& problem,
-                                     const std::string& folder) {
+std::vector<std::string> ResultPaths(
+    const Problem& problem, const std::string& folder,
+    const std::vector<MaterialLabel>& materials) {
   std::vector<std::string> paths = {
       "result.json",  "report.html", "illumination.exr", "render.exr",
       "residual.exr", "input.png",   "render.png",       "residual.png",
@@ -81,10 +115,17 @@ std::vector<std::string> ResultPaths(const Problem& problem,
   if (!problem.illumination.known()) {
     paths.emplace_back("illumination_log_std.exr");
   }
-  if (problem.reflectance.variation != ReflectanceVariation::kNone) {
+  if (problem.reflectance.variation == ReflectanceVariation::kAuto ||
+      problem.reflectance.variation == ReflectanceVariation::kAlbedo) {
     paths.insert(paths.end(),
                  {"albedo.exr", "gloss.exr", "albedo.png", "gloss.png"});
   }
+  for (const MaterialLabel& label : materials) {
+    for (const char* end : {".binary", ".json"}) {
+      paths.push_back(MaterialFile(label) + end);
+    }
+  }
+  if (!materials.empty()) paths.emplace_back("labels.png");
   for (std::string& path : paths) path.insert(0, folder + "/");
   return paths;
 }
@@ -93,6 +134,7 @@ Status WriteResults(const SolvedProblem& solved, const std::string& folder) {
   IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
   RemoveEarlier(solved.problem, folder, EarlierNames(solved.solution));
   IBRDF_RETURN_IF_ERROR(WriteReflectance(solved, folder));
+  IBRDF_RETURN_IF_ERROR(WriteMaterials(solved, folder));
   IBRDF_RETURN_IF_ERROR(WriteRadiance(solved, folder));
   const ResultPreviewInput preview = PreviewInput(solved);
   const StatusOr<ResultPanels> panels = MakeResultPanels(preview);
@@ -104,7 +146,7 @@ Status WriteResults(const SolvedProblem& solved, const std::string& folder) {
                                             ResultJson(solved, material)));
   const StatusOr<std::string> page =
       ReportPage(solved, MakeReportGroups(*panels, solved.solution.map_std,
-                                          MaterialWords(material)));
+                                          WordsOf(solved, material)));
   if (!page.ok()) return page.status();
   return WriteFileAtomically(folder + "/report.html", *page);
 }

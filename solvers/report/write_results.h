@@ -14,8 +14,9 @@ namespace ibrdf {
 double PredictWriteSeconds(const InverseProblem& inverse);
 
 // What WriteResults may write for the problem.
-std::vector<std::string> ResultPaths(const Problem& problem,
-                                     const std::string& folder);
+std::vector<std::string> ResultPaths(
+    const Problem& problem, const std::string& folder,
+    const std::vector<MaterialLabel>& materials = {});
 
 // Writes brdf.binary, brdf.json, illumination.exr, illumination_log_std.exr
 // (where a search found it), render.exr, residual.exr, the PNG previews,

@@ -34,7 +34,7 @@ std::vector<double> MatteShading(const SolveSetup& setup) {
   for (float& f : white.values) f = static_cast<float>(1.0 / kPi);
   std::vector<double> shading;
   RenderPixels(setup, setup.map_size(),
-               {{&white, setup.known_map.data(), &shading}});
+               {{{&white}, setup.known_map.data(), &shading}});
   return shading;
 }
 

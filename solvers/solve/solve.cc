@@ -10,9 +10,11 @@
 #include "ibrdf/solvers/estimation/reflectance_given_light.h"
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
+#include "ibrdf/solvers/problem/of_material.h"
 #include "ibrdf/solvers/published/joint_maximum.h"
 #include "ibrdf/solvers/solve/curve_search.h"
 #include "ibrdf/solvers/solve/exposure.h"
+#include "ibrdf/solvers/solve/labelled.h"
 #include "ibrdf/solvers/solve/paint_evidence.h"
 #include "ibrdf/solvers/solve/painted.h"
 #include "ibrdf/solvers/solve/painted_known_light.h"
@@ -67,9 +69,16 @@ StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
                ? SolvePainted(*setup, context)
                : SolvePaintedUnderKnownLight(*setup, context);
   }
+  if (problem.materials.size() > 1) return SolveLabelled(*setup, context);
   StatusOr<Estimate> estimate = EstimateUnknowns(*setup, context);
   if (!estimate.ok()) return estimate.status();
-  return Summarise(*setup, *std::move(estimate), context);
+  Solution solution = Summarise(*setup, *std::move(estimate), context);
+  if (!problem.materials.empty()) {
+    solution.materials.push_back(
+        {solution.lobe_parameters, solution.lobe_covariance, solution.spread,
+         solution.alternatives, solution.brdf, solution.start});
+  }
+  return solution;
 }
 
 // Of an image whose radiance, or its bounds, are known.
@@ -97,7 +106,12 @@ StatusOr<Solution> SolveInverseRendering(const InverseProblem& problem,
   if (!problem.unknown_curve.has_value()) {
     return SolveDeveloped(problem, &context);
   }
-  StatusOr<std::vector<CurveEstimate>> curves = FindCurves(problem, &context);
+  // One material says enough of a curve.
+  StatusOr<std::vector<CurveEstimate>> curves =
+      FindCurves(problem.materials.empty()
+                     ? problem
+                     : OfMaterial(problem, MainMaterial(problem.materials)),
+                 &context);
   if (!curves.ok()) {
     // The first guess fails as well, or says how little there is to see.
     LOG(INFO) << curves.status().message();

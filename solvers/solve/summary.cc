@@ -26,7 +26,7 @@ constexpr double kMostSummaryShare = 0.6;
 // A state at every pixel.
 struct View {
   JointCost cost;
-  BrdfGrid grid;
+  std::vector<BrdfGrid> grids;   // by material
   std::vector<float> map;        // [H, W, 3]
   std::vector<double> radiance;  // [pixels * 3], of the map's light
   Eigen::Array3d ambient = Eigen::Array3d::Zero();
@@ -45,8 +45,7 @@ View ViewOf(const JointState& state, const LightPriors& priors,
   view.cost.illumination_prior += setup.ambient.Cost(ambient);
   view.ambient = ambient;
   view.map = on.objective->map();
-  view.grid = setup.lobes_unknown() ? setup.lobes->Grid(state.lobes.data())
-                                    : *setup.problem->known_brdf;
+  view.grids = setup.GridsOf(state.lobes);
   return view;
 }
 
@@ -55,7 +54,8 @@ void RenderViews(const SolveSetup& setup, const Estimate& estimate,
                  const std::vector<View*>& views) {
   std::vector<PixelRender> renders;
   for (View* const view : views) {
-    renders.push_back({&view->grid, view->map.data(), &view->radiance});
+    renders.push_back(
+        {ByMaterial(view->grids), view->map.data(), &view->radiance});
   }
   RenderPixels(setup, SizeOf(estimate.iterate.light, setup), renders);
   for (View* const view : views) {
@@ -104,26 +104,6 @@ std::vector<Alternative> AlternativesOf(
   return alternatives;
 }
 
-void SummariseReflectance(const SolveSetup& setup, const Estimate& estimate,
-                          Solution* solution) {
-  const InverseProblem& problem = *setup.problem;
-  const std::vector<double>& lobes = estimate.iterate.state.lobes;
-  const Eigen::MatrixXd& covariance = estimate.reflectance.covariance;
-  solution->lobe_parameters = lobes;
-  solution->brdf = setup.lobes->ToMerl(lobes.data());
-  solution->lobe_covariance.assign(covariance.data(),
-                                   covariance.data() + covariance.size());
-  const LobeDistance distance(FlowLobes::Factory(
-      *problem.model, setup.lobes->layout(), problem.num_threads));
-  if (covariance.size() > 0) {
-    solution->spread =
-        ReflectanceSpread(distance, lobes, solution->lobe_covariance,
-                          kSpreadSamples, problem.seed);
-  }
-  solution->alternatives =
-      AlternativesOf(estimate.reflectance.candidates, distance, lobes);
-}
-
 }  // namespace
 
 double PredictSummarySeconds(const SolveSetup& setup,
@@ -150,6 +130,36 @@ double PredictSummarySeconds(const SolveSetup& setup,
                kMostSummaryShare * std::max(context.budget() - start, 0.0));
   VLOG(1) << "the summary is predicted to take " << seconds << " s";
   return seconds;
+}
+
+MaterialSolution SummariseReflectance(const SolveSetup& setup,
+                                      const std::vector<double>& lobes,
+                                      const ReflectanceEstimate& reflectance) {
+  const InverseProblem& problem = *setup.problem;
+  const Eigen::MatrixXd& covariance = reflectance.covariance;
+  MaterialSolution out;
+  out.lobe_parameters = lobes;
+  out.brdf = setup.lobes->ToMerl(lobes.data());
+  out.lobe_covariance.assign(covariance.data(),
+                             covariance.data() + covariance.size());
+  const LobeDistance distance(FlowLobes::Factory(
+      *problem.model, setup.lobes->layout(), problem.num_threads));
+  if (covariance.size() > 0) {
+    out.spread = ReflectanceSpread(distance, lobes, out.lobe_covariance,
+                                   kSpreadSamples, problem.seed);
+  }
+  out.alternatives = AlternativesOf(reflectance.candidates, distance, lobes);
+  out.start = reflectance.initial_guess;
+  return out;
+}
+
+void TakeMaterial(const MaterialSolution& material, Solution* solution) {
+  solution->lobe_parameters = material.lobe_parameters;
+  solution->lobe_covariance = material.lobe_covariance;
+  solution->spread = material.spread;
+  solution->alternatives = material.alternatives;
+  solution->brdf = material.brdf;
+  solution->start = material.start;
 }
 
 Solution Summarise(const SolveSetup& setup, Estimate estimate,
@@ -186,7 +196,11 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
   solution.map.rgb = setup.light_unknown() ? last.map : problem.known_map->rgb;
   solution.render = RenderOf(last, setup);
   solution.ambient = last.ambient;
-  if (setup.lobes_unknown()) SummariseReflectance(setup, estimate, &solution);
+  if (setup.lobes_unknown()) {
+    TakeMaterial(SummariseReflectance(setup, estimate.iterate.state.lobes,
+                                      estimate.reflectance),
+                 &solution);
+  }
   solution.map_std = estimate.reflectance.light.log_std;
   solution.scale = scale;
   solution.epsilon = setup.epsilon;

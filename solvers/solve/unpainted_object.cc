@@ -23,8 +23,8 @@ UnpaintedRadiance RenderUnpainted(const SolveSetup& setup,
                                   const std::vector<float>& map, MapSize size) {
   UnpaintedRadiance out;
   RenderPixels(setup, size,
-               {{&reflectance.matte, map.data(), &out.matte},
-                {&reflectance.whole, map.data(), &out.gloss}});
+               {{{&reflectance.matte}, map.data(), &out.matte},
+                {{&reflectance.whole}, map.data(), &out.gloss}});
   for (size_t i = 0; i < out.gloss.size(); ++i) {
     out.gloss[i] = std::max(out.gloss[i] - out.matte[i], 0.0);
   }

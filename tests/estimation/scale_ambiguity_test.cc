@@ -205,5 +205,34 @@ TEST_F(GaugeShiftTest, LeavesTheImageAsItIs) {
   }
 }
 
+TEST(SetGauge, MovesTheLightAndAllMaterials) {
+  Solution solution;
+  solution.map = Reddish();
+  const Image before = solution.map;
+  MaterialSolution material;
+  material.lobe_parameters = {0.1, 1.0, 2.0, 3.0, 0.2, 4.0, 5.0, 6.0};
+  material.brdf.raw.assign(size_t{3} * kMerlBins, 2.0);
+  material.brdf.raw[7] = -1.0;  // invalid
+  solution.materials = {material, material};
+  solution.lobe_parameters = material.lobe_parameters;
+  solution.brdf = material.brdf;
+  const Eigen::Array3d shift = LightGaugeShift(SolverGauge::kUnitLight, before);
+  ASSERT_GT(std::abs(shift[0] - shift[2]), 0.1);
+  SetGauge(SolverGauge::kUnitLight, 1, &solution);
+  for (const MaterialSolution& moved : solution.materials) {
+    EXPECT_EQ(solution.lobe_parameters, moved.lobe_parameters);
+    EXPECT_EQ(solution.brdf.raw, moved.brdf.raw);
+    EXPECT_EQ(-1.0, moved.brdf.raw[7]);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(1.0 + c + shift[c], moved.lobe_parameters[1 + c], 1e-12);
+      EXPECT_NEAR(4.0 + c + shift[c], moved.lobe_parameters[5 + c], 1e-12);
+      EXPECT_NEAR(2.0 * std::exp(shift[c]),
+                  moved.brdf.raw[size_t{kMerlBins} * c + 8], 1e-12);
+      EXPECT_NEAR(before.rgb[c] / std::exp(shift[c]), solution.map.rgb[c],
+                  1e-5);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ibrdf

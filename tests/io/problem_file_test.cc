@@ -214,9 +214,10 @@ TEST_F(ProblemFile, PaintLiesOverAKnownReflectance) {
   EXPECT_FALSE(known("brdf: a.binary")->reflectance.paint.has_value());
 
   // It is for renders.
-  const StatusOr<Problem> solved = Read(std::string(kLeast) +
-                                  "problem: illumination\nreflectance: {known: "
-                                  "{lambertian: 0.5, albedo: a.exr}}");
+  const StatusOr<Problem> solved =
+      Read(std::string(kLeast) +
+           "problem: illumination\nreflectance: {known: "
+           "{lambertian: 0.5, albedo: a.exr}}");
   ASSERT_TRUE(solved.ok()) << solved.status().message();
   EXPECT_NE(std::string::npos,
             CheckSolvable(*solved).message().find(
@@ -242,9 +243,16 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
       {least + "reflectance: {prior_sigma: nan}", "found 'nan'"},
       {least + "reflectance: {prior_sigma: '1'}", "expected a number > 0"},
       {least + "reflectance: [1]",
-       "reflectance: expected a map of model, lobes, prior_sigma, variation or "
-       "known, "
-       "found a list of 1"},
+       "reflectance: expected a map of model, lobes, prior_sigma, variation, "
+       "labels or known, found a list of 1"},
+      {least + "reflectance: {labels: l.png, variation: none}",
+       "reflectance.labels: expected without variation: none"},
+      {least + "reflectance: {labels: l.png, variation: albedo}",
+       "reflectance.labels: expected without variation: albedo"},
+      {least + "reflectance: {labels: l.png, known: {lambertian: 0.5}}",
+       "reflectance.labels: expected without reflectance.known"},
+      {least + "reflectance: {labels: l.png}\nsolver: {estimator: maximum}",
+       "reflectance.labels: expected without solver.estimator: maximum"},
       {least + "solver: {method: newton}",
        "solver.method: expected auto, alternating, gauss_newton, lbfgs, adam "
        "or trust_region, found 'newton'"},
@@ -373,6 +381,24 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
     EXPECT_NE(std::string::npos, message.find(c.message)) << c.text << "\n"
                                                           << message;
   }
+}
+
+TEST_F(ProblemFile, LabelsNeedNoWordOfTheVariation) {
+  for (const std::string variation :
+       {"", ", variation: auto", ", variation: labels"}) {
+    const StatusOr<Problem> problem =
+        Read(kLeast + ("reflectance: {labels: l.png" + variation) + "}");
+    ASSERT_TRUE(problem.ok()) << problem.status().message();
+    EXPECT_EQ(ReflectanceVariation::kLabels, problem->reflectance.variation);
+    EXPECT_EQ(dir_.File("l.png"), problem->reflectance.labels);
+  }
+  const StatusOr<Problem> without =
+      Read(kLeast + std::string("reflectance: {variation: labels}"));
+  ASSERT_TRUE(without.ok());
+  EXPECT_EQ(path_ +
+                ": reflectance.labels: expected this key with variation: "
+                "labels, found nothing",
+            CheckSolvable(*without).message());
 }
 
 TEST_F(ProblemFile, EveryMethodIsReadByItsName) {

@@ -280,5 +280,21 @@ TEST(MeanByNormal, AMeanPointRendersTheMeanToSecondOrder) {
   EXPECT_LT(fine.worst_error, coarse.worst_error / 8);
 }
 
+TEST(MeanByNormal, MaterialsDoNotShareBins) {
+  std::vector<ShadingPoint> points = SpherePoints(20);
+  std::vector<double> radiance;
+  for (size_t i = 0; i < points.size(); ++i) {
+    points[i].material = i % 2;
+    radiance.insert(radiance.end(), 3, i % 2 == 0 ? 1.0 : 5.0);
+  }
+  const BinMeans means =
+      MeanByNormal(points, MakeObservations(radiance), 6, 0.2);
+  ASSERT_FALSE(means.points.empty());
+  for (size_t i = 0; i < means.points.size(); ++i) {
+    EXPECT_NEAR(means.points[i].material == 0 ? 1.0 : 5.0,
+                means.observed.radiance[3 * i], 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace ibrdf

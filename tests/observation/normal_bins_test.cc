@@ -43,5 +43,29 @@ TEST(NormalBins, RadianceIsTheMeanOfTheirPoints) {
   }
 }
 
+// Bins of one material alone, one material's after the other's.
+TEST(NormalBins, MaterialsDoNotShareBins) {
+  std::vector<ShadingPoint> points = SpherePoints(20);
+  for (size_t i = 0; i < points.size(); ++i) points[i].material = i % 2;
+  std::vector<double> radiance;
+  for (size_t i = 0; i < 3 * points.size(); ++i) {
+    radiance.push_back(i / 3 % 2 == 0 ? 1.0 : 5.0);
+  }
+  const Observations observed = MakeObservations(radiance);
+  const NormalBins bins = BinByNormal(points, observed, {5, 3, 0.2});
+  int last = 0;
+  for (int i = 0; i < bins.num_bins(); ++i) {
+    const int material = bins.points[bins.first[i]].material;
+    EXPECT_GE(material, last);
+    last = material;
+    for (int k = bins.first[i]; k < bins.first[i + 1]; ++k) {
+      EXPECT_EQ(material, bins.points[k].material);
+    }
+    EXPECT_NEAR(std::log(material == 0 ? 1.0 : 5.0), bins.log_radiance[i],
+                1e-12);
+  }
+  EXPECT_EQ(1, last);
+}
+
 }  // namespace
 }  // namespace ibrdf

@@ -207,6 +207,9 @@ Problem AnyProblem() {
         p.solver.estimator == SolverEstimator::kMarginal) {
       p.reflectance.variation =
           AnyOf<ReflectanceVariation>(kNumReflectanceVariations);
+      if (p.reflectance.variation == ReflectanceVariation::kLabels) {
+        p.reflectance.labels = AnyPath();
+      }
     }
   }
   if (p.solver.estimator == SolverEstimator::kMaximum) {
@@ -318,6 +321,7 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
   RC_ASSERT(p.reflectance.lobes == q.reflectance.lobes);
   RC_ASSERT(p.reflectance.prior_sigma == q.reflectance.prior_sigma);
   RC_ASSERT(p.reflectance.variation == q.reflectance.variation);
+  RC_ASSERT(p.reflectance.labels == q.reflectance.labels);
   RC_ASSERT(p.reflectance.known_file == q.reflectance.known_file);
   RC_ASSERT(p.reflectance.analytic.has_value() ==
             q.reflectance.analytic.has_value());

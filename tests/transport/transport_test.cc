@@ -60,6 +60,41 @@ TEST_F(TransportTest, WhiteFurnaceIsOneAtAllAngles) {
   }
 }
 
+// Each point as if the object were of its material alone.
+TEST_F(TransportTest, MaterialsAreThoseOfTheirPoints) {
+  std::vector<ShadingPoint> points = points_;
+  for (size_t i = 0; i < points.size(); ++i) points[i].material = i % 3;
+  const BrdfGrid matte = BrdfGrid::FromFunction(Lambertian(0.4), {});
+  const BrdfGrid rough = BrdfGrid::FromFunction(Glossy(0.3, 0.2, 20), {});
+  const MaterialGrids grids = {&glossy_, &matte, &rough};
+  const Image map = RandomMap(64, 128, 3);
+  const Transport transport(points, 64, 128, {});
+  std::vector<double> L_o(3 * points.size()), by_light(L_o.size());
+  transport.Render(grids, map.rgb.data(), L_o.data());
+  const LightOperator op = transport.ByLight(grids);
+  op.Apply(map.rgb.data(), by_light.data());
+  for (int m = 0; m < 3; ++m) {
+    const std::vector<double> alone = Render(*grids[m], map);
+    for (size_t i = m; i < points.size(); i += 3) {
+      for (size_t k = 3 * i; k < 3 * i + 3; ++k) {
+        EXPECT_EQ(alone[k], L_o[k]);
+        EXPECT_NEAR(alone[k], by_light[k], kFloatSums * alone[k]);
+      }
+    }
+  }
+  // The transpose.
+  std::vector<double> adjoint(L_o.size());
+  for (double& a : adjoint) a = gauss_(rng_);
+  std::vector<float> gradient(map.rgb.size());
+  op.ApplyTranspose(adjoint.data(), gradient.data());
+  double by_map = 0.0;
+  for (size_t k = 0; k < gradient.size(); ++k) {
+    by_map += static_cast<double>(gradient[k]) * map.rgb[k];
+  }
+  EXPECT_NEAR(Dot(adjoint, by_light), by_map,
+              kFloatSums * Magnitude(adjoint, by_light));
+}
+
 TEST_F(TransportTest, RenderIsLinearInEachArgument) {
   const Image a = RandomMap(64, 128, 1), b = RandomMap(64, 128, 2);
   BrdfGrid f = glossy_;

@@ -37,10 +37,13 @@ TransportOptions WithBounces(const Scene& scene,
   return options;
 }
 
-std::vector<ShadingPoint> BowlPoints(double opening_degrees) {
+std::vector<ShadingPoint> BowlPoints(
+    double opening_degrees,
+    const std::vector<double>& shares = {0.1, 0.35, 0.6, 0.9},
+    const std::vector<double>& phis = {0.4, 2.0, 4.4}) {
   std::vector<ShadingPoint> points;
-  for (const double share : {0.1, 0.35, 0.6, 0.9}) {
-    for (const double phi : {0.4, 2.0, 4.4}) {
+  for (const double share : shares) {
+    for (const double phi : phis) {
       const double theta =
           opening_degrees * kPi / 180 * (1 - share) + share * kPi;
       const Eigen::Vector3d p(std::sin(theta) * std::sin(phi), std::cos(theta),
@@ -86,6 +89,45 @@ TEST(Interreflection, MatteBowlIsTheClosedFormAfterEveryBounce) {
         }
       }
     }
+  }
+}
+
+// Of a cap whose halves have albedos a and b every point sees as much of one as
+// of the other: (a + b) / 2 takes the place of a in the sum above.
+TEST(Interreflection, PatchesAreOfTheMaterialOfThePointsNearThem) {
+  const double share = 0.5;
+  const Scene scene = Scene::FromMesh(BowlMesh(90)).value();
+  std::vector<double> shares, phis;
+  for (int k = 0; k < 12; ++k) shares.push_back((k + 0.5) / 12);
+  for (int k = 0; k < 20; ++k) phis.push_back((k + 0.5) * kPi / 10);
+  std::vector<ShadingPoint> points = BowlPoints(90, shares, phis);
+  for (ShadingPoint& p : points) p.material = p.position.x() > 0.0 ? 1 : 0;
+  RadiosityOptions few;
+  few.max_patches = 500;
+  const TransportOptions options = WithBounces(scene, points, 3, few);
+  const Transport transport(points, 32, 64, options);
+  const double albedo[] = {0.9, 0.3};
+  const BrdfGrid grids[] = {
+      BrdfGrid::FromFunction(Lambertian(albedo[0]), options.grid),
+      BrdfGrid::FromFunction(Lambertian(albedo[1]), options.grid)};
+  const Image map = ConstantMap(32, 64, 1.0f);
+  std::vector<double> L_o(3 * points.size()), by_light(L_o.size());
+  double sum = 0.0;
+  for (int b = 0; b <= 3; ++b) {
+    sum += (1 - share) * std::pow(0.6 * share, b);
+    transport.RenderBounces({&grids[0], &grids[1]}, map.rgb.data(), b,
+                            L_o.data());
+    for (size_t i = 0; i < points.size(); ++i) {
+      const double expected = albedo[points[i].material] * sum;
+      // And patches at the border are of one material as a whole.
+      EXPECT_NEAR(expected, L_o[3 * i], 0.025 * expected)
+          << "bounces " << b << ", point " << i;
+    }
+  }
+  transport.ByLight({&grids[0], &grids[1]})
+      .Apply(map.rgb.data(), by_light.data());
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    EXPECT_NEAR(L_o[i], by_light[i], kFloatSums);
   }
 }
 

@@ -26,6 +26,8 @@ struct ShadingPoint {
   // Where shadow rays start: just above the smooth surface (see SurfaceHit).
   // The origin where a normal map gives no position.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  // Which of the object's materials it is of, >= 0.
+  int material = 0;
 };
 
 struct SurfaceHit {

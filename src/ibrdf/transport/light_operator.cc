@@ -16,10 +16,9 @@ using namespace taps;  // NOLINT
 // all zero between points.
 class LightOperator::EntryBuilder {
  public:
-  // f: the padded grid.
-  EntryBuilder(const TransportPairs& pairs, const std::vector<float>& f,
+  EntryBuilder(const TransportPairs& pairs, const PaddedGrids& grids,
                LightOperator* op)
-      : pairs_(pairs), corners_(pairs.grid), f_(f.data()), op_(*op) {}
+      : pairs_(pairs), corners_(pairs.grid), grids_(grids), op_(*op) {}
 
   // The entries of a chunk, and the bright light of its points.
   void Join(const PairChunk& from, Chunk* to) {
@@ -28,6 +27,7 @@ class LightOperator::EntryBuilder {
     to->begin = from.begin;
     to->end = from.end;
     ForPoints(from, [&](int point, const auto& far, const auto& near) {
+      f_ = grids_.Of(pairs_, point);
       for (const FarPair& pair : far) Add(pair, point);
       for (const NearPair& pair : near) Add(pair);
       Close(to);
@@ -87,15 +87,15 @@ class LightOperator::EntryBuilder {
 
   const TransportPairs& pairs_;
   const Corners corners_;
-  const float* const f_;
+  const PaddedGrids& grids_;
+  const float* f_ = nullptr;  // of the point's material
   LightOperator& op_;
   std::vector<float> sums_;  // [source][4]
   std::vector<uint8_t> touched_;
   std::vector<uint32_t> order_;
 };
 
-LightOperator::LightOperator(const TransportPairs& pairs,
-                             const std::vector<float>& f,
+LightOperator::LightOperator(const TransportPairs& pairs, const PaddedGrids& f,
                              std::shared_ptr<const LightOperator> patches,
                              int bounces)
     : map_height_(pairs.map_height),

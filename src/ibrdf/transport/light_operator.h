@@ -10,6 +10,7 @@
 namespace ibrdf {
 
 class Transport;
+struct PaddedGrids;
 struct TransportPairs;
 
 // For one point, all pairs with the same block of texels, or with the same
@@ -37,8 +38,7 @@ class LightOperator final : public LinearTransport {
 
  private:
   friend class Transport;
-  // f: the padded grid, four floats a node.
-  LightOperator(const TransportPairs& pairs, const std::vector<float>& f,
+  LightOperator(const TransportPairs& pairs, const PaddedGrids& f,
                 std::shared_ptr<const LightOperator> patches, int bounces);
 
   // The entries of consecutive points.

@@ -14,6 +14,12 @@ namespace ibrdf {
 
 using namespace taps;  // NOLINT
 
+MaterialGrids ByMaterial(const std::vector<BrdfGrid>& grids) {
+  MaterialGrids out;
+  for (const BrdfGrid& grid : grids) out.push_back(&grid);
+  return out;
+}
+
 Transport::Transport(const std::vector<ShadingPoint>& points, int map_height,
                      int map_width, const TransportOptions& options)
     : Transport(options,
@@ -51,21 +57,31 @@ std::vector<float> Transport::PadGrid(const BrdfGrid& grid) const {
   return PadFields(grid.shape, channels, 3, 4, options_.num_threads);
 }
 
-void Transport::RenderLit(const std::vector<float>& f,
-                          const PairSources& sources, double* L_o) const {
+PaddedGrids Transport::PadGrids(const MaterialGrids& grids) const {
+  CHECK(!grids.empty());
+  PaddedGrids padded;
+  for (const BrdfGrid* grid : grids) {
+    padded.by_material.push_back(PadGrid(*grid));
+  }
+  return padded;
+}
+
+void Transport::RenderLit(const PaddedGrids& f, const PairSources& sources,
+                          double* L_o) const {
   const Corners corners(options_.grid);
   ParallelFor(
       static_cast<int64_t>(pairs_->chunks.size()), options_.num_threads,
       [&](int64_t index, int) {
         ForPoints(pairs_->chunks[index], [&](int point, const auto& far,
                                              const auto& near) {
+          const float* const grid = f.Of(*pairs_, point);
           Double4 sum = {};
           for (const FarPair& pair : far) {
-            sum += Widen(pair.weight * Interpolate(pair, corners, f.data()) *
+            sum += Widen(pair.weight * Interpolate(pair, corners, grid) *
                          sources.Light(pair));
           }
           for (const NearPair& pair : near) {
-            sum += Widen(pair.weight * Interpolate(pair, corners, f.data()) *
+            sum += Widen(pair.weight * Interpolate(pair, corners, grid) *
                          sources.Light(pair));
           }
           for (int c = 0; c < 3; ++c) L_o[size_t{3} * point + c] = sum[c];
@@ -74,7 +90,7 @@ void Transport::RenderLit(const std::vector<float>& f,
 }
 
 std::vector<std::vector<double>> Transport::Emitted(
-    const std::vector<float>& f, int bounces, PairSources* sources) const {
+    const PaddedGrids& f, int bounces, PairSources* sources) const {
   CHECK(bounces >= 0 && bounces <= this->bounces());
   std::vector<std::vector<double>> emitted(1);
   for (int b = 0; b < bounces; ++b) {
@@ -89,17 +105,27 @@ std::vector<std::vector<double>> Transport::Emitted(
 std::vector<std::vector<double>> Transport::Emitted(const BrdfGrid& grid,
                                                     const float* map) const {
   PairSources sources(*pairs_, map);
-  return Emitted(PadGrid(grid), bounces(), &sources);
+  return Emitted(PadGrids({&grid}), bounces(), &sources);
 }
 
 void Transport::Render(const BrdfGrid& grid, const float* map,
                        double* L_o) const {
-  RenderBounces(grid, map, bounces(), L_o);
+  Render(MaterialGrids{&grid}, map, L_o);
+}
+
+void Transport::Render(const MaterialGrids& grids, const float* map,
+                       double* L_o) const {
+  RenderBounces(grids, map, bounces(), L_o);
 }
 
 void Transport::RenderBounces(const BrdfGrid& grid, const float* map,
                               int bounces, double* L_o) const {
-  const std::vector<float> f = PadGrid(grid);
+  RenderBounces(MaterialGrids{&grid}, map, bounces, L_o);
+}
+
+void Transport::RenderBounces(const MaterialGrids& grids, const float* map,
+                              int bounces, double* L_o) const {
+  const PaddedGrids f = PadGrids(grids);
   PairSources sources(*pairs_, map);
   const std::vector<double> emitted = Emitted(f, bounces, &sources).back();
   if (!emitted.empty()) sources.SetEmitted(emitted.data());
@@ -193,8 +219,7 @@ void Transport::GridGradient(const BrdfGrid& grid, const float* map,
     AddGridGradient(sources, adjoint, &sums);
   } else {
     const std::vector<float> f = PadGrid(grid);
-    const std::vector<std::vector<double>> emitted =
-        Emitted(f, bounces(), &sources);
+    const std::vector<std::vector<double>> emitted = Emitted(grid, map);
     sources.SetEmitted(emitted.back().data());
     AddGridGradient(sources, adjoint, &sums);
     // The adjoint of R_b, b falling.
@@ -211,11 +236,15 @@ void Transport::GridGradient(const BrdfGrid& grid, const float* map,
 }
 
 LightOperator Transport::ByLight(const BrdfGrid& grid) const {
+  return ByLight(MaterialGrids{&grid});
+}
+
+LightOperator Transport::ByLight(const MaterialGrids& grids) const {
   std::shared_ptr<const LightOperator> patches;
   if (patches_ != nullptr) {
-    patches = std::make_shared<const LightOperator>(patches_->ByLight(grid));
+    patches = std::make_shared<const LightOperator>(patches_->ByLight(grids));
   }
-  return LightOperator(*pairs_, PadGrid(grid), patches,
+  return LightOperator(*pairs_, PadGrids(grids), patches,
                        patches != nullptr ? bounces() : 0);
 }
 

@@ -20,6 +20,9 @@
 // L_o stays linear in L; in f it is a polynomial whose degree is one more than
 // the bounces.
 //
+// An object of several materials has a grid for each (ShadingPoint::material),
+// of the patches as of the points.
+//
 // Shapes: map [H, W, 3] radiance, W/(m^2 sr); L_o [points, 3] radiance; BRDF
 // grid [3, nodes] in 1/sr. Inputs must be finite; maps and grids may be
 // negative (tangents). Same bits for any number of threads.
@@ -40,7 +43,14 @@
 namespace ibrdf {
 
 class PairSources;
+struct PaddedGrids;
 struct TransportPairs;
+
+// The BRDFs of materials, by ShadingPoint::material; one alone is that of all
+// points.
+using MaterialGrids = std::vector<const BrdfGrid*>;
+// Those of grids that the caller keeps.
+MaterialGrids ByMaterial(const std::vector<BrdfGrid>& grids);
 
 struct TransportOptions {
   QuadratureOptions quadrature;
@@ -80,8 +90,11 @@ class Transport {
 
   // Radiance of the points after all bounces.
   void Render(const BrdfGrid& grid, const float* map, double* L_o) const;
+  void Render(const MaterialGrids& grids, const float* map, double* L_o) const;
   // The same after the first `bounces` of them, 0 to bounces().
   void RenderBounces(const BrdfGrid& grid, const float* map, int bounces,
+                     double* L_o) const;
+  void RenderBounces(const MaterialGrids& grids, const float* map, int bounces,
                      double* L_o) const;
   // gradient [3, nodes] of sum adjoint . L_o in the grid, at `grid`. Only
   // interreflection reads `grid`: without it L_o is linear.
@@ -90,6 +103,7 @@ class Transport {
 
   // L_o as a function of the map, for a fixed BRDF.
   LightOperator ByLight(const BrdfGrid& grid) const;
+  LightOperator ByLight(const MaterialGrids& grids) const;
 
   // L_o for BRDFs that are sums of lobes. fields[k] = [nodes] is a scalar field
   // s_k on the grid; out [points, num_fields, 3]:
@@ -126,14 +140,14 @@ class Transport {
 
   // Three channels on the padded grid: four floats a node, the last one 0.
   std::vector<float> PadGrid(const BrdfGrid& grid) const;
-  // R_0 to R_bounces on the padded grid f. Afterwards `sources` are lit by the
+  PaddedGrids PadGrids(const MaterialGrids& grids) const;
+  // R_0 to R_bounces on the padded grids f. Afterwards `sources` are lit by the
   // last but one.
-  std::vector<std::vector<double>> Emitted(const std::vector<float>& f,
-                                           int bounces,
+  std::vector<std::vector<double>> Emitted(const PaddedGrids& f, int bounces,
                                            PairSources* sources) const;
   // L_o under given sources, and its transposes: in the grid, added to `sums`
   // [3, nodes], and in the patches' radiance [patches, 3].
-  void RenderLit(const std::vector<float>& f, const PairSources& sources,
+  void RenderLit(const PaddedGrids& f, const PairSources& sources,
                  double* L_o) const;
   void AddGridGradient(const PairSources& sources, const double* adjoint,
                        std::vector<double>* sums) const;

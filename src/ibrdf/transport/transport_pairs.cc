@@ -255,6 +255,7 @@ TransportPairs::TransportPairs(const std::vector<ShadingPoint>& points,
   CHECK(height > 0 && width > 1 && width % 2 == 0);
   CHECK(grid.h >= 2 && grid.d >= 2 && grid.p >= 1);
   num_blocks = (height / block) * (width / block);
+  for (const ShadingPoint& point : points) material.push_back(point.material);
   CHECK(options.patches == nullptr || options.visibility != nullptr);
   CHECK_LE(first_bright() + bright.size(), size_t{kMaxFarSources})
       << "map of odd size: resize it first";

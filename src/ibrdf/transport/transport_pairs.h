@@ -98,6 +98,18 @@ struct TransportPairs {
   // PaddedTexels of the map. They depend on its size alone: found once.
   std::vector<int> padded_texels;
   std::vector<PairChunk> chunks;
+  std::vector<int> material;  // [points]
+};
+
+// BRDFs by material on the padded grid, four floats a node, the last one 0. One
+// alone is that of all points.
+struct PaddedGrids {
+  std::vector<std::vector<float>> by_material;
+
+  const float* Of(const TransportPairs& pairs, int point) const {
+    return by_material.size() == 1 ? by_material[0].data()
+                                   : by_material[pairs.material[point]].data();
+  }
 };
 
 // The radiance that lights pairs: of one map, of bright samples and, once

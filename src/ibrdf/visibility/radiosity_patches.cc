@@ -76,6 +76,26 @@ RadiosityPatches::RadiosityPatches(const Scene& scene,
   by_point_.lattice_rows = options.lattice_rows;
   LookFrom(points, *visibility, &by_point_);
   if (options.bounces > 1) LinkPatches(own.get());
+  TakeMaterials(points);
+}
+
+void RadiosityPatches::TakeMaterials(const std::vector<ShadingPoint>& points) {
+  const bool one = std::all_of(
+      points.begin(), points.end(),
+      [&](const ShadingPoint& p) { return p.material == points[0].material; });
+  if (points.empty()) return;
+  ParallelFor(count(), options_.num_threads, [&](int64_t i, int) {
+    ShadingPoint& patch = points_[i];
+    const auto distance = [&](const ShadingPoint& p) {
+      return (p.position - patch.position).squaredNorm();
+    };
+    patch.material = one ? points[0].material
+                         : std::min_element(points.begin(), points.end(),
+                                            [&](const auto& a, const auto& b) {
+                                              return distance(a) < distance(b);
+                                            })
+                               ->material;
+  });
 }
 
 std::vector<RadiosityPatches::Hit> RadiosityPatches::CastRays(

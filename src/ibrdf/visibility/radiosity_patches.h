@@ -137,6 +137,8 @@ class RadiosityPatches {
                             const Visibility& visibility) const;
   void PlacePatches(const std::vector<Hit>& hits);
   void LinkPatches(Visibility* visibility);
+  // Each patch is of the material of the point nearest to it.
+  void TakeMaterials(const std::vector<ShadingPoint>& points);
 
   // The cells of the lattice that hold hidden texels, each with the direction
   // of the one nearest to the middle of them.
