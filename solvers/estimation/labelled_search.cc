@@ -59,16 +59,13 @@ std::vector<LabelCandidate> CandidatesOf(const SolveSetup& setup, int material,
   const InverseProblem alone = OfMaterial(*setup.problem, material);
   const StatusOr<SolveSetup> of_label = SetUp(alone);
   if (!of_label.ok()) return {CentralMaterial(setup)};
-  ReflectanceSearchOptions o = SearchOptions(share, *of_label, context);
+  ReflectanceSearchOptions o = CoarseSearchOptions(share, *of_label, context);
+  o.coarse_stages.resize(kAloneStages.size());
   for (size_t k = 0; k < kAloneStages.size(); ++k) {
-    o.coarse_stages.resize(kAloneStages.size());
     o.coarse_stages[k].most = kAloneStages[k].most;
     o.coarse_stages[k].iterations =
         std::min(o.coarse_stages[k].iterations, kAloneStages[k].iterations);
   }
-  o.fine_iterations = 0;
-  o.covariance = false;
-  o.bounce_gain = {};
   o.report = [report = o.report, label = alone.materials.front().value](
                  const std::string& stage, double cost, double misfit) {
     report("label " + label + ": " + stage, cost, misfit);
@@ -160,7 +157,7 @@ double FixLevel(const LevelGauge& gauge, int num_materials,
   return level;
 }
 
-// Of a vector [materials][size].
+// A material's part of a vector [materials][size].
 std::vector<double> PartOf(const std::vector<double>& all, int material,
                            size_t size) {
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(material * size);

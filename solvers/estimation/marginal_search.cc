@@ -21,8 +21,8 @@ namespace {
 // for the hyperparameters of the light under a known one.
 constexpr double kSearchShare = 0.55;
 constexpr double kLightSearchShare = 0.25;
-// Of CoarseEvidence: enough for the best few materials to come near their
-// optima.
+// CoarseEvidence has these: enough for the best few materials to come near
+// their optima.
 const std::vector<SearchStage> kEvidenceStages = {{4, 2}, {2, 5}};
 // A painted object has these, in the priors' own: the deviations of what
 // FindFirstPaint leaves of paint, and the variance of the light's chroma.
@@ -100,11 +100,8 @@ LightPosterior EstimateLightPosterior(const SolveSetup& setup,
 double CoarseEvidence(const SolveSetup& setup, SolveContext* context,
                       const PaintPrior* paint) {
   const InverseProblem& problem = *setup.problem;
-  ReflectanceSearchOptions o = SearchOptions(1.0, setup, context);
+  ReflectanceSearchOptions o = CoarseSearchOptions(1.0, setup, context);
   o.coarse_stages = kEvidenceStages;
-  o.fine_iterations = 0;
-  o.covariance = false;
-  o.bounce_gain = {};
   o.report = {};
   if (paint != nullptr) o.paint = *paint;
   const StatusOr<ReflectanceSearchResult> found =

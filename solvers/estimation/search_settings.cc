@@ -130,6 +130,16 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
   return o;
 }
 
+ReflectanceSearchOptions CoarseSearchOptions(double share,
+                                             const SolveSetup& setup,
+                                             SolveContext* context) {
+  ReflectanceSearchOptions o = SearchOptions(share, setup, context);
+  o.fine_iterations = 0;
+  o.covariance = false;
+  o.bounce_gain = {};
+  return o;
+}
+
 Observations SearchedPixels(const SolveSetup& setup) {
   const Observations& observed = setup.pixels.observed;
   std::vector<double> radiance = observed.radiance;

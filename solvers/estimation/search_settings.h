@@ -14,6 +14,12 @@ namespace ibrdf {
 ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
                                        SolveContext* context);
 
+// The same that ends at the coarse resolution: neither its finer stages nor the
+// object's own light, and no covariance.
+ReflectanceSearchOptions CoarseSearchOptions(double share,
+                                             const SolveSetup& setup,
+                                             SolveContext* context);
+
 // The pixels with radiance 0, which a search leaves out, where it is far below
 // any measurement.
 Observations SearchedPixels(const SolveSetup& setup);

@@ -45,18 +45,8 @@ struct CurveEstimate {
   double cost = 0.0;  // -log evidence, nats, above the best one's
 };
 
-// The reflectance of one of several materials, as Solution has it of one.
+// What a solution says of a material's reflectance.
 struct MaterialSolution {
-  std::vector<double> lobe_parameters, lobe_covariance;
-  double spread = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Alternative> alternatives;  // of all materials at once
-  MerlTable brdf;
-  std::string start;
-};
-
-struct Solution {
-  // Where the curve was unknown: the best of each family, the best first.
-  std::vector<CurveEstimate> curves;
   std::vector<double> lobe_parameters;  // as LobeModel; empty if known
   // Posterior covariance of those (Laplace, light integrated out), row-major;
   // empty where it was not found.
@@ -64,15 +54,25 @@ struct Solution {
   // The spread of that posterior, see reflectance_spread.h; NaN where it was
   // not found.
   double spread = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Alternative> alternatives;  // joint problems
+  // Joint problems: other optima, with labels of all materials at once.
+  std::vector<Alternative> alternatives;
+  MerlTable brdf;     // empty if known
+  std::string start;  // in words: the reflectance that the best began with
+};
+
+// Its own material is the object's or, where materials are labelled, that of
+// most pixels.
+struct Solution : MaterialSolution {
+  MaterialSolution& reflectance() { return *this; }
+  const MaterialSolution& reflectance() const { return *this; }
+  // Where the curve was unknown: the best of each family, the best first.
+  std::vector<CurveEstimate> curves;
+  // Labelled materials, by ShadingPoint::material. Empty: no labels.
+  std::vector<MaterialSolution> materials;
   // Standard deviation of log radiance given the reflectance, at the
   // resolution of the search; empty where there was none or its end was not
   // kept.
   Image map_std;
-  MerlTable brdf;  // empty if known
-  // Of labelled materials, by ShadingPoint::material; what is above is then
-  // that of most pixels. Empty: no labels.
-  std::vector<MaterialSolution> materials;
   Image map;     // [H, W]; the known one if known
   Image render;  // radiance at the object's pixels, else 0
   // Where the albedo varies, has_paint(): that of what is matte, at the
@@ -89,8 +89,6 @@ struct Solution {
   double start_cost = 0.0, end_cost = 0.0;
   double seconds = 0.0;  // with those spent before
   int64_t pixels_used = 0;
-  std::string
-      start;  // in words: the reflectance that the best start began with
   std::vector<TraceEntry> trace;
   // kOk; kNoImprovement or kInterrupted: this is the best iterate found.
   Status status;

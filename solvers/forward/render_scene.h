@@ -26,7 +26,7 @@ struct RenderedScene {
   Image image;         // radiance; 0 outside the object
   Mask mask;           // pixels whose centre (preview) or any sample sees it
   Image illumination;  // the map used
-  // Of a painted object, the BRDF of its mean paint.
+  // A painted object has the BRDF of its mean paint.
   std::optional<MerlTable> painted_brdf;
   RenderPlan plan;
   PixelCounts counts;

@@ -38,7 +38,7 @@ struct SceneRadianceOptions {
   static SceneRadianceOptions Of(RenderQuality quality, int num_threads);
 };
 
-// Of the scene's unpainted reflectance. What the object throws on itself has
+// The scene's reflectance is unpainted. What the object throws on itself has
 // the paint's mean (ForwardScene::grid).
 class SceneRadiance final : public RadianceRenderer {
  public:

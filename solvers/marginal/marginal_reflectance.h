@@ -49,7 +49,7 @@ class MarginalReflectance {
   const MarginalResolution& resolution() const { return resolution_; }
 
   int num_materials() const { return static_cast<int>(blocks_.size()); }
-  // Of the lobes of all materials.
+  // The lobes of all materials have so many.
   int num_lobe_parameters() const {
     return num_materials() * lobes_->num_parameters();
   }
@@ -97,7 +97,7 @@ class MarginalReflectance {
   // Fields of each material's lobes (LobeModel::Tabulate).
   using Fields = std::vector<std::vector<float>>;
   Fields Tabulate(const double* parameters, bool derivatives) const;
-  // Of a material's lobes, in parameters or a gradient.
+  // A material's lobes, in parameters or a gradient.
   template <typename Number>
   auto MixtureOf(int material, Number* parameters) const {
     return lobes_->Mixture(parameters + material * lobes_->num_parameters());

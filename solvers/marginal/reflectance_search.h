@@ -48,8 +48,8 @@ struct ReflectanceSearchOptions {
   // model can render: were it free to fall to the noise, light and reflectance
   // would bend to every error of the model.
   double sigma = 0.03;
-  // Of the points; lobes, prior and results hold as many lobes for each, one
-  // material's after the other's.
+  // The points have so many. Lobes, prior and results hold as many lobes for
+  // each, one material's after the other's.
   int num_materials = 1;
   // The prior of albedo that varies over the surface; unset: it does not.
   std::optional<PaintPrior> paint;

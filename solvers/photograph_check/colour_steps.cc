@@ -31,7 +31,7 @@ class Blocks {
     }
   }
 
-  // Of the pixel and those right of and below it; empty where one is not seen.
+  // The pixel and those right of and below it; empty where one is not seen.
   std::optional<Block> At(int x, int y) const {
     if (x + 1 >= width_ || y + 1 >= height_) return std::nullopt;
     Block mean = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};

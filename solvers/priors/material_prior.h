@@ -27,7 +27,7 @@ struct MaterialPrior {
   double wall = 30.0;
 
   int num_parameters() const { return static_cast<int>(mean.size()); }
-  // Of one material.
+  // One material's.
   LobeLayout layout() const {
     return LobeLayout::OfSize(mean.size() / num_materials, code_size);
   }
@@ -36,9 +36,9 @@ struct MaterialPrior {
   // 1/2 |factor^-1 (x - mean)|^2 + 1/2 wall^2 sum_k max(0, |z_k| - 1)^2;
   // gradient (may be null) is added to.
   double Cost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;
-  // Of one material: the least of it over one level added to the log colours of
-  // all lobes and channels: what the prior says where a gauge has set the
-  // level.
+  // The least of it over one level added to the log colours of all lobes and
+  // channels: what the prior says where a gauge has set the level. The prior
+  // must be of one material.
   double CostAtBestLevel(const Eigen::VectorXd& x) const;
   // The wall's part alone, with y = factor^-1 (x - mean) in its place.
   double WallCost(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) const;

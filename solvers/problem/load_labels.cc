@@ -13,7 +13,7 @@ namespace ibrdf {
 namespace {
 
 // Pixels at a smaller cosine take no part in a search.
-constexpr float kMinCosine = 0.2f;
+constexpr float kMinCosine = 0.2f;  // NormalBinOptions::min_cosine
 
 using Value = std::array<float, 3>;
 

@@ -47,7 +47,7 @@ std::string MaterialFile(const MaterialLabel& label) {
 
 Solution OfMaterial(const Solution& solution, int material) {
   Solution one = solution;
-  TakeMaterial(solution.materials[material], &one);
+  one.reflectance() = solution.materials[material];
   return one;
 }
 

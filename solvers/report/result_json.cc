@@ -202,7 +202,7 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
   return out;
 }
 
-// Of labelled materials, in the order of their labels; empty where there are no
+// Labelled materials, in the order of their labels; empty where there are no
 // labels.
 Json MaterialsJson(const InverseProblem& inverse, const Solution& solution) {
   Json out = Json::array();

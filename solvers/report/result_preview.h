@@ -33,7 +33,7 @@ struct ResultPreviewInput {
   std::string middle_of_map = "-z";  // of the pictures of maps, in words
   MerlTable brdf;
   MerlTable reference_brdf;
-  // Of labelled materials, by ShadingPoint::material, each with its label in
+  // Labelled materials, by ShadingPoint::material, each with its label in
   // words; and the labels in colours, of the input's size. Both empty: one
   // material. Two or more are drawn in the place of `brdf`.
   std::vector<std::pair<std::string, MerlTable>> materials;
@@ -63,7 +63,7 @@ struct ResultPanels {
   std::vector<PreviewPanel> images;  // input, render, residual, labels
   std::vector<PreviewPanel> paint;   // albedo, gloss, repainted grey
   std::vector<PreviewPanel> maps;    // estimate, reference; or known
-  // Of each light, estimate and reference; or of each material.
+  // Estimate and reference under each light; or each material.
   std::vector<PreviewPanel> spheres;
   bool spheres_compared = false;           // with references
   std::vector<PreviewPanel> relit;         // the object, under each light

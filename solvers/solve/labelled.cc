@@ -82,11 +82,7 @@ void Join(Solution of_material, Solution* all) {
   all->trace = std::move(of_material.trace);
   all->seconds = of_material.seconds;
   if (!of_material.status.ok()) all->status = of_material.status;
-  all->materials.push_back(
-      {std::move(of_material.lobe_parameters),
-       std::move(of_material.lobe_covariance), of_material.spread,
-       std::move(of_material.alternatives), std::move(of_material.brdf),
-       std::move(of_material.start)});
+  all->materials.push_back(std::move(of_material.reflectance()));
 }
 
 // Each material has its share of the time.
@@ -124,8 +120,8 @@ StatusOr<Solution> SolveLabelled(const SolveSetup& setup,
                                     ? SolveInUnknownLight(setup, context)
                                     : SolveInKnownLight(setup, context);
   if (!solution.ok()) return solution;
-  TakeMaterial(solution->materials[MainMaterial(setup.problem->materials)],
-               &*solution);
+  solution->reflectance() =
+      solution->materials[MainMaterial(setup.problem->materials)];
   return solution;
 }
 

@@ -3,7 +3,6 @@
 #include <glog/logging.h>
 
 #include "ibrdf/solvers/estimation/marginal_search.h"
-#include "ibrdf/solvers/estimation/reflectance_given_light.h"
 
 namespace ibrdf {
 namespace {
@@ -17,18 +16,19 @@ constexpr double kUnexplained = 0.1;  // misfit
 }  // namespace
 
 bool IsProbablyPainted(const SolveSetup& setup, SolveContext* context) {
-  if (!setup.light_unknown()) {
-    const Estimate one = EstimateReflectanceGivenLight(setup, context);
-    return Evaluate("one material", setup, *context, one.iterate,
-                    one.pixels.get())
-               .misfit > kUnexplained;
-  }
   const PaintPrior paint;
   const double evidence =
       CoarseEvidence(setup, context) - CoarseEvidence(setup, context, &paint);
   VLOG(1) << "paint is more probable than one material by " << evidence
           << " nats";
   return evidence > kLeastEvidence;
+}
+
+bool LeavesPaint(const SolveSetup& setup, const Estimate& one_material,
+                 const SolveContext& context) {
+  return Evaluate("one material", setup, context, one_material.iterate,
+                  one_material.pixels.get())
+             .misfit > kUnexplained;
 }
 
 }  // namespace ibrdf

@@ -1,6 +1,7 @@
 // Whether an object is painted, where neither the user nor the look before the
 // solve says.
 #pragma once
+#include "ibrdf/solvers/estimation/posterior.h"
 #include "ibrdf/solvers/estimation/solve_context.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 
@@ -8,9 +9,12 @@ namespace ibrdf {
 
 // Light unknown: whether the image is far more probable of a painted object
 // than of one material, both at the search's coarse resolution and with the
-// light, and of the former the albedo too, integrated out. Light known: whether
-// the best material leaves much of the image unexplained, which then nothing
-// but the object can be. Takes some seconds.
+// light, and of the former the albedo too, integrated out. Takes some seconds.
 bool IsProbablyPainted(const SolveSetup& setup, SolveContext* context);
+
+// Light known: whether the estimate of one material leaves much of the image
+// unexplained, which then nothing but the object can be.
+bool LeavesPaint(const SolveSetup& setup, const Estimate& one_material,
+                 const SolveContext& context);
 
 }  // namespace ibrdf

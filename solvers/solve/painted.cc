@@ -20,22 +20,22 @@ constexpr int kLightTurns = 2;  // of light and paint
 
 // What all turns know of the paint.
 struct PaintedPixels {
-  std::vector<NeighbourPair> neighbours;
+  const UnpaintedReflectance& reflectance;
+  const std::vector<NeighbourPair>& neighbours;
   AlbedoFitOptions options;
 };
 
-// The paint under a map, and the light and the rest given that paint.
+// The paint under the light that gives `unpainted`, and the light and the rest
+// given that paint. `unpainted` receives what the light that was found gives.
 StatusOr<Solution> TakeTurn(const SolveSetup& setup,
                             const ReflectanceEstimate& found,
-                            const UnpaintedReflectance& reflectance,
-                            const std::vector<float>& map, MapSize size,
-                            const PaintedPixels& paint, SolveContext* context) {
+                            const PaintedPixels& paint,
+                            UnpaintedRadiance* unpainted,
+                            SolveContext* context) {
   const std::vector<ShadingPoint>& points = setup.pixels.points;
-  const UnpaintedRadiance unpainted =
-      RenderUnpainted(setup, reflectance, map, size);
   const std::vector<double> log_albedo = FitAlbedo(
-      unpainted, setup.pixels.observed, paint.neighbours, paint.options);
-  const std::vector<double> gain = PaintGain(unpainted, log_albedo);
+      *unpainted, setup.pixels.observed, paint.neighbours, paint.options);
+  const std::vector<double> gain = PaintGain(*unpainted, log_albedo);
   const InverseProblem without = WithoutPaint(*setup.problem, gain, points);
   const StatusOr<SolveSetup> of_light = SetUp(without);
   if (!of_light.ok()) return of_light.status();
@@ -43,11 +43,10 @@ StatusOr<Solution> TakeTurn(const SolveSetup& setup,
   if (!estimate.ok()) return estimate.status();
   Solution solution = Summarise(*of_light, *std::move(estimate), context);
   // Render and gloss are of the light that was found, not of that before.
-  const UnpaintedRadiance lit =
-      RenderUnpainted(setup, reflectance, solution.map.rgb,
-                      {solution.map.width, solution.map.height});
-  ScalePixels(PaintGain(lit, log_albedo), points, &solution.render);
-  SetPaint(setup, reflectance, lit, log_albedo, &solution);
+  *unpainted = RenderUnpainted(setup, paint.reflectance, solution.map.rgb,
+                               {solution.map.width, solution.map.height});
+  ScalePixels(PaintGain(*unpainted, log_albedo), points, &solution.render);
+  SetPaint(setup, paint.reflectance, *unpainted, log_albedo, &solution);
   return solution;
 }
 
@@ -55,12 +54,10 @@ StatusOr<Solution> TakeTurn(const SolveSetup& setup,
 
 StatusOr<Solution> SolvePainted(const SolveSetup& setup,
                                 SolveContext* context) {
-  PaintedPixels paint;
-  paint.neighbours =
+  const std::vector<NeighbourPair> neighbours =
       NeighboursOf(setup.pixels.points, setup.problem->image.width);
-  const FirstPaint first = FindFirstPaint(
-      setup.pixels.points, setup.pixels.observed, paint.neighbours);
-  paint.options.chroma_drifts = first.natural_light;
+  const FirstPaint first =
+      FindFirstPaint(setup.pixels.points, setup.pixels.observed, neighbours);
   const StatusOr<ReflectanceEstimate> found =
       EstimateReflectance(setup, context, &first);
   if (!found.ok() && found.status().code() != StatusCode::kNoImprovement) {
@@ -72,16 +69,18 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
   }
   const UnpaintedReflectance reflectance =
       UnpaintedOf(*setup.lobes, found->lobes.data());
+  PaintedPixels paint = {reflectance, neighbours, AlbedoFitOptions()};
+  paint.options.chroma_drifts = first.natural_light;
   std::vector<float> map;
   found->light.mode.Exp(&map);
+  UnpaintedRadiance unpainted =
+      RenderUnpainted(setup, reflectance, map, found->light.mode.size());
   Turns turns(kLightTurns, context);
   StatusOr<Solution> solution =
-      TakeTurn(setup, *found, reflectance, map, found->light.mode.size(), paint,
-               context);
+      TakeTurn(setup, *found, paint, &unpainted, context);
   while (solution.ok() && turns.Another()) {
-    const MapSize size = {solution->map.width, solution->map.height};
-    StatusOr<Solution> next = TakeTurn(setup, *found, reflectance,
-                                       solution->map.rgb, size, paint, context);
+    StatusOr<Solution> next =
+        TakeTurn(setup, *found, paint, &unpainted, context);
     if (!next.ok()) return next;
     if (next->misfit < solution->misfit) solution = std::move(next);
   }

@@ -68,7 +68,7 @@ class Turn {
     SetPaint(setup_, reflectance, unpainted, log_albedo, &solution);
     return solution;
   }
-  // Of the paint that the last turn found.
+  // What the paint of the last turn makes of each pixel.
   const std::vector<double>& gain() const { return gain_; }
 
  private:

@@ -62,21 +62,23 @@ StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
   if (!setup.ok()) return setup.status();
   IBRDF_RETURN_IF_ERROR(CheckMethod(*setup));
   context->Reserve(PredictSummarySeconds(*setup, *context));
+  const bool may_be_painted = problem.variation == ReflectanceVariation::kAuto;
+  const bool light_unknown = setup->light_unknown();
   if (problem.variation == ReflectanceVariation::kAlbedo ||
-      (problem.variation == ReflectanceVariation::kAuto &&
-       IsProbablyPainted(*setup, context))) {
-    return setup->light_unknown()
-               ? SolvePainted(*setup, context)
-               : SolvePaintedUnderKnownLight(*setup, context);
+      (may_be_painted && light_unknown && IsProbablyPainted(*setup, context))) {
+    return light_unknown ? SolvePainted(*setup, context)
+                         : SolvePaintedUnderKnownLight(*setup, context);
   }
   if (problem.materials.size() > 1) return SolveLabelled(*setup, context);
   StatusOr<Estimate> estimate = EstimateUnknowns(*setup, context);
   if (!estimate.ok()) return estimate.status();
+  if (may_be_painted && !light_unknown &&
+      LeavesPaint(*setup, *estimate, *context)) {
+    return SolvePaintedUnderKnownLight(*setup, context);
+  }
   Solution solution = Summarise(*setup, *std::move(estimate), context);
   if (!problem.materials.empty()) {
-    solution.materials.push_back(
-        {solution.lobe_parameters, solution.lobe_covariance, solution.spread,
-         solution.alternatives, solution.brdf, solution.start});
+    solution.materials.push_back(solution.reflectance());
   }
   return solution;
 }

@@ -153,15 +153,6 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
   return out;
 }
 
-void TakeMaterial(const MaterialSolution& material, Solution* solution) {
-  solution->lobe_parameters = material.lobe_parameters;
-  solution->lobe_covariance = material.lobe_covariance;
-  solution->spread = material.spread;
-  solution->alternatives = material.alternatives;
-  solution->brdf = material.brdf;
-  solution->start = material.start;
-}
-
 Solution Summarise(const SolveSetup& setup, Estimate estimate,
                    SolveContext* context) {
   const InverseProblem& problem = *setup.problem;
@@ -197,9 +188,8 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
   solution.render = RenderOf(last, setup);
   solution.ambient = last.ambient;
   if (setup.lobes_unknown()) {
-    TakeMaterial(SummariseReflectance(setup, estimate.iterate.state.lobes,
-                                      estimate.reflectance),
-                 &solution);
+    solution.reflectance() = SummariseReflectance(
+        setup, estimate.iterate.state.lobes, estimate.reflectance);
   }
   solution.map_std = estimate.reflectance.light.log_std;
   solution.scale = scale;

@@ -19,9 +19,6 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
                                       const std::vector<double>& lobes,
                                       const ReflectanceEstimate& reflectance);
 
-// Makes a material the one that the solution speaks of.
-void TakeMaterial(const MaterialSolution& material, Solution* solution);
-
 // Renders every pixel, evaluates cost and misfit and, of the reflectance, the
 // table, the spread of its posterior and the other candidates. Where the
 // estimate's cost is not below the reference's, the reference is the solution,

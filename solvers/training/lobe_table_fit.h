@@ -94,7 +94,7 @@ class LobeTableFitter {
   double Refine(const TableColumns& columns, int iterations,
                 const LobeTableFitOptions& options,
                 std::vector<double>* parameters) const;
-  // Of as many lobes as the parameters make.
+  // As many lobes as the parameters make.
   LobeLayout LayoutOf(const std::vector<double>& parameters) const;
 
   // Root mean square of the residuals over the columns.

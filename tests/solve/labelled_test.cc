@@ -7,6 +7,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/solve/solve.h"
+#include "tests/solve/ball_problem.h"
 #include "tests/support/solver_testing.h"
 
 namespace ibrdf {
@@ -21,14 +22,6 @@ class LabelledTest : public ::testing::Test {
   LabelledTest() {
     problem_.kind = ProblemKind::kJoint;
     problem_.variation = ReflectanceVariation::kLabels;
-    problem_.points = SpherePoints(kSize);
-    problem_.image = Image(kSize, kSize);
-    problem_.model = std::make_shared<const NeuralBrdfModel>(TinyModel(3));
-    problem_.transport = TinyTransportOptions();
-    problem_.num_threads = 1;
-    problem_.map_width = 16;
-    problem_.map_height = 8;
-    problem_.solver.seconds = 1e6;
     problem_.solver.max_iterations = 2;
     problem_.materials = {{"10", 0}, {"90", 0}};
     for (ShadingPoint& p : problem_.points) {
@@ -93,7 +86,7 @@ class LabelledTest : public ::testing::Test {
       {-0.2, 0.3, 0.1, -0.3, 3.0, 3.4, 3.9, 0.2, 0.4, -0.1, 0.2, 2.0, 2.2,
        2.6}};
   const Image map_ = SmoothMap(8, 16);
-  InverseProblem problem_;
+  InverseProblem problem_ = BallProblem(kSize);
   std::vector<BrdfGrid> truth_;
 };
 

@@ -9,6 +9,7 @@
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/solve/paint_evidence.h"
 #include "ibrdf/solvers/solve/solve.h"
+#include "tests/solve/ball_problem.h"
 #include "tests/support/solver_testing.h"
 
 namespace ibrdf {
@@ -24,15 +25,7 @@ class PaintedUnderKnownLightTest : public ::testing::Test {
   PaintedUnderKnownLightTest() {
     problem_.kind = ProblemKind::kReflectance;
     problem_.variation = ReflectanceVariation::kAlbedo;
-    problem_.points = SpherePoints(kSize);
-    problem_.image = Image(kSize, kSize);
-    problem_.model = std::make_shared<const NeuralBrdfModel>(TinyModel(3));
-    problem_.transport = TinyTransportOptions();
-    problem_.num_threads = 1;
-    problem_.map_width = 16;
-    problem_.map_height = 8;
     problem_.known_map = map_;
-    problem_.solver.seconds = 1e6;
     problem_.solver.max_iterations = 12;
     const FlowLobes lobes(*problem_.model, 2, problem_.transport.grid, 1);
     const std::vector<double> parameters = {0.3,  -0.4, 0.2,  0.1, 5.0,
@@ -96,7 +89,7 @@ class PaintedUnderKnownLightTest : public ::testing::Test {
     return std::sqrt(d.square().mean());
   }
 
-  InverseProblem problem_;
+  InverseProblem problem_ = BallProblem(kSize);
   const Image map_ = SmoothMap(8, 16);
   BrdfGrid whole_, matte_;
 };

@@ -10,6 +10,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/reference_renderer.h"
+#include "tests/solve/ball_problem.h"
 #include "tests/support/solver_testing.h"
 
 namespace ibrdf {
@@ -24,15 +25,7 @@ constexpr double kSunMisfit = 0.01;
 class InverseRenderingTest : public ::testing::TestWithParam<ProblemKind> {
  protected:
   InverseRenderingTest() {
-    problem_.points = SpherePoints(kSize);
-    problem_.image = Image(kSize, kSize);
-    problem_.model = std::make_shared<const NeuralBrdfModel>(TinyModel(3));
-    problem_.transport = TinyTransportOptions();
-    problem_.num_threads = 1;
-    problem_.map_width = 16;
-    problem_.map_height = 8;
     problem_.illumination_prior = IlluminationPrior::kNone;
-    problem_.solver.seconds = 1e6;
     problem_.solver.max_iterations = 2;
     SetKind(ProblemKind::kJoint);
     // Not a code of the embedding, so that there is something to find.
@@ -86,7 +79,7 @@ class InverseRenderingTest : public ::testing::TestWithParam<ProblemKind> {
     }
   }
 
-  InverseProblem problem_;
+  InverseProblem problem_ = BallProblem(kSize);
   const Image map_ = SmoothMap(8, 16);
   std::vector<double> parameters_;
   BrdfGrid truth_;

@@ -218,8 +218,10 @@ void Transport::GridGradient(const BrdfGrid& grid, const float* map,
   if (bounces() == 0) {
     AddGridGradient(sources, adjoint, &sums);
   } else {
-    const std::vector<float> f = PadGrid(grid);
-    const std::vector<std::vector<double>> emitted = Emitted(grid, map);
+    const PaddedGrids grids = PadGrids({&grid});
+    const std::vector<float>& f = grids.by_material.front();
+    const std::vector<std::vector<double>> emitted =
+        Emitted(grids, bounces(), &sources);
     sources.SetEmitted(emitted.back().data());
     AddGridGradient(sources, adjoint, &sums);
     // The adjoint of R_b, b falling.
