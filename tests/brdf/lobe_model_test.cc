@@ -278,7 +278,9 @@ TEST_F(LambertianLobeTest, IsOneFieldOfOnesWithoutDerivatives) {
     for (size_t i = 0; i < fast.size(); ++i) {
       const bool of_flow = i < without.size();
       EXPECT_EQ(of_flow ? without[i] : 1.0f, fast[i]);
-      if (!of_flow) EXPECT_EQ(1.0f, slow[i]);
+      if (!of_flow) {
+        EXPECT_EQ(1.0f, slow[i]);
+      }
     }
   }
 }
