@@ -21,10 +21,10 @@ def ratios(cases, column, setting):
 
 
 def line(name, cases):
-    painted = [c["albedo"] for c in cases if "albedo" in c]
+    painted = [c["auto"] for c in cases if "auto" in c]
     words = [f"{name:14s} {len(painted):3d}"]
     words += [f"{median(row[column] for row in painted):7.3f}" for column in ("albedo", "constant", "brdf", "gloss", "map_error")]
-    for setting in ("albedo", "none"):
+    for setting in ("auto", "none"):
         words += [f"{median(ratios(cases, column, setting)):7.2f}" for column in ("brdf", "gloss", "map_error")]
     words.append(f"{median(row['cpu_seconds'] for row in painted):5.0f}")
     print(" ".join(words))
@@ -36,13 +36,13 @@ def main():
     cases = {}
     for row in rows:
         cases.setdefault(row["case"], {})[row["setting"]] = row
-    print(f"{'':14s}   n  albedo  const.    brdf   gloss     map | over unpainted: albedo's brdf, gloss, map; none's | s")
+    print(f"{'':14s}   n  albedo  const.    brdf   gloss     map | over unpainted: auto's brdf, gloss, map; none's | s")
     line("all", list(cases.values()))
     for kind in KINDS:
         for value in sorted({row[kind] for row in rows}):
             line(value, [c for c in cases.values() if next(iter(c.values()))[kind] == value])
-    auto = [row["auto"] for row in rows if row["setting"] == "albedo"]
-    print("auto, painted:", {word: auto.count(word) for word in sorted(set(auto))})
+    auto = [row["variation"] for row in rows if row["setting"] == "auto"]
+    print("auto took:", {word: auto.count(word) for word in sorted(set(auto))})
     worst = sorted((row for row in rows if row["albedo"] != ""), key=lambda row: -float(row["albedo"]))
     for row in worst[:10]:
         print(f"{row['case']} albedo {row['albedo']} misfit {row['misfit']}")

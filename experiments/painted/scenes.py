@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Solves the pictures of make_scenes.py and measures what comes out.
 
-    experiments/painted/scenes.py TABLES MAPS MESHES OUT MODELS [--only 1/5] [--settings albedo,none,unpainted] [--bin DIR]
+    experiments/painted/scenes.py TABLES MAPS MESHES OUT MODELS [--only 1/5] [--settings auto,unpainted,none] [--bin DIR]
 
-MODELS: fold0.ibrdf and fold1.ibrdf, trained without the materials. Each case is solved with `variation: albedo`, with
-`none`, and, as it would be without paint, from unpainted.exr with `none`. A row of OUT/results.csv as each solve
-finishes; the same command goes on where it was stopped. Needs Debian's python3-numpy.
+MODELS: fold0.ibrdf and fold1.ibrdf, trained without the materials. Settings: `auto`, `albedo` and `none` are values of
+`reflectance.variation`; `unpainted` is unpainted.exr with `none`. A row of OUT/results.csv as each solve finishes; the
+same command goes on where it was stopped. Needs Debian's python3-numpy.
 
 Errors are root mean squares of natural logarithms, after the best scale of each channel. brdf: of the table of the
 object's mean paint. gloss: of f_matte + s f_gloss, f_matte the truth's and s the best for each channel, so that gloss
-alone is measured. map: as in joint_grid. auto: what `variation: auto` would take.
+alone is measured. map: as in joint_grid. variation: what the solve took.
 """
 import argparse
 import csv
@@ -26,7 +26,7 @@ from files import read_exr, read_merl, write_pfm
 from make_scenes import add_arguments, cases, make, write_meshes
 
 COLUMNS = ["case", "setting", "texture", "coat", "material", "shape", "map", "albedo", "constant", "brdf", "gloss",
-           "map_error", "misfit", "auto", "seconds", "cpu_seconds"]
+           "map_error", "misfit", "variation", "seconds", "cpu_seconds"]
 FLOOR = 1e-6  # of raw MERL values, as in ibrdf_eval brdf
 PROBLEM = """problem: joint
 image: {{file: {picture}.exr}}
@@ -96,7 +96,7 @@ class Solved:
 
     def solve(self):
         picture = "unpainted" if self.setting == "unpainted" else "painted"
-        variation = "albedo" if self.setting == "albedo" else "none"
+        variation = "none" if self.setting == "unpainted" else self.setting
         self.folder.mkdir(exist_ok=True)
         problem = self.scene / f"{self.setting}_problem.yaml"
         problem.write_text(PROBLEM.format(picture=picture, geometry=self.case.geometry(self.arguments.out),
@@ -109,13 +109,6 @@ class Solved:
         self.seconds = time.monotonic() - began
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         self.cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-    def choice(self):
-        """What `auto` takes for this picture."""
-        run(self.arguments.bin / "ibrdf_solve", "--problem", self.scene / f"{self.setting}_problem.yaml", "--out",
-            self.folder / "check", "--check", "--quiet", "--set", "reflectance.variation=auto")
-        found = json.loads((self.folder / "check/check.json").read_text())["check"]["materials"]["verdict"]
-        return found.replace(" ", "_")
 
     def albedo_errors(self):
         """Of the estimate and of a constant."""
@@ -152,9 +145,10 @@ class Solved:
         case = self.case
         light = metric(self.arguments, "illumination_relative_log_rmse_aligned", "illumination",
                        self.folder / "illumination.exr", self.arguments.maps / f"{case.map}.hdr")
-        misfit = json.loads((self.folder / "result.json").read_text())["metrics"]["misfit"]
+        result = json.loads((self.folder / "result.json").read_text())
+        misfit = result["metrics"]["misfit"]
         return [case.name, self.setting, case.texture, case.coat, case.material, case.shape, case.map, *self.albedo_errors(),
-                *self.brdf_errors(), f"{light:.4f}", f"{misfit:.4f}", self.choice(), f"{self.seconds:.0f}", f"{self.cpu:.0f}"]
+                *self.brdf_errors(), f"{light:.4f}", f"{misfit:.4f}", result["variation"], f"{self.seconds:.0f}", f"{self.cpu:.0f}"]
 
 
 def read_rows(table):
@@ -174,7 +168,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add_arguments(parser)
     parser.add_argument("models", type=pathlib.Path)
-    parser.add_argument("--settings", default="albedo,unpainted,none")
+    parser.add_argument("--settings", default="auto,unpainted,none")
     arguments = parser.parse_args()
     write_meshes(arguments)
     table = arguments.out / "results.csv"

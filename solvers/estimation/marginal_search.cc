@@ -31,10 +31,11 @@ constexpr double kPaintedLightChroma = 0.1;
 
 // Before the light is known, pixels tell paint and a lamp by themselves; what
 // is left is small. Under a lamp its chroma is hardly the light's, which else
-// would explain paint at no cost.
+// would explain paint at no cost. A weak one is the sky's brighter half, not a
+// lamp that would be mirrored.
 void AddPaint(const FirstPaint& first, ReflectanceSearchOptions* o) {
   if (first.light) {
-    o->directional_lights = {first.light->direction};
+    if (!first.natural_light) o->directional_lights = {first.light->direction};
     VLOG(1) << "a lamp of strength " << first.light->strength
             << " shades the paint; deviation at like normals "
             << first.deviation;

@@ -58,15 +58,28 @@ bool IsNearOneOf(const std::vector<Eigen::Vector3d>& lights,
   });
 }
 
+// The image without what is known of its paint: a bright patch is no highlight.
+std::vector<double> RadianceWithoutPaint(
+    const Observations& observed, const ReflectanceSearchOptions& options) {
+  std::vector<double> out = observed.radiance;
+  if (!options.paint || options.paint->mean.empty()) return out;
+  CHECK_EQ(options.paint->mean.size(), out.size());
+  for (size_t i = 0; i < out.size(); ++i) {
+    out[i] *= std::exp(-options.paint->mean[i]);
+  }
+  return out;
+}
+
 // The lights that a material's highlights show: where two materials meet, the
-// brighter one has none.
+// brighter one has none. all: radiance [points * 3].
 std::vector<Eigen::Vector3d> LightsOfMaterial(
     const std::vector<ShadingPoint>& points, const Observations& observed,
-    int material, const ReflectanceSearchOptions& options) {
+    const std::vector<double>& all, int material,
+    const ReflectanceSearchOptions& options) {
   const std::vector<char> clipped = ClippedPoints(observed);
   if (options.num_materials == 1) {
-    return FindDirectionalLights(points, observed.radiance,
-                                 options.most_directional_lights, clipped);
+    return FindDirectionalLights(points, all, options.most_directional_lights,
+                                 clipped);
   }
   std::vector<ShadingPoint> of_material;
   std::vector<double> radiance;
@@ -74,8 +87,7 @@ std::vector<Eigen::Vector3d> LightsOfMaterial(
   for (size_t i = 0; i < points.size(); ++i) {
     if (points[i].material != material) continue;
     of_material.push_back(points[i]);
-    radiance.insert(radiance.end(), &observed.radiance[3 * i],
-                    &observed.radiance[3 * i] + 3);
+    radiance.insert(radiance.end(), &all[3 * i], &all[3 * i] + 3);
     if (!clipped.empty()) of_clipped.push_back(clipped[i]);
   }
   return FindDirectionalLights(of_material, radiance,
@@ -87,9 +99,10 @@ std::vector<Eigen::Vector3d> LightsOfMaterial(
 std::vector<Eigen::Vector3d> DirectionalLights(
     const std::vector<ShadingPoint>& points, const Observations& observed,
     const ReflectanceSearchOptions& options) {
+  const std::vector<double> radiance = RadianceWithoutPaint(observed, options);
   std::vector<std::vector<Eigen::Vector3d>> found;
   for (int m = 0; m < options.num_materials; ++m) {
-    found.push_back(LightsOfMaterial(points, observed, m, options));
+    found.push_back(LightsOfMaterial(points, observed, radiance, m, options));
   }
   std::vector<Eigen::Vector3d> lights = options.directional_lights;
   // Those of one material are apart.

@@ -10,6 +10,7 @@
 #include "ibrdf/base/pi.h"
 #include "ibrdf/solvers/observation/normal_bins.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
+#include "ibrdf/solvers/paint/smooth_shading.h"
 #include "ibrdf/solvers/priors/directional_lights.h"
 
 namespace ibrdf {
@@ -27,6 +28,12 @@ constexpr double kHighlight = 15.0 * kDegree, kRim = 25.0 * kDegree;
 // A highlight is by so much brighter than the median of its rim and than the
 // object's brightest paint, and no larger share of the object.
 constexpr double kContrast = 1.3, kMostOfObject = 0.03;
+// Nats of ColourEntropy by which paint is simpler. Two that differ by less are
+// as simple, and the light of one lamp and a room holds where there are
+// shadows.
+constexpr double kFewerColours = 0.1;
+// Steps of this much are paint's: all of what no shading explains.
+constexpr double kAnyStep = 0.005;
 // So many of the object's points are no brighter than its brightest paint.
 constexpr double kBrightest = 0.95;
 
@@ -147,6 +154,29 @@ std::vector<double> PaintOf(const std::vector<ShadingPoint>& points,
   return log_albedo;
 }
 
+// The paint under SmoothShading in place of that of `out` under `unpainted`,
+// where it has fewer colours.
+void TakeIfSimpler(const std::vector<ShadingPoint>& points,
+                   const Observations& observed,
+                   const std::vector<NeighbourPair>& neighbours,
+                   UnpaintedRadiance* unpainted, FirstPaint* out) {
+  UnpaintedRadiance other;
+  other.matte = SmoothShading(points, observed, neighbours);
+  other.gloss = unpainted->gloss;
+  AlbedoFitOptions options;
+  options.edge = options.chroma_edge = kAnyStep;
+  options.edge_by_turn = 0.0;
+  std::vector<double> paint =
+      PaintOf(points, observed, neighbours, other, options);
+  if (ColourEntropy(points, observed, paint) + kFewerColours >
+      ColourEntropy(points, observed, out->log_albedo)) {
+    return;
+  }
+  *unpainted = std::move(other);
+  out->log_albedo = std::move(paint);
+  out->options = options;
+}
+
 }  // namespace
 
 FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
@@ -157,8 +187,7 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
   out.light = FindShadingLight(points, observed);
   const ShadingLight light = out.light.value_or(ShadingLight());
   out.natural_light = light.strength < kStrongLamp;
-  AlbedoFitOptions options;
-  options.chroma_drifts = out.natural_light;
+  out.options.chroma_drifts = out.natural_light;
   UnpaintedRadiance unpainted;
   unpainted.gloss.assign(3 * points.size(), 0.0);
   for (const ShadingPoint& point : points) {
@@ -167,7 +196,11 @@ FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
     unpainted.matte.insert(unpainted.matte.end(), irradiance.begin(),
                            irradiance.end());
   }
-  out.log_albedo = PaintOf(points, observed, neighbours, unpainted, options);
+  out.log_albedo =
+      PaintOf(points, observed, neighbours, unpainted, out.options);
+  if (out.natural_light) {
+    TakeIfSimpler(points, observed, neighbours, &unpainted, &out);
+  }
   out.deviation =
       DeviationAtLikeNormals(points, observed, unpainted, out.log_albedo);
   return out;

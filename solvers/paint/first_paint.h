@@ -6,6 +6,7 @@
 
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/costs/observations.h"
+#include "ibrdf/solvers/paint/albedo_fit.h"
 #include "ibrdf/solvers/paint/neighbours.h"
 #include "ibrdf/solvers/paint/shading_light.h"
 
@@ -16,16 +17,22 @@ struct FirstPaint {
   // Log albedo [points * 3], its mean over the points 0 in each channel.
   std::vector<double> log_albedo;
   // Whether no lamp outshines the room: the light's colour then varies with its
-  // direction, and colour that drifts over the object is the light's.
+  // direction.
   bool natural_light = true;
+  // How it was fitted, and is to be fitted under a light that is known better:
+  // of natural light, colour that drifts over the object is the light's, unless
+  // SmoothShading leaves markedly fewer colours.
+  AlbedoFitOptions options;
   // How far log luminance deviates at like normals between the image and this
   // paint under this light: texture, shadows, what neither is.
   double deviation = 0.0;
 };
 
 // The albedo (FitAlbedo) of a matte object under the light of
-// FindShadingLight, or under even light where there is none. Highlights say
-// nothing of paint and are filled in from around.
+// FindShadingLight, or under even light where there is none. In natural light
+// also under SmoothShading, which takes wood's grain for paint where the former
+// takes its drift for light; the one with fewer colours is the simpler
+// explanation. Highlights say nothing of paint and are filled in from around.
 FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
                           const Observations& observed,
                           const std::vector<NeighbourPair>& neighbours);

@@ -69,8 +69,7 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
   }
   const UnpaintedReflectance reflectance =
       UnpaintedOf(*setup.lobes, found->lobes.data());
-  PaintedPixels paint = {reflectance, neighbours, AlbedoFitOptions()};
-  paint.options.chroma_drifts = first.natural_light;
+  const PaintedPixels paint = {reflectance, neighbours, first.options};
   std::vector<float> map;
   found->light.mode.Exp(&map);
   UnpaintedRadiance unpainted =
