@@ -23,10 +23,10 @@ void EvaluateHarmonics(const HarmonicConstants& constants, const float* polar,
   int i = 0;
   for (; i + kLanes <= num_directions; i += kLanes) {
     float* const out = Y + i;
-    EvaluateRecurrence(
-        order, diagonal, up, down, Load(polar + i), Load(zero + i),
-        Load(side + i),
-        [&](int harmonic, Vf y) { Store(out + harmonic * stride, y); });
+    EvaluateRecurrence(order, diagonal, up, down, Load(polar + i),
+                       Load(zero + i), Load(side + i), [&](int harmonic, Vf y) {
+                         Store(out + harmonic * stride, y);
+                       });
   }
   if (i == num_directions) return;
   const int rest = num_directions - i;
