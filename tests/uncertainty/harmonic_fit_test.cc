@@ -42,6 +42,7 @@ LongMatrix DenseFit(const TexelSamples& samples, int texel,
       normal(k, k) = options.lambda * std::exp(l);
     }
   }
+  normal(0, 0) *= options.constant_penalty;
   for (int view = 0; view < samples.num_views; ++view) {
     const size_t at =
         3 * (static_cast<size_t>(texel) * samples.num_views + view);
@@ -195,6 +196,10 @@ TEST(HarmonicFitOptions, BadOnesAreNamed) {
   options = {};
   options.lambda = 0.0;
   EXPECT_NE(std::string::npos, options.Check().message().find("lambda"));
+  options = {};
+  options.constant_penalty = 0.0;
+  EXPECT_NE(std::string::npos,
+            options.Check().message().find("constant_penalty"));
   options = {};
   options.cosine_power = -1.0;
   EXPECT_NE(std::string::npos, options.Check().message().find("cosine_power"));

@@ -44,6 +44,7 @@ std::vector<double> Regulariser(const HarmonicFitOptions& options) {
   for (int l = 0; l <= options.order; ++l) {
     out.insert(out.end(), 2 * l + 1, options.lambda * std::exp(l));
   }
+  out[0] *= options.constant_penalty;
   return out;
 }
 
@@ -104,6 +105,9 @@ Status HarmonicFitOptions::Check() const {
   }
   if (!(lambda > 0.0) || !std::isfinite(lambda)) {
     return InvalidInput("lambda", "expected a finite number > 0");
+  }
+  if (!(constant_penalty > 0.0 && constant_penalty <= 1.0)) {
+    return InvalidInput("constant_penalty", "expected a number in (0, 1]");
   }
   if (!(cosine_power >= 0.0) || !std::isfinite(cosine_power)) {
     return InvalidInput("cosine_power", "expected a finite number >= 0");

@@ -21,6 +21,12 @@ struct HarmonicFitOptions {
   // The published code has 1e-3 for its fits and 1e-2 for the timing of the
   // entropy. > 0. It is not scaled by the number of samples, as in the code.
   double lambda = 1e-3;
+  // The regulariser of degree 0, in units of lambda; the text and the published
+  // code have e^0 = 1. We leave the constant almost free. The views see half a
+  // sphere only, on which degree 0 costs less when odd degrees take a part of
+  // it: then a matte surface under constant light has a spectrum, and looks
+  // glossy. (0, 1].
+  double constant_penalty = 1e-4;
   // The text weights samples by |cos(theta)|. The published code multiplies
   // both Y and f by it, which is 2. We follow the code: its results are those
   // of the tables. >= 0.
