@@ -13,8 +13,6 @@ namespace {
 
 // Squares of spectra must stay finite in single precision.
 constexpr double kLargestPower = 1e15;
-// Doubles of the widest vector.
-constexpr int kMostDoubles = 8;
 
 using FitFunction = void (*)(const FitArguments& arguments);
 

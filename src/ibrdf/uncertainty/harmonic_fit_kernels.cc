@@ -1,30 +1,17 @@
 #include "ibrdf/uncertainty/harmonic_fit_kernels.h"
 
 #include "ibrdf/base/simd.h"
-// The recurrence needs the vectors above.
+// These two need the vectors above.
 #include "ibrdf/approximation/harmonic_recurrence.h"
+#include "ibrdf/uncertainty/double_lanes.h"
 
 namespace ibrdf {
 namespace IBRDF_SIMD_NAMESPACE {
 namespace {
 
-constexpr int kDoubles = kLanes / 2;
-using Vd [[gnu::vector_size(IBRDF_SIMD_WIDTH * 4), gnu::may_alias]] = double;
 // Sums of a tile that fit in the registers.
 constexpr int kRows = kLanes >= 16 ? 4 : 2;
 constexpr int kColumns = kFitTile;
-
-Vd LoadDoubles(const double* p) {
-  Vd v;
-  std::memcpy(&v, p, sizeof(v));
-  return v;
-}
-void StoreDoubles(double* p, Vd v) { std::memcpy(p, &v, sizeof(v)); }
-Vd Widen(const float* p) {
-  Vd v;
-  for (int i = 0; i < kDoubles; ++i) v[i] = p[i];
-  return v;
-}
 
 // Rows of the normal equations: the harmonics, then the right-hand sides, each
 // part filled up with zeros to whole tiles.
@@ -107,8 +94,7 @@ void Factorise(const Rows& rows, const double* regulariser, double* normal) {
       const Vd x = LoadDoubles(at(j, k));
       d -= x * x;
     }
-    Vd inverse;
-    for (int i = 0; i < kDoubles; ++i) inverse[i] = 1.0 / __builtin_sqrt(d[i]);
+    const Vd inverse = 1.0 / SqrtDoubles(d);
     StoreDoubles(at(j, j), inverse);
     for (int i = j + 1; i < rows.padded + kFitValues; ++i) {
       if (i == n) i = rows.padded;

@@ -8,6 +8,9 @@ inline constexpr int kFitBatch = 16;
 // Right-hand sides: RGB of outgoing radiance, then RGB of incoming radiance.
 inline constexpr int kFitValues = 6;
 
+// Doubles of the widest vector: a workspace is for any instruction set.
+inline constexpr int kMostDoubles = 8;
+
 // What HarmonicFitter hands to its kernel.
 struct FitArguments {
   int order;

@@ -9,6 +9,7 @@
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/base/simd_dispatch.h"
+#include "ibrdf/uncertainty/parameter_prior.h"
 #include "ibrdf/uncertainty/spectrum_kernels.h"
 
 namespace ibrdf {
@@ -127,16 +128,7 @@ Status SpectrumOptions::Check() const {
   if (!(relative_floor > 0.0) || !std::isfinite(relative_floor)) {
     return InvalidInput("relative_floor", "expected a finite number > 0");
   }
-  if (prior.empty()) return OkStatus();
-  if (prior.size() != static_cast<size_t>(num_alpha) * num_ks) {
-    return InvalidInput("prior", "expected num_alpha num_ks numbers");
-  }
-  for (const double p : prior) {
-    if (!(p > 0.0) || !std::isfinite(p)) {
-      return InvalidInput("prior", "expected finite numbers > 0");
-    }
-  }
-  return OkStatus();
+  return CheckPrior(prior, num_alpha * num_ks);
 }
 
 std::vector<double> FilterTable(const SpectrumOptions& options,
@@ -160,15 +152,6 @@ std::vector<double> FactorTable(const SpectrumOptions& options) {
   if (options.distance == SpectrumDistance::kPower) {
     for (double& k : out) k *= k;
   }
-  return out;
-}
-
-std::vector<double> PenaltyTable(const SpectrumOptions& options) {
-  std::vector<double> out;
-  if (options.prior.empty()) return out;
-  const double most =
-      *std::max_element(options.prior.begin(), options.prior.end());
-  for (const double p : options.prior) out.push_back(std::log(most / p));
   return out;
 }
 
@@ -201,7 +184,8 @@ EntropyMaps EntropyOfSpectra(const PowerSpectra& spectra,
   const std::vector<float> filter =
       SinglePrecision(FilterTable(options, prefilter_alpha));
   const std::vector<float> factor = SinglePrecision(FactorTable(options));
-  const std::vector<float> penalty = SinglePrecision(PenaltyTable(options));
+  const std::vector<float> penalty =
+      SinglePrecision(PriorPenalty(options.prior));
   const SpectrumGrid grid{
       options.fit.order, options.num_alpha,
       options.num_ks,    filter.data(),

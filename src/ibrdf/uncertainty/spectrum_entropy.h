@@ -86,9 +86,6 @@ std::vector<double> FilterTable(const SpectrumOptions& options,
 // k [num_ks]: Ks, or its square with kPower.
 std::vector<double> FactorTable(const SpectrumOptions& options);
 
-// -log p(psi) [num_alpha, num_ks], its least value 0; empty without a prior.
-std::vector<double> PenaltyTable(const SpectrumOptions& options);
-
 // What spectra are multiplied with before their differences are squared: A or
 // B of degree l >= 1 from power S, given that of the light and S_B(0).
 double ComparedSignal(const SpectrumOptions& options, int l, double S,
