@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -15,12 +16,11 @@
 namespace ibrdf {
 namespace {
 
-// Signals per piece of work: their planes stay in the cache.
-constexpr int kSignals = 2048;
-// Squares of differences stay finite in single precision.
-constexpr double kLargestSignal = 1e15;
+// Texels per piece of work, one channel at a time.
+constexpr int kTexelsPerPiece = 2048;
 
 using SpectrumFunction = void (*)(const SpectrumGrid& grid,
+                                  const SpectrumScale& scale,
                                   const SpectrumSignals& signals);
 
 SpectrumFunction SpectrumKernel() {
@@ -42,58 +42,68 @@ std::vector<float> SinglePrecision(const std::vector<double>& v) {
   return std::vector<float>(v.begin(), v.end());
 }
 
-// Planes of a piece of work, and what the kernel makes of them.
-struct Piece {
-  std::vector<float> incoming, outgoing, entropy, distance;
-  std::vector<int32_t> cell;
-
-  explicit Piece(int order)
-      : incoming(order * kSignals),
-        outgoing(order * kSignals),
-        entropy(kSignals),
-        distance(kSignals),
-        cell(kSignals) {}
-};
-
-void FillPiece(const PowerSpectra& spectra, const SpectrumOptions& options,
-               int64_t first, int count, Piece* piece) {
-  for (int l = 1; l <= spectra.order; ++l) {
-    const float* const S_B = &spectra.outgoing[l * spectra.num_signals + first];
-    const float* const S_L = &spectra.incoming[l * spectra.num_signals + first];
-    const float* const S_B0 = &spectra.outgoing[first];
-    float* const A = &piece->incoming[(l - 1) * kSignals];
-    float* const B = &piece->outgoing[(l - 1) * kSignals];
-    for (int i = 0; i < count; ++i) {
-      A[i] = static_cast<float>(
-          ComparedSignal(options, l, S_L[i], S_L[i], S_B0[i]));
-      B[i] = static_cast<float>(
-          ComparedSignal(options, l, S_B[i], S_L[i], S_B0[i]));
-    }
-  }
+// What ComparedSignal multiplies S_L and S_B of degree l with that does not
+// depend on them.
+double ScaleOfDegree(const SpectrumOptions& options, int l) {
+  const bool power = options.distance == SpectrumDistance::kPower;
+  // Per degree: the published code divides by l + 1, not by 2 l + 1.
+  const double per_degree = options.power_per_degree ? 1.0 / (l + 1.0) : 1.0;
+  double scale = power ? per_degree : std::sqrt(per_degree);
+  if (options.mean_over_degrees) scale /= std::sqrt(double(options.fit.order));
+  // Eq. 3: exp(-d / (2 sigma^2)). Amplitudes are those of a mean over the
+  // sphere.
+  const double variance =
+      2.0 * options.sigma * options.sigma * (power ? 1.0 : 4.0 * kPi);
+  return scale / std::sqrt(variance);
 }
 
-// The results of a piece into the rows of its texels.
-void StorePiece(const Piece& piece, const SpectrumOptions& options,
-                int64_t first, int count, EntropyMaps* maps) {
-  const std::vector<double> alpha =
-      AlphaValues(options.alpha_grid, options.num_alpha);
-  const std::vector<double> Ks = UnitValues(options.num_ks);
-  for (int i = 0; i < count; ++i) {
-    const int64_t signal = first + i;
-    const int64_t texel = signal % maps->num_texels;
-    const int64_t to = 3 * texel + signal / maps->num_texels;
-    double size = 0.0;
-    for (int l = 0; l < options.fit.order; ++l) {
-      const double B = piece.outgoing[l * kSignals + i];
-      size += B * B;
+// Everything that all pieces of work share, as the kernel takes it.
+struct SpectrumTables {
+  std::vector<float> filter, factor, penalty, scale, alpha, Ks;
+  SpectrumGrid grid;
+
+  SpectrumTables(const SpectrumOptions& options, double prefilter_alpha)
+      : filter(SinglePrecision(FilterTable(options, prefilter_alpha))),
+        factor(SinglePrecision(FactorTable(options))),
+        penalty(SinglePrecision(PriorPenalty(options.prior))),
+        alpha(SinglePrecision(
+            AlphaValues(options.alpha_grid, options.num_alpha))),
+        Ks(SinglePrecision(UnitValues(options.num_ks))) {
+    for (int l = 1; l <= options.fit.order; ++l) {
+      scale.push_back(static_cast<float>(ScaleOfDegree(options, l)));
     }
-    maps->entropy[to] = piece.entropy[i];
-    maps->alpha[to] = static_cast<float>(alpha[piece.cell[i] / options.num_ks]);
-    maps->Ks[to] = static_cast<float>(Ks[piece.cell[i] % options.num_ks]);
-    maps->misfit[to] =
-        size > 0.0 ? static_cast<float>(std::min(1.0, piece.distance[i] / size))
-                   : 0.0f;
-    maps->deviations[to] = std::sqrt(2.0f * piece.distance[i]);
+    grid = {options.fit.order, options.num_alpha,
+            options.num_ks,    filter.data(),
+            factor.data(),     penalty.empty() ? nullptr : penalty.data()};
+  }
+  SpectrumTables(const SpectrumTables&) = delete;
+};
+
+// Texels [first, first + count) of a channel, into the rows of the maps.
+void EvaluatePiece(const PowerSpectra& spectra, const SpectrumOptions& options,
+                   const SpectrumTables& tables, int channel, int first,
+                   int count, EntropyMaps* maps) {
+  std::array<float, kTexelsPerPiece> entropy, distance, misfit;
+  std::array<int32_t, kTexelsPerPiece> cell;
+  const int64_t from = static_cast<int64_t>(channel) * maps->num_texels + first;
+  const SpectrumScale scale{
+      options.distance == SpectrumDistance::kAmplitude,
+      options.relative_weights ? static_cast<float>(options.relative_floor)
+                               : 0.0f,
+      tables.scale.data(),
+      options.unit_exposure ? nullptr : &spectra.outgoing[from]};
+  SpectrumKernel()(
+      tables.grid, scale,
+      {spectra.num_signals, &spectra.incoming[spectra.num_signals + from],
+       &spectra.outgoing[spectra.num_signals + from], count, entropy.data(),
+       distance.data(), misfit.data(), cell.data()});
+  for (int i = 0; i < count; ++i) {
+    const size_t to = 3 * (static_cast<size_t>(first) + i) + channel;
+    maps->entropy[to] = entropy[i];
+    maps->alpha[to] = tables.alpha[cell[i] / options.num_ks];
+    maps->Ks[to] = tables.Ks[cell[i] % options.num_ks];
+    maps->misfit[to] = misfit[i];
+    maps->deviations[to] = std::sqrt(2.0f * distance[i]);
   }
 }
 
@@ -158,20 +168,13 @@ std::vector<double> FactorTable(const SpectrumOptions& options) {
 double ComparedSignal(const SpectrumOptions& options, int l, double S,
                       double S_L, double S_B0) {
   const bool power = options.distance == SpectrumDistance::kPower;
-  // Per degree: the published code divides by l + 1, not by 2 l + 1.
-  const double per_degree = options.power_per_degree ? 1.0 / (l + 1.0) : 1.0;
-  double signal = power ? S * per_degree : std::sqrt(S * per_degree);
+  double signal = (power ? S : std::sqrt(S)) * ScaleOfDegree(options, l);
   if (options.relative_weights) {
     const double unit = S_L + options.relative_floor;
     signal /= power ? unit : std::sqrt(unit);
   }
-  if (options.mean_over_degrees) signal /= std::sqrt(double(options.fit.order));
   if (!options.unit_exposure) signal *= S_B0;
-  // Eq. 3: exp(-d / (2 sigma^2)). Amplitudes are those of a mean over the
-  // sphere.
-  const double variance =
-      2.0 * options.sigma * options.sigma * (power ? 1.0 : 4.0 * kPi);
-  return std::min(signal / std::sqrt(variance), kLargestSignal);
+  return std::min(signal, double{kLargestSignal});
 }
 
 EntropyMaps EntropyOfSpectra(const PowerSpectra& spectra,
@@ -181,32 +184,16 @@ EntropyMaps EntropyOfSpectra(const PowerSpectra& spectra,
   CHECK_EQ(0, spectra.num_signals % 3);
   EntropyMaps maps;
   maps.Resize(static_cast<int>(spectra.num_signals / 3));
-  const std::vector<float> filter =
-      SinglePrecision(FilterTable(options, prefilter_alpha));
-  const std::vector<float> factor = SinglePrecision(FactorTable(options));
-  const std::vector<float> penalty =
-      SinglePrecision(PriorPenalty(options.prior));
-  const SpectrumGrid grid{
-      options.fit.order, options.num_alpha,
-      options.num_ks,    filter.data(),
-      factor.data(),     penalty.empty() ? nullptr : penalty.data()};
-  ParallelFor((spectra.num_signals + kSignals - 1) / kSignals, num_threads,
-              [&](int64_t index, int) {
-                const int64_t first = index * kSignals;
-                const int count = static_cast<int>(
-                    std::min<int64_t>(kSignals, spectra.num_signals - first));
-                Piece piece(spectra.order);
-                FillPiece(spectra, options, first, count, &piece);
-                const SpectrumSignals signals{kSignals,
-                                              piece.incoming.data(),
-                                              piece.outgoing.data(),
-                                              count,
-                                              piece.entropy.data(),
-                                              piece.distance.data(),
-                                              piece.cell.data()};
-                SpectrumKernel()(grid, signals);
-                StorePiece(piece, options, first, count, &maps);
-              });
+  const SpectrumTables tables(options, prefilter_alpha);
+  const int texels = maps.num_texels;
+  const int pieces = (texels + kTexelsPerPiece - 1) / kTexelsPerPiece;
+  ParallelFor(pieces, num_threads, [&](int64_t index, int) {
+    const int first = static_cast<int>(index) * kTexelsPerPiece;
+    const int count = std::min(kTexelsPerPiece, texels - first);
+    for (int c = 0; c < 3; ++c) {
+      EvaluatePiece(spectra, options, tables, c, first, count, &maps);
+    }
+  });
   return maps;
 }
 

@@ -82,22 +82,55 @@ Result EntropyOf(const SpectrumGrid& g, const Vf* A, const Vf* B) {
   return out;
 }
 
+Vf LoadFirst(const float* p, size_t bytes) {
+  Vf v = {};
+  std::memcpy(&v, p, bytes);
+  return v;
+}
+
+// A and B of one vector of signals, from signal `first` on.
+void Signals(const SpectrumGrid& grid, const SpectrumScale& scale,
+             const SpectrumSignals& signals, int first, size_t bytes, Vf* A,
+             Vf* B) {
+  Vf factor = Splat(1.0f);
+  if (scale.outgoing_0 != nullptr) {
+    factor = LoadFirst(scale.outgoing_0 + first, bytes);
+  }
+  for (int l = 0; l < grid.num_degrees; ++l) {
+    A[l] = LoadFirst(signals.incoming + l * signals.stride + first, bytes);
+    B[l] = LoadFirst(signals.outgoing + l * signals.stride + first, bytes);
+    Vf unit = factor * scale.scale[l];
+    if (scale.relative_floor > 0.0f) {
+      const Vf size = A[l] + scale.relative_floor;
+      unit /= scale.roots ? Sqrt(size) : size;
+    }
+    if (scale.roots) {
+      A[l] = Sqrt(A[l]);
+      B[l] = Sqrt(B[l]);
+    }
+    A[l] = Min(A[l] * unit, Splat(kLargestSignal));
+    B[l] = Min(B[l] * unit, Splat(kLargestSignal));
+  }
+}
+
 }  // namespace
 
-void SpectrumEntropy(const SpectrumGrid& grid, const SpectrumSignals& signals) {
+void SpectrumEntropy(const SpectrumGrid& grid, const SpectrumScale& scale,
+                     const SpectrumSignals& signals) {
   constexpr int kMostDegrees = 16;
   Vf A[kMostDegrees], B[kMostDegrees];
   for (int first = 0; first < signals.count; first += kLanes) {
     const int rest = signals.count - first;
     const size_t bytes = sizeof(float) * (rest < kLanes ? rest : kLanes);
-    for (int l = 0; l < grid.num_degrees; ++l) {
-      A[l] = B[l] = Vf{};
-      std::memcpy(&A[l], signals.incoming + l * signals.stride + first, bytes);
-      std::memcpy(&B[l], signals.outgoing + l * signals.stride + first, bytes);
-    }
+    Signals(grid, scale, signals, first, bytes, A, B);
     const Result r = EntropyOf(grid, A, B);
+    Vf size = {};
+    for (int l = 0; l < grid.num_degrees; ++l) size += B[l] * B[l];
+    const Vf misfit =
+        Select(size > 0.0f, Min(r.distance / size, Splat(1.0f)), Vf{});
     std::memcpy(signals.entropy + first, &r.entropy, bytes);
     std::memcpy(signals.distance + first, &r.distance, bytes);
+    std::memcpy(signals.misfit + first, &misfit, bytes);
     std::memcpy(signals.cell + first, &r.cell, bytes);
   }
 }
