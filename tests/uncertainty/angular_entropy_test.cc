@@ -238,6 +238,20 @@ TEST(AngularEntropy, DoesNotDependOnTheExposureOrThreads) {
   }
 }
 
+TEST(AngularEntropy, DoesNotDependOnTheAxesOfTheFrame) {
+  constexpr float kTurned = 1e-4f;
+  const TexelSamples samples = ModelSamples({}, 0.1, 0.5, 0.2);
+  TexelSamples turned = samples;
+  for (size_t k = 0; k < samples.weight.size(); ++k) {
+    turned.directions[3 * k] = -samples.directions[3 * k + 1];
+    turned.directions[3 * k + 1] = samples.directions[3 * k];
+  }
+  const EntropyMaps maps = Evaluate(samples), other = Evaluate(turned);
+  for (size_t k = 0; k < maps.entropy.size(); ++k) {
+    EXPECT_NEAR(maps.entropy[k], other.entropy[k], kTurned);
+  }
+}
+
 TEST(AngularEntropy, IsFiniteForAnyInput) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const float value : {0.0f, -1.0f, 1e-30f, 1e-19f, 1e-10f, 1e10f, 3e38f,

@@ -194,6 +194,23 @@ TEST(SpectrumEntropy, DoesNotDependOnThreadsOrTheOrderOfViews) {
   }
 }
 
+TEST(SpectrumEntropy, DoesNotDependOnTheAxesOfTheFrame) {
+  // What turning cameras, mesh and map together does to a texel.
+  constexpr float kTurned = 1e-4f;
+  const TexelSamples samples = Samples(40, 80, 0.15, 0.5, 0.3);
+  TexelSamples turned = samples;
+  const float c = std::cos(1.1f), s = std::sin(1.1f);
+  for (size_t k = 0; k < samples.weight.size(); ++k) {
+    const float* const w = &samples.directions[3 * k];
+    turned.directions[3 * k] = c * w[0] - s * w[1];
+    turned.directions[3 * k + 1] = s * w[0] + c * w[1];
+  }
+  const EntropyMaps maps = Evaluate(samples), other = Evaluate(turned);
+  for (size_t k = 0; k < maps.entropy.size(); ++k) {
+    EXPECT_NEAR(maps.entropy[k], other.entropy[k], kTurned);
+  }
+}
+
 TEST(SpectrumEntropy, FindsTheParametersOfItsOwnModel) {
   // A cell of the grid. 150 views of the half sphere determine the 16
   // harmonics, with so little regularisation.
