@@ -10,6 +10,10 @@ struct BruteForce {
   // [num_texels, 3]: entropy over log 512; the mean over cells of probability
   // times the error of (roughness, Ks, Kd) against the truth.
   std::vector<double> entropy, error;
+  // [num_texels, 3]: Laplace's approximation at the most probable cell, half
+  // the log determinant of the covariance, up to a constant. The curvature is
+  // that of exact renders, and a normal prior has the variance of the cube.
+  std::vector<double> laplace;
 };
 
 // p is proportional to exp(-mse / sharpness), the mean of squares over views.

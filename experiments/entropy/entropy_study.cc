@@ -68,12 +68,17 @@ Variant Angular(std::string name, AngularOptions options) {
   return out;
 }
 
-// The defaults, the published form, and each mended default undone.
-std::vector<Variant> Variants() {
-  std::vector<Variant> out;
+std::string Named(const char* format, double value) {
+  char name[60];
+  std::snprintf(name, sizeof(name), format, value);
+  return name;
+}
+
+// The published form, the defaults, and each mended default undone.
+void AddSpectrumVariants(std::vector<Variant>* variants) {
+  std::vector<Variant>& out = *variants;
   for (const double denominator : {1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
-    char name[40];
-    std::snprintf(name, sizeof(name), "published %g", denominator);
+    const std::string name = Named("published %g", denominator);
     out.push_back(Spectrum(name, SpectrumOptions::Published(denominator)));
   }
   out.push_back(Spectrum("spectrum", {}));
@@ -98,20 +103,22 @@ std::vector<Variant> Variants() {
   s.fit.order = 8;
   out.push_back(Spectrum("spectrum, order 8", s));
   for (const double sigma : {0.025, 0.035, 0.07, 0.1, 0.14}) {
-    char name[40];
-    std::snprintf(name, sizeof(name), "spectrum, sigma %g", sigma);
+    const std::string name = Named("spectrum, sigma %g", sigma);
     s = {};
     s.sigma = sigma;
     out.push_back(Spectrum(name, s));
   }
   for (const double sigma : {0.04, 0.15, 0.6}) {
-    char name[40];
-    std::snprintf(name, sizeof(name), "spectrum, Eq. 11, sigma %g", sigma);
+    const std::string name = Named("spectrum, Eq. 11, sigma %g", sigma);
     s = {};
     s.distance = SpectrumDistance::kPower;
     s.sigma = sigma;
     out.push_back(Spectrum(name, s));
   }
+}
+
+void AddAngularVariants(std::vector<Variant>* variants) {
+  std::vector<Variant>& out = *variants;
   out.push_back(Angular("angular", {}));
   AngularOptions a;
   a.filter = GlossFilter::kBeckmann;
@@ -132,19 +139,23 @@ std::vector<Variant> Variants() {
   a.fit.lambda = 1e-2;
   out.push_back(Angular("angular, lambda 0.01", a));
   for (const int order : {3, 8}) {
-    char name[40];
-    std::snprintf(name, sizeof(name), "angular, order %d", order);
+    const std::string name = Named("angular, order %g", order);
     a = {};
     a.fit.order = order;
     out.push_back(Angular(name, a));
   }
   for (const double sigma : {0.05, 0.1, 0.14}) {
-    char name[40];
-    std::snprintf(name, sizeof(name), "angular, sigma %g", sigma);
+    const std::string name = Named("angular, sigma %g", sigma);
     a = {};
     a.sigma = sigma;
     out.push_back(Angular(name, a));
   }
+}
+
+std::vector<Variant> Variants() {
+  std::vector<Variant> out;
+  AddSpectrumVariants(&out);
+  AddAngularVariants(&out);
   return out;
 }
 
@@ -183,6 +194,8 @@ void StudyCorrelation(const StudyScene& scene, const std::string& name) {
   const BruteForce brute = EvaluateBruteForce(scene, {}, kSharpness);
   const Numbers trivial = TrivialPredictor(scene.samples);
   PrintRow(name, "trivial", trivial, brute.entropy, trivial, brute.error, {});
+  PrintRow(name, "Laplace", brute.laplace, brute.entropy, trivial, brute.error,
+           {});
   for (const Variant& v : Variants()) {
     const EntropyMaps maps = Evaluate(v, scene.samples);
     PrintRow(name, v.name, Doubles(maps.entropy), brute.entropy, trivial,
@@ -226,8 +239,7 @@ std::vector<ViewVariant> ViewVariants() {
   o.spectrum.fit.lambda = 1e-2;
   add("lambda 0.01", o);
   for (const double sigma : {0.025, 0.1, 0.2}) {
-    char name[40];
-    std::snprintf(name, sizeof(name), "sigma %g", sigma);
+    const std::string name = Named("sigma %g", sigma);
     o = {};
     o.spectrum.sigma = sigma;
     add(name, o);

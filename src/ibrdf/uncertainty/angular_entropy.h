@@ -11,6 +11,7 @@ namespace ibrdf {
 // Wiersma et al. 2025, Eq. 20 to 25, at every view w:
 //   B(w) = Kd E / pi + F(theta) G(theta) [S_alpha * L](w),
 //   F = Ks + (1 - Ks) (1 - cos(theta))^5.
+// Kd is an albedo: the text has Kd E, the published code (1 - m) Kd E / pi.
 // The convolution is that of the harmonic fit to the light. Given alpha, B is
 // linear in (Kd, Ks), so that five sums over the views give the distance of
 // every (Kd, Ks): views are visited once an alpha. The published code has no
