@@ -26,6 +26,12 @@ class HarmonicBasis {
   // Y [count()] at a unit direction.
   void Evaluate(const Eigen::Vector3d& direction, double* Y) const;
 
+  // Constants of the recurrence over degrees, for kernels
+  // (harmonic_recurrence.h): P_ll at [l], up and down at [l (l + 1) / 2 + m].
+  const std::vector<double>& diagonal() const { return diagonal_; }
+  const std::vector<double>& up() const { return up_; }
+  const std::vector<double>& down() const { return down_; }
+
  private:
   friend class HarmonicProjection;
   // Legendre functions over sin^m(theta), with the norms of Y: [l, m] at

@@ -8,6 +8,8 @@
 #include "ibrdf/light/illumination_unet.h"
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/solvers/solve/solve.h"
+#include "ibrdf/uncertainty/angular_entropy.h"
+#include "ibrdf/uncertainty/spectrum_entropy.h"
 
 // The network reaches the kernels, compiled once per instruction set.
 bool InitialMapIsConstant() {
@@ -40,10 +42,36 @@ bool RefusesAnEmptyProblem() {
   return !ibrdf::SolveInverseRendering({}, nullptr, nullptr).ok();
 }
 
+// Two texels, of which views see one: the map of entropy tells them apart.
+bool MapsEntropy() {
+  ibrdf::TexelSamples samples;
+  samples.num_texels = 2;
+  samples.num_views = 3;
+  samples.weight = {1.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f};
+  for (int k = 0; k < 6; ++k) {
+    const float x = 0.6f * static_cast<float>(k % 3 - 1);
+    samples.directions.insert(samples.directions.end(),
+                              {x, 0.0f, x == 0.0f ? 1.0f : 0.8f});
+    samples.incoming.insert(samples.incoming.end(), 3, 1.0f + x);
+    samples.outgoing.insert(samples.outgoing.end(), 3, 0.5f + 0.5f * x);
+  }
+  const ibrdf::SpectrumEntropyEvaluator spectrum({});
+  const ibrdf::AngularEntropyEvaluator angular({});
+  for (const ibrdf::EntropyEvaluator* evaluator :
+       {static_cast<const ibrdf::EntropyEvaluator*>(&spectrum),
+        static_cast<const ibrdf::EntropyEvaluator*>(&angular)}) {
+    const auto maps = evaluator->Evaluate(samples, 1);
+    if (!maps.ok()) return false;
+    const std::vector<float> entropy = maps->MinimumEntropy();
+    if (!(entropy[0] < 1.0f) || entropy[1] != 1.0f) return false;
+  }
+  return true;
+}
+
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const bool ok = InitialMapIsConstant() && TableEqualsItself(argv[1]) &&
-                  RefusesAnEmptyProblem();
+                  RefusesAnEmptyProblem() && MapsEntropy();
   std::printf("%s\n", ok ? "ok" : "failed");
   return ok ? 0 : 1;
 }
