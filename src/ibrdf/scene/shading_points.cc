@@ -93,6 +93,7 @@ bool SeePoint(const Scene& scene, const Camera& camera, double x, double y,
   point->normal = hit.normal.cast<float>();
   point->wo = wo.cast<float>();
   point->position = hit.position;
+  point->texture = hit.texture;
   return true;
 }
 
