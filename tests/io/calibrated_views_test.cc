@@ -253,7 +253,9 @@ TEST(CalibratedViews, DamagedFiles) {
     for (const CalibratedView& view : *views) {
       EXPECT_EQ("", PoseFault(view.world_from_camera));
       const StatusOr<Camera> camera = CameraOf(view, 80, 60);
-      if (camera.ok()) EXPECT_TRUE(IsValidCamera(*camera));
+      if (camera.ok()) {
+        EXPECT_TRUE(IsValidCamera(*camera));
+      }
     }
   };
   const auto damage = [&](const std::string& bytes,

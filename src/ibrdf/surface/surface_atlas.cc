@@ -165,7 +165,7 @@ class Rasterizer {
 
   void AddPiece(const Corner corners[3], double twice, const Eigen::Vector3d& n,
                 double scale, int x, int y, const Polygon& polygon) {
-    Point at;
+    Point at = Point::Zero();
     const double covered = AreaOf(polygon, &at);
     if (!(covered > 0.0)) return;
     Piece& piece = pieces_[static_cast<size_t>(y) * atlas_.width + x];
