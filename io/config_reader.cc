@@ -162,6 +162,13 @@ bool ConfigReader::IsWord(const std::string& key,
   return node != nullptr && node->kind == Kind::kScalar && node->scalar == word;
 }
 
+bool ConfigReader::IsPath(const std::string& key) const {
+  const ConfigNode* node = Find(key);
+  double number = 0.0;
+  return node != nullptr && node->kind == Kind::kScalar &&
+         !node->scalar.empty() && !ParseNumber(*node, &number);
+}
+
 void ConfigReader::Fail(const std::string& key, const std::string& what) {
   context_->Fail(PathOf(key), what);
 }
@@ -293,16 +300,42 @@ void ConfigReader::NumberList(const std::string& key, const Range& range,
 }
 
 void ConfigReader::Pair(const std::string& key, const Range& range,
-                        Eigen::Vector2d* out) {
+                        bool one_for_all, Eigen::Vector2d* out) {
   const ConfigNode* node = Find(key);
   if (node == nullptr) return;
+  double value = 0.0;
+  if (one_for_all && ParseNumber(*node, &value) && Inside(value, range)) {
+    out->setConstant(value);
+    return;
+  }
   Eigen::Vector2d values;
   bool ok = node->kind == Kind::kList && node->items.size() == 2;
   for (int c = 0; ok && c < 2; ++c) {
     ok = ParseNumber(node->items[c], &values[c]) && Inside(values[c], range);
   }
   if (!ok) {
-    FailExpected(key, "a list of two, each " + RangeText(range));
+    const std::string number = RangeText(range);
+    FailExpected(key, one_for_all ? number + " or a list of two"
+                                  : "a list of two, each " + number);
+    return;
+  }
+  *out = values;
+}
+
+void ConfigReader::Matrix(const std::string& key, Eigen::Matrix4d* out) {
+  const ConfigNode* node = Find(key);
+  if (node == nullptr) return;
+  Eigen::Matrix4d values;
+  bool ok = node->kind == Kind::kList && node->items.size() == 4;
+  for (int i = 0; ok && i < 4; ++i) {
+    const ConfigNode& row = node->items[i];
+    ok = row.kind == Kind::kList && row.items.size() == 4;
+    for (int j = 0; ok && j < 4; ++j) {
+      ok = ParseNumber(row.items[j], &values(i, j));
+    }
+  }
+  if (!ok) {
+    FailExpected(key, "four lists of four numbers, the rows of a matrix");
     return;
   }
   *out = values;

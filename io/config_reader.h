@@ -44,6 +44,8 @@ class ConfigReader {
   const ConfigNode* Find(const std::string& key) const;
   std::string PathOf(const std::string& key) const;
   bool IsWord(const std::string& key, const std::string& word) const;
+  // Whether the value is text that is no number.
+  bool IsPath(const std::string& key) const;
 
   void Number(const std::string& key, const Range& range, double* out);
   void Integer(const std::string& key, int64_t low, int64_t high, int64_t* out);
@@ -58,8 +60,11 @@ class ConfigReader {
   void PathList(const std::string& key, std::vector<std::string>* out);
   void NumberList(const std::string& key, const Range& range,
                   std::vector<double>* out);
-  // A list of two numbers.
-  void Pair(const std::string& key, const Range& range, Eigen::Vector2d* out);
+  // A list of two numbers; with `one_for_all` one number stands for both.
+  void Pair(const std::string& key, const Range& range, bool one_for_all,
+            Eigen::Vector2d* out);
+  // A list of four lists of four numbers, the rows.
+  void Matrix(const std::string& key, Eigen::Matrix4d* out);
   // Three numbers; with `one_for_all` one number stands for three.
   void Triple(const std::string& key, const Range& range, bool one_for_all,
               Eigen::Vector3d* out);

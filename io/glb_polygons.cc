@@ -75,7 +75,7 @@ struct Part {
   std::string where;  // in the file
   size_t mode = 4;    // 4: triangles, 5: a strip, 6: a fan
   GltfNumbers positions;
-  std::optional<GltfNumbers> normals;
+  std::optional<GltfNumbers> normals, texture;
   std::optional<GltfNumbers> indices;  // below positions.count()
   size_t corners = 0;
 };
@@ -111,6 +111,7 @@ class GlbScene {
       return document_.Fail("faces", "expected at least one face");
     }
     if (all_have_normals_) mesh_.corner_normals = mesh_.corners;
+    UseVertexTexture(&mesh_);
     return std::move(mesh_);
   }
 
@@ -277,6 +278,7 @@ class GlbScene {
       }
       part.normals = *normals;
     }
+    part.texture = Texture(where, primitive, part.corners);
     if (primitive.contains("indices")) {
       IBRDF_RETURN_IF_ERROR(ReadIndices(primitive, &part));
     }
@@ -290,10 +292,10 @@ class GlbScene {
     return OkStatus();
   }
 
-  // Rows of three numbers of an attribute.
+  // Rows of three numbers of an attribute, or of so many.
   StatusOr<GltfNumbers> Attribute(const std::string& where,
-                                  const GltfJson& primitive,
-                                  const char* name) const {
+                                  const GltfJson& primitive, const char* name,
+                                  int components = 3) const {
     const auto attributes = primitive.find("attributes");
     size_t accessor = 0;
     if (attributes == primitive.end() ||
@@ -304,11 +306,24 @@ class GlbScene {
                                 " accessors");
     }
     StatusOr<GltfNumbers> numbers = document_.Numbers(accessor);
-    if (numbers.ok() && numbers->components() != 3) {
-      return document_.Fail("accessors[" + std::to_string(accessor) + "].type",
-                            std::string("expected VEC3 for ") + name);
+    if (numbers.ok() && numbers->components() != components) {
+      return document_.Fail(
+          "accessors[" + std::to_string(accessor) + "].type",
+          "expected VEC" + std::to_string(components) + " for " + name);
     }
     return numbers;
+  }
+
+  // TEXCOORD_0 of `count` vertices, where it is usable.
+  std::optional<GltfNumbers> Texture(const std::string& where,
+                                     const GltfJson& primitive, size_t count) {
+    const char* const name = "TEXCOORD_0";
+    if (!primitive.find("attributes")->contains(name)) return std::nullopt;
+    const StatusOr<GltfNumbers> numbers = Attribute(where, primitive, name, 2);
+    if (numbers.ok() && numbers->count() == count) return *numbers;
+    mesh_.texture_fault = "expected " + std::to_string(count) + " pairs of " +
+                          name + " at " + where;
+    return std::nullopt;
   }
 
   Status ReadIndices(const GltfJson& primitive, Part* part) const {
@@ -365,7 +380,16 @@ class GlbScene {
       AddNormals(*part.normals, mirrored ? Eigen::Matrix3d(-Cofactors(linear))
                                          : Cofactors(linear));
     }
+    if (part.texture.has_value()) AddTexture(*part.texture);
     return AddTriangles(part, first, mirrored);
+  }
+
+  // Its second coordinate runs down.
+  void AddTexture(const GltfNumbers& texture) {
+    for (size_t i = 0; i < texture.count(); ++i) {
+      const double uv[2] = {texture.At(i, 0), 1.0 - texture.At(i, 1)};
+      AppendTexture(uv, &mesh_);
+    }
   }
 
   Status AddPositions(const Part& part,

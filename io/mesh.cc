@@ -220,6 +220,7 @@ TriangleMesh ToTriangles(const std::string& path, const PolygonMesh& polygons,
                          MeshNotes* notes) {
   TriangleMesh result;
   notes->origin = FarOrigin(polygons);
+  notes->texture_fault = polygons.texture_fault;
   VertexJoiner joiner(polygons, notes->origin, &result);
   std::vector<Eigen::Vector3d> polygon;
   size_t first = 0;
@@ -233,6 +234,11 @@ TriangleMesh ToTriangles(const std::string& path, const PolygonMesh& polygons,
       result.triangles.push_back({joiner.Vertex(first + i),
                                   joiner.Vertex(first + j),
                                   joiner.Vertex(first + k)});
+      if (polygons.corner_texture.empty()) return;
+      const auto uv = [&](int corner) {
+        return polygons.texture[polygons.corner_texture[first + corner]];
+      };
+      result.texture.push_back({uv(i), uv(j), uv(k)});
     });
     first += static_cast<size_t>(size);
   }
@@ -257,7 +263,7 @@ PolygonParser* ParserOf(const std::string& path) {
   return nullptr;
 }
 
-Status UnknownExtension(const std::string& path) {
+Status UnknownMeshExtension(const std::string& path) {
   return InvalidInput(path + ": extension",
                       FileExtension(path) == "gltf"
                           ? "expected .glb, glTF in one file with its buffer"
@@ -267,7 +273,7 @@ Status UnknownExtension(const std::string& path) {
 }  // namespace
 
 StatusOr<TriangleMesh> ReadMesh(const std::string& path, MeshNotes* notes) {
-  if (ParserOf(path) == nullptr) return UnknownExtension(path);
+  if (ParserOf(path) == nullptr) return UnknownMeshExtension(path);
   const StatusOr<std::string> bytes = ReadFile(path, kMaxMeshFileBytes);
   if (!bytes.ok()) return bytes.status();
   return DecodeMesh(path, *bytes, notes);
@@ -276,7 +282,7 @@ StatusOr<TriangleMesh> ReadMesh(const std::string& path, MeshNotes* notes) {
 StatusOr<TriangleMesh> DecodeMesh(const std::string& path,
                                   const std::string& bytes, MeshNotes* notes) {
   PolygonParser* const parse = ParserOf(path);
-  if (parse == nullptr) return UnknownExtension(path);
+  if (parse == nullptr) return UnknownMeshExtension(path);
   const StatusOr<PolygonMesh> polygons = parse(path, bytes);
   if (!polygons.ok()) return polygons.status();
   MeshNotes unused;

@@ -14,13 +14,17 @@ struct MeshNotes {
   // origin.
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<std::string> warnings;  // sentences that name the file
+  // Why the mesh has no texture coordinates although the file has some,
+  // beginning "expected"; else empty.
+  std::string texture_fault;
 };
 
 // Reads .obj, .ply, .stl or .glb (by extension, in any case; others are
 // refused). All objects and groups become one mesh, and so do the nodes of a
 // GLB's scene, each in its place; polygons are cut into triangles; lines
-// and points are dropped, and so are vertices that no face uses. Materials and
-// texture coordinates are ignored.
+// and points are dropped, and so are vertices that no face uses. Materials are
+// ignored. Texture coordinates are kept where every face corner has finite
+// ones.
 // Coordinates far from the origin against the mesh's size, as georeferenced
 // ones are, are taken from its centre before they become floats
 // (notes->origin). Vertices are joined by position, so shading is smooth across

@@ -35,8 +35,9 @@ class LineReader {
   }
 
   std::string Where(const std::string& path) const {
-    return path + ": line " + std::to_string(line_);
+    return path + ": " + Line();
   }
+  std::string Line() const { return "line " + std::to_string(line_); }
 
  private:
   std::string_view text_;
@@ -86,11 +87,68 @@ std::string Joined(const std::vector<std::string_view>& words) {
 struct Counts {
   int64_t vertices = 0;
   int64_t normals = 0;
+  int64_t texture = 0;
 
   void Add(std::string_view keyword) {
     vertices += keyword == "v";
     normals += keyword == "vn";
+    texture += keyword == "vt";
   }
+};
+
+// The text between the first and the second slash of a corner, if any.
+std::string_view TextureWord(std::string_view corner) {
+  const size_t first = corner.find('/');
+  if (first == std::string_view::npos) return {};
+  return corner.substr(first + 1, corner.find('/', first + 1) - first - 1);
+}
+
+// Reads the texture coordinates of a file; the first fault ends it.
+class ObjTexture {
+ public:
+  // total: of the file. some, all: corners that have texture coordinates.
+  ObjTexture(const Counts& total, bool some, bool all, PolygonMesh* mesh)
+      : total_(total), mesh_(mesh), used_(some && all) {
+    if (some && !all) {
+      Fail("expected texture coordinates (vt) on all faces or on none");
+    }
+  }
+
+  // "vt u v" or "vt u".
+  void AddCoordinates(const std::vector<std::string_view>& words,
+                      const LineReader& at) {
+    if (!used_) return;
+    double uv[2] = {0.0, 0.0};
+    bool ok = words.size() > 1 && ParseNumber(words[1], &uv[0]);
+    if (ok && words.size() > 2) ok = ParseNumber(words[2], &uv[1]);
+    if (!ok || !AppendTexture(uv, mesh_)) {
+      Fail("expected vt and finite numbers at " + at.Line());
+    }
+  }
+
+  void AddCorner(std::string_view word, const Counts& so_far,
+                 const LineReader& at) {
+    if (!used_) return;
+    int64_t index = 0;
+    if (!Resolve(TextureWord(word), so_far.texture, total_.texture, &index)) {
+      Fail("expected indices of the file's " + std::to_string(total_.texture) +
+           " texture coordinates (vt) at " + at.Line());
+      return;
+    }
+    mesh_->corner_texture.push_back(static_cast<int>(index - 1));
+  }
+
+ private:
+  void Fail(const std::string& what) {
+    used_ = false;
+    mesh_->texture.clear();
+    mesh_->corner_texture.clear();
+    mesh_->texture_fault = what;
+  }
+
+  const Counts& total_;
+  PolygonMesh* mesh_;
+  bool used_;
 };
 
 // Vertex and normal of the corner "v", "v/t", "v//n" or "v/t/n"; normal 0 where
@@ -112,51 +170,72 @@ bool ParseCorner(std::string_view word, const Counts& so_far,
                  normal);
 }
 
+// What is there, so that indices can be checked before they are passed on.
+struct ObjSurvey {
+  Counts total;
+  bool has_faces = false;
+  bool all_have_normals = true;  // the corners of faces
+  bool some_have_texture = false, all_have_texture = true;
+
+  void AddCorner(std::string_view word) {
+    const size_t first = word.find('/');
+    const size_t second =
+        first == std::string_view::npos ? first : word.find('/', first + 1);
+    all_have_normals = all_have_normals && second != std::string_view::npos &&
+                       second + 1 < word.size();
+    const bool has_texture = !TextureWord(word).empty();
+    some_have_texture = some_have_texture || has_texture;
+    all_have_texture = all_have_texture && has_texture;
+  }
+};
+
+Status SurveyObj(const std::string& path, std::string_view text,
+                 ObjSurvey* survey) {
+  std::vector<std::string_view> words;
+  LineReader reader(text);
+  while (reader.Next(&words)) {
+    if (words.empty()) continue;
+    if (!IsPlain(words[0])) {
+      return InvalidInput(reader.Where(path),
+                          "expected a keyword of OBJ, found bytes that are no "
+                          "text");
+    }
+    survey->total.Add(words[0]);
+    if (words[0] != "f") continue;
+    survey->has_faces = true;
+    for (size_t i = 1; i < words.size(); ++i) survey->AddCorner(words[i]);
+  }
+  if (!survey->has_faces) {
+    return InvalidInput(path + ": faces", "expected at least one face");
+  }
+  return OkStatus();
+}
+
 }  // namespace
 
 StatusOr<PolygonMesh> ParseObj(const std::string& path,
                                const std::string& bytes) {
-  // What is there, so that indices can be checked before they are passed on.
-  Counts total;
-  bool all_have_normals = true, has_faces = false;
-  std::vector<std::string_view> words;
   const std::string_view text = WithoutByteOrderMark(bytes);
-  LineReader survey(text);
-  while (survey.Next(&words)) {
-    if (words.empty()) continue;
-    if (!IsPlain(words[0])) {
-      return InvalidInput(survey.Where(path),
-                          "expected a keyword of OBJ, found bytes that are no "
-                          "text");
-    }
-    total.Add(words[0]);
-    if (words[0] != "f") continue;
-    has_faces = true;
-    for (size_t i = 1; i < words.size(); ++i) {
-      const size_t first = words[i].find('/');
-      const size_t second = first == std::string_view::npos
-                                ? first
-                                : words[i].find('/', first + 1);
-      all_have_normals = all_have_normals && second != std::string_view::npos &&
-                         second + 1 < words[i].size();
-    }
-  }
-  if (!has_faces) {
-    return InvalidInput(path + ": faces", "expected at least one face");
-  }
-
+  ObjSurvey survey;
+  IBRDF_RETURN_IF_ERROR(SurveyObj(path, text, &survey));
+  const Counts& total = survey.total;
   PolygonMesh mesh;
+  ObjTexture texture(total, survey.some_have_texture, survey.all_have_texture,
+                     &mesh);
+  std::vector<std::string_view> words;
   Counts so_far;
   LineReader reader(text);
   while (reader.Next(&words)) {
     if (words.empty()) continue;
     so_far.Add(words[0]);
-    if (words[0] == "v" || (words[0] == "vn" && all_have_normals)) {
+    if (words[0] == "v" || (words[0] == "vn" && survey.all_have_normals)) {
       if (!AppendVector(words, &mesh)) {
         return InvalidInput(
             reader.Where(path),
             "expected three finite numbers, found '" + Joined(words) + "'");
       }
+    } else if (words[0] == "vt") {
+      texture.AddCoordinates(words, reader);
     } else if (words[0] == "f") {
       if (words.size() < 4 || words.size() > size_t{kMaxPolygonCorners} + 1) {
         return InvalidInput(
@@ -175,9 +254,10 @@ StatusOr<PolygonMesh> ParseObj(const std::string& path,
                                   std::to_string(total.normals) + " normals");
         }
         mesh.corners.push_back(static_cast<int>(vertex - 1));
-        if (all_have_normals) {
+        if (survey.all_have_normals) {
           mesh.corner_normals.push_back(static_cast<int>(normal - 1));
         }
+        texture.AddCorner(words[i], so_far, reader);
       }
     }
   }

@@ -221,12 +221,15 @@ bool FitsInto(const Element& element, Format format, size_t left) {
   return row == 0 || static_cast<size_t>(element.count) <= (left + 1) / row;
 }
 
-// Slots of x y z nx ny nz; -1 for other properties.
+// Slots of x y z nx ny nz s t; -1 for other properties.
 int VertexSlot(const std::string& name) {
-  static constexpr const char* kSlots[] = {"x", "y", "z", "nx", "ny", "nz"};
-  for (int i = 0; i < 6; ++i) {
+  static constexpr const char* kSlots[] = {"x",  "y",  "z", "nx",
+                                           "ny", "nz", "s", "t"};
+  for (int i = 0; i < 8; ++i) {
     if (name == kSlots[i]) return i;
   }
+  if (name == "u" || name == "texture_u") return 6;
+  if (name == "v" || name == "texture_v") return 7;
   return -1;
 }
 
@@ -253,6 +256,7 @@ class ElementReader {
       return InvalidInput(path_ + ": vertex", "expected properties x, y and z");
     }
     has_normals_ = is_vertex_ && (slots_found & 56u) == 56u;
+    has_texture_ = is_vertex_ && (slots_found & 192u) == 192u;
     if (element_.properties.empty()) return OkStatus();
     for (row_ = 0; row_ < element_.count; ++row_) {
       IBRDF_RETURN_IF_ERROR(ReadRow());
@@ -266,7 +270,7 @@ class ElementReader {
   }
 
   Status ReadRow() {
-    double slots[6] = {};
+    double slots[8] = {};
     for (const Property& p : element_.properties) {
       double value = 0.0;
       if (!numbers_->Next(p.is_list ? p.count_type : p.type, &value)) {
@@ -284,6 +288,7 @@ class ElementReader {
       return InvalidInput(Where(), "expected finite coordinates");
     }
     if (has_normals_) AppendNormal(slots + 3, mesh_);
+    if (has_texture_) AppendTexture(slots + 6, mesh_);
     return OkStatus();
   }
 
@@ -334,7 +339,7 @@ class ElementReader {
   NumberReader* numbers_;
   PolygonMesh* mesh_;
   const bool is_vertex_, is_strip_, has_corners_;
-  bool has_normals_ = false;
+  bool has_normals_ = false, has_texture_ = false;
   int64_t row_ = 0;
   std::vector<int> strip_;
 };
@@ -374,6 +379,7 @@ StatusOr<PolygonMesh> ParsePly(const std::string& path,
     }
   }
   if (mesh.normals.size() == vertices) mesh.corner_normals = mesh.corners;
+  UseVertexTexture(&mesh);
   return mesh;
 }
 

@@ -15,6 +15,26 @@ void AppendNormal(const double xyz[3], PolygonMesh* mesh) {
   mesh->normals.push_back(v.allFinite() ? v : Eigen::Vector3f::Zero().eval());
 }
 
+bool AppendTexture(const double uv[2], PolygonMesh* mesh) {
+  const Eigen::Vector2f v = Eigen::Map<const Eigen::Vector2d>(uv).cast<float>();
+  mesh->texture.push_back(v);
+  if (v.allFinite()) return true;
+  mesh->texture_fault = "expected finite texture coordinates";
+  return false;
+}
+
+void UseVertexTexture(PolygonMesh* mesh) {
+  if (mesh->texture.empty()) return;
+  if (mesh->texture.size() != mesh->vertices.size()) {
+    mesh->texture_fault = "expected texture coordinates on all faces";
+  }
+  if (mesh->texture_fault.empty()) {
+    mesh->corner_texture = mesh->corners;
+  } else {
+    mesh->texture.clear();
+  }
+}
+
 bool AppendTriangle(int a, int b, int c, PolygonMesh* mesh) {
   if (a == b || b == c || c == a) return true;
   if (mesh->sizes.size() >= kMaxStripTriangles) return false;

@@ -20,6 +20,13 @@ struct PolygonMesh {
   std::vector<int> corners;  // vertex of each corner, face after face
   // Normal of each corner; empty unless the file has one for every corner.
   std::vector<int> corner_normals;
+  // Texture coordinates, (0, 0) at the bottom left of the picture, and those of
+  // each corner; empty unless the file has finite ones for every corner.
+  std::vector<Eigen::Vector2f> texture;
+  std::vector<int> corner_texture;
+  // Why there are none, beginning "expected"; empty where the file has none at
+  // all. No error of the mesh, which needs none.
+  std::string texture_fault;
 };
 
 // All return at least one face and indices in range. They refuse what has no
@@ -27,13 +34,15 @@ struct PolygonMesh {
 // polygons of more than kMaxPolygonCorners corners; the message names file and
 // line (OBJ), element (PLY), line or triangle (STL), or key (GLB).
 
-// `bytes`: OBJ text. Everything but vertices, normals and faces is left out.
+// `bytes`: OBJ text. Everything but vertices, normals, texture coordinates and
+// faces is left out.
 StatusOr<PolygonMesh> ParseObj(const std::string& path,
                                const std::string& bytes);
 
-// `bytes`: PLY, ascii or binary of either byte order. Uses x y z and nx ny nz
-// of the element "vertex" and vertex_indices (or vertex_index) of "face" and of
-// "tristrips", in which -1 begins another strip.
+// `bytes`: PLY, ascii or binary of either byte order. Uses x y z, nx ny nz and
+// s t (or u v, texture_u texture_v) of the element "vertex" and vertex_indices
+// (or vertex_index) of "face" and of "tristrips", in which -1 begins another
+// strip.
 StatusOr<PolygonMesh> ParsePly(const std::string& path,
                                const std::string& bytes);
 
@@ -44,9 +53,9 @@ StatusOr<PolygonMesh> ParseStl(const std::string& path,
 
 // `bytes`: glTF 2.0 in one file. The meshes of the scene (the first where the
 // file names none; all where it has none), each placed by its node, with their
-// normals if all have some. Triangles, strips and fans are read, lines and
-// points left out. Compressed and sparse data, skeletons, morphs and buffers in
-// other files are refused by name.
+// normals if all have some, and TEXCOORD_0 likewise. Triangles, strips and fans
+// are read, lines and points left out. Compressed and sparse data, skeletons,
+// morphs and buffers in other files are refused by name.
 StatusOr<PolygonMesh> ParseGlb(const std::string& path,
                                const std::string& bytes);
 
@@ -54,6 +63,11 @@ StatusOr<PolygonMesh> ParseGlb(const std::string& path,
 bool AppendVertex(const double xyz[3], PolygonMesh* mesh);
 // Adds a normal; zero where a number is not finite as a float.
 void AppendNormal(const double xyz[3], PolygonMesh* mesh);
+// Adds texture coordinates; false, with a fault, where they are not finite as
+// floats.
+bool AppendTexture(const double uv[2], PolygonMesh* mesh);
+// Takes those of the vertices for their corners, where each has some.
+void UseVertexTexture(PolygonMesh* mesh);
 // Adds a triangle, or nothing where two corners are one; false beyond
 // kMaxStripTriangles faces.
 bool AppendTriangle(int a, int b, int c, PolygonMesh* mesh);

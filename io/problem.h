@@ -60,6 +60,23 @@ struct ImageSpec {
   int height = 0;
 };
 
+// One of several views.
+struct ViewSpec {
+  std::string name;  // ViewNameFault; unlike the others'
+  Camera camera;
+};
+
+// Several views: at most one of the three is set.
+struct ViewsSpec {
+  std::vector<ViewSpec> list;
+  std::string transforms;  // .json
+  std::string colmap;      // a folder
+
+  bool given() const {
+    return !list.empty() || !transforms.empty() || !colmap.empty();
+  }
+};
+
 enum class GeometryKind { kSphere, kMesh, kNormals, kDepth };
 enum class MeshFit { kUnitSphere, kNone };
 // As the picture has them: toward the camera, away from it.
@@ -117,6 +134,26 @@ struct PaintSpec {
   std::optional<Eigen::Array3d> unpainted_albedo = Eigen::Array3d::Ones();
 };
 
+// A number for all channels, three, or a texture over the surface.
+struct SurfaceValue {
+  Eigen::Array3d value;
+  std::string texture;  // any of photo_file.h; empty: `value`
+};
+
+// The principled BRDF (brdf/disney.h); of roughness, metallic and specular the
+// three numbers are one.
+struct PrincipledSpec {
+  SurfaceValue base{Eigen::Array3d::Constant(0.5), ""};
+  SurfaceValue roughness{Eigen::Array3d::Constant(0.5), ""};
+  SurfaceValue metallic{Eigen::Array3d::Zero(), ""};
+  SurfaceValue specular{Eigen::Array3d::Constant(0.5), ""};
+
+  bool textured() const {
+    return !(base.texture.empty() && roughness.texture.empty() &&
+             metallic.texture.empty() && specular.texture.empty());
+  }
+};
+
 struct ReflectanceSpec {
   // Unknown reflectance.
   std::string model;         // trained model; empty: the default one
@@ -127,9 +164,13 @@ struct ReflectanceSpec {
   // Known reflectance: at most one is set.
   std::string known_file;                // MERL .binary
   std::optional<CookTorrance> analytic;  // `lambertian` too: specular 0
-  std::optional<PaintSpec> paint;        // over either
+  std::optional<PrincipledSpec> principled;
+  std::optional<PaintSpec> paint;  // over any of these
 
-  bool known() const { return !known_file.empty() || analytic.has_value(); }
+  bool known() const {
+    return !known_file.empty() || analytic.has_value() ||
+           principled.has_value();
+  }
 };
 
 // kAuto stands in files alone: a problem that was read has one of the others.
@@ -245,8 +286,9 @@ struct Problem {
   std::string path;  // of the file it was read from
   ProblemKind kind = ProblemKind::kJoint;
   ImageSpec image;
-  Camera camera;
-  bool camera_placed = false;  // from or to was given
+  Camera camera;               // the view's, where `views` lists one
+  bool camera_placed = false;  // from, to or a pose was given
+  ViewsSpec views;
   GeometrySpec geometry;
   ReflectanceSpec reflectance;
   IlluminationSpec illumination;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ibrdf/io/atomic_file.h"
+#include "ibrdf/io/calibrated_views.h"
 #include "ibrdf/io/image_limits.h"
 #include "ibrdf/io/problem_reader.h"
 #include "ibrdf/io/renamed_keys.h"
@@ -42,20 +43,92 @@ void ReadImageSpec(ProblemReader reader, ImageSpec* image) {
   }
 }
 
+void ReadPose(ProblemReader* reader, Camera* camera) {
+  const char* const name = "world_from_camera";
+  std::optional<Eigen::Matrix4d>& pose = camera->world_from_camera;
+  reader->Read(name, &pose);
+  if (!reader->Has(name)) return;
+  for (const char* key : {"from", "to", "up"}) {
+    if (reader->Has(key)) reader->Fail(key, "expected without a pose");
+  }
+  if (!pose.has_value()) return;
+  const std::string fault = PoseFault(*pose);
+  if (fault.empty()) {
+    pose = NearestPose(*pose);
+  } else {
+    reader->Fail(name, fault);
+  }
+}
+
+void ReadLens(ProblemReader* reader, Camera* camera) {
+  reader->Read("fov_degrees", &camera->fov_degrees);
+  reader->Read("focal_pixels", &camera->focal_pixels);
+  reader->Read("centre_pixels", &camera->centre_pixels);
+  if (reader->Has("focal_pixels") && reader->Has("fov_degrees")) {
+    reader->Fail("fov_degrees", "expected without focal_pixels");
+  }
+}
+
 void ReadCamera(ProblemReader reader, Camera* camera) {
   reader.Read("type", &camera->type);
   const bool perspective = camera->type == CameraType::kPerspective;
-  for (const char* key : {"fov_degrees", "from", "to", "up"}) {
+  for (const char* key :
+       {"fov_degrees", "from", "to", "up", "focal_pixels", "centre_pixels"}) {
     reader.CheckNeeds(key, perspective);
   }
+  ReadPose(&reader, camera);
   if (!perspective) return;
-  reader.Read("fov_degrees", &camera->fov_degrees);
+  ReadLens(&reader, camera);
   reader.Read("from", &camera->from);
   reader.Read("to", &camera->to);
   reader.Read("up", &camera->up);
   if (!IsValidCamera(*camera)) {
     reader.Fail(
         "expected `from` apart from `to` and `up` not parallel to the view");
+  }
+}
+
+// One of a list.
+void ReadView(const ProblemReader& root, const std::string& shown,
+              const ConfigNode& node, std::vector<ViewSpec>* views) {
+  ConfigReader reader = root.Other(shown, node, {"name", "camera"});
+  ViewSpec view;
+  reader.Text("name", &view.name);
+  if (!reader.Has("name")) reader.FailExpected("name", "the view's name");
+  const std::string fault = ViewNameFault(view.name);
+  if (!fault.empty()) reader.Fail("name", fault);
+  for (const ViewSpec& other : *views) {
+    if (other.name != view.name) continue;
+    reader.Fail("name", "expected a name that no other view has");
+  }
+  ReadCamera(root.Like("camera", shown + ".camera", reader.Find("camera")),
+             &view.camera);
+  views->push_back(view);
+}
+
+void ReadViews(ProblemReader* root, ViewsSpec* views) {
+  const ConfigNode* node = root->Find("views");
+  if (node == nullptr) return;
+  if (root->Has("camera")) {
+    root->Fail("views", "expected without camera");
+  }
+  if (node->kind == Kind::kList) {
+    if (node->items.empty() || node->items.size() > kMaxViews) {
+      root->FailExpected(
+          "views", "a list of 1 to " + std::to_string(kMaxViews) + " views");
+      return;
+    }
+    for (size_t i = 0; i < node->items.size(); ++i) {
+      ReadView(*root, "views[" + std::to_string(i) + "]", node->items[i],
+               &views->list);
+    }
+    return;
+  }
+  ProblemReader reader = root->Below("views");
+  reader.Read("transforms", &views->transforms);
+  reader.Read("colmap", &views->colmap);
+  if (reader.Has("transforms") == reader.Has("colmap")) {
+    reader.Fail("expected a list, or one of transforms and colmap");
   }
 }
 
@@ -134,8 +207,25 @@ void ReadShape(ProblemReader* reader, bool perspective,
   }
 }
 
+// One picture's geometry.
+void CheckOneView(ProblemReader* reader, const ViewsSpec& views,
+                  const GeometrySpec& geometry) {
+  if (!views.given() || views.list.size() == 1) return;
+  if (geometry.HasNormalMap()) {
+    reader->Fail("expected a sphere or a mesh with several views: a map of " +
+                 std::string(geometry.kind == GeometryKind::kDepth
+                                 ? "depth"
+                                 : "normals") +
+                 " is of one");
+  } else if (geometry.outline.has_value()) {
+    reader->Fail("sphere",
+                 "expected {} with several views: centre and radius are of "
+                 "one picture");
+  }
+}
+
 void ReadGeometry(ProblemReader reader, bool perspective,
-                  GeometrySpec* geometry) {
+                  const ViewsSpec& views, GeometrySpec* geometry) {
   int found = 0;
   for (const char* key : {"sphere", "mesh", "normals", "depth"}) {
     found += reader.Has(key);
@@ -151,8 +241,10 @@ void ReadGeometry(ProblemReader reader, bool perspective,
     reader.CheckNeeds(key, reader.Has("normals"));
   }
   ReadShape(&reader, perspective, geometry);
+  if (views.given() && reader.Has("mesh")) geometry->fit = MeshFit::kNone;
   reader.Read("fit", &geometry->fit);
   geometry->fit_stated = reader.Has("fit");
+  CheckOneView(&reader, views, *geometry);
   ReadFrame(&reader, &geometry->frame);
   reader.Read("encoding", &geometry->encoding);
 }
@@ -161,7 +253,7 @@ void ReadGeometry(ProblemReader reader, bool perspective,
 void CheckCameraStays(ProblemReader camera, const GeometrySpec& geometry) {
   if (!geometry.HasNormalMap()) return;
   const bool depth = geometry.kind == GeometryKind::kDepth;
-  for (const char* key : {"from", "to", "up"}) {
+  for (const char* key : {"from", "to", "up", "world_from_camera"}) {
     if (!camera.Has(key)) continue;
     camera.Fail(key, std::string("expected without geometry.") +
                          (depth ? "depth" : "normals") +
@@ -179,12 +271,29 @@ void ReadPaint(ProblemReader* reader, std::optional<PaintSpec>* paint) {
   reader->Read("unpainted_albedo", &(*paint)->unpainted_albedo);
 }
 
+void ReadPrincipled(ProblemReader reader, PrincipledSpec* principled) {
+  reader.Read("base", &principled->base);
+  reader.Read("roughness", &principled->roughness);
+  reader.Read("metallic", &principled->metallic);
+  reader.Read("specular", &principled->specular);
+}
+
 void ReadKnownBrdf(ProblemReader reader, ReflectanceSpec* reflectance) {
   ReadPaint(&reader, &reflectance->paint);
   if (reader.Has("brdf") + reader.Has("lambertian") +
-          reader.Has("cook_torrance") !=
+          reader.Has("cook_torrance") + reader.Has("principled") !=
       1) {
-    reader.Fail("expected a file or one of brdf, lambertian and cook_torrance");
+    reader.Fail(
+        "expected a file or one of brdf, lambertian, cook_torrance and "
+        "principled");
+    return;
+  }
+  if (reader.Has("principled")) {
+    reflectance->principled.emplace();
+    ReadPrincipled(reader.Below("principled"), &*reflectance->principled);
+    if (reflectance->principled->textured() && reader.Has("albedo")) {
+      reader.Fail("albedo", "expected without textures");
+    }
     return;
   }
   if (reader.Has("brdf")) {
@@ -400,11 +509,15 @@ void ReadKeys(ProblemReader root, Problem* problem) {
   root.Read("problem", &problem->kind);
   ReadImageSpec(root.Below("image"), &problem->image);
   ReadCamera(root.Below("camera"), &problem->camera);
+  ReadViews(&root, &problem->views);
+  const std::vector<ViewSpec>& list = problem->views.list;
+  if (list.size() == 1) problem->camera = list[0].camera;
   ReadGeometry(root.Below("geometry"),
-               problem->camera.type == CameraType::kPerspective,
+               problem->camera.type == CameraType::kPerspective, problem->views,
                &problem->geometry);
-  problem->camera_placed =
-      root.Below("camera").Has("from") || root.Below("camera").Has("to");
+  problem->camera_placed = problem->camera.world_from_camera.has_value() ||
+                           root.Below("camera").Has("from") ||
+                           root.Below("camera").Has("to");
   CheckCameraStays(root.Below("camera"), problem->geometry);
   ReadReflectance(root.Below("reflectance"), &problem->reflectance);
   ReadIllumination(root.Below("illumination"), &problem->illumination);
@@ -476,8 +589,18 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
                                        ? problem.reflectance.paint->albedo
                                        : ""},
       {"illumination.known", problem.illumination.known_file},
+      {"views.transforms", problem.views.transforms},
+      {"views.colmap", problem.views.colmap},
       {"truth.brdf", problem.truth.brdf},
       {"truth.illumination", problem.truth.illumination}};
+  if (problem.reflectance.principled.has_value()) {
+    const PrincipledSpec& values = *problem.reflectance.principled;
+    const std::string key = "reflectance.known.principled.";
+    files.push_back({key + "base", values.base.texture});
+    files.push_back({key + "roughness", values.roughness.texture});
+    files.push_back({key + "metallic", values.metallic.texture});
+    files.push_back({key + "specular", values.specular.texture});
+  }
   for (const std::string& bracket : problem.image.brackets) {
     files.push_back({"image.brackets", bracket});
   }
@@ -487,12 +610,41 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
   return files;
 }
 
+namespace {
+
+Status CheckSolvableReflectance(const Problem& problem) {
+  const ReflectanceSpec& reflectance = problem.reflectance;
+  const auto fail = [&](const std::string& key, const std::string& what) {
+    return InvalidInput(problem.path + ": reflectance.known" + key, what);
+  };
+  const bool known = problem.kind == ProblemKind::kIllumination;
+  if (reflectance.known() != known) {
+    return fail("", known ? "expected with problem: illumination, found nothing"
+                          : "expected with problem: illumination only");
+  }
+  if (reflectance.paint.has_value()) {
+    return fail(".albedo", "expected in a render alone");
+  }
+  if (reflectance.principled.has_value() &&
+      reflectance.principled->textured()) {
+    return fail(".principled",
+                "expected numbers: textures are ibrdf_render's alone");
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
 Status CheckSolvable(const Problem& problem) {
   const auto fail = [&](const std::string& key, const std::string& what) {
     return InvalidInput(problem.path + ": " + key, what);
   };
   if (problem.image.file.empty()) {
     return fail("image.file", "expected the image to be explained");
+  }
+  if (problem.views.given() && problem.views.list.size() != 1) {
+    return fail("views",
+                "expected one view: a solve of several is not there yet");
   }
   if (problem.image.brackets.size() != problem.image.bracket_exposures.size()) {
     return fail("image.bracket_exposures",
@@ -522,17 +674,8 @@ Status CheckSolvable(const Problem& problem) {
                       std::to_string(side));
     }
   }
-  const bool reflectance_known = problem.kind == ProblemKind::kIllumination;
+  IBRDF_RETURN_IF_ERROR(CheckSolvableReflectance(problem));
   const bool illumination_known = problem.kind == ProblemKind::kReflectance;
-  if (problem.reflectance.known() != reflectance_known) {
-    return fail("reflectance.known",
-                reflectance_known
-                    ? "expected with problem: illumination, found nothing"
-                    : "expected with problem: illumination only");
-  }
-  if (problem.reflectance.paint.has_value()) {
-    return fail("reflectance.known.albedo", "expected in a render alone");
-  }
   if (problem.illumination.known() != illumination_known) {
     return fail("illumination.known",
                 illumination_known
@@ -554,6 +697,26 @@ Status CheckRenderable(const Problem& problem) {
   }
   if (!problem.illumination.known()) {
     return fail("illumination.known", "expected for a render, found nothing");
+  }
+  if (problem.reflectance.principled.has_value() &&
+      problem.reflectance.principled->textured() &&
+      problem.geometry.HasNormalMap()) {
+    return fail("reflectance.known.principled",
+                "expected a sphere or a mesh with textures: a map of normals "
+                "has no surface");
+  }
+  for (const Effect effect : {Effect::kHarmonics, Effect::kGaussians}) {
+    if (problem.reflectance.principled.has_value() &&
+        problem.reflectance.principled->textured() &&
+        problem.effects.Lists(effect)) {
+      return fail("effects", std::string("expected no ") + EffectName(effect) +
+                                 " with textures");
+    }
+  }
+  if (problem.reflectance.paint.has_value() && problem.views.given() &&
+      problem.views.list.size() != 1) {
+    return fail("reflectance.known.albedo",
+                "expected without several views: it is an image of one");
   }
   return OkStatus();
 }

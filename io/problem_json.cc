@@ -47,12 +47,37 @@ json ImageJson(const ImageSpec& image) {
 
 json CameraJson(const Camera& camera, bool placed) {
   json out = {{"type", WordOf("camera.type", camera.type)}};
+  if (placed && camera.world_from_camera) {
+    for (int row = 0; row < 4; ++row) {
+      const Eigen::RowVector4d& r = camera.world_from_camera->row(row);
+      out["world_from_camera"].push_back({r[0], r[1], r[2], r[3]});
+    }
+  }
   if (camera.type == CameraType::kOrthographic) return out;
-  out["fov_degrees"] = camera.fov_degrees;
-  if (!placed) return out;
+  if (camera.focal_pixels) {
+    out["focal_pixels"] = {camera.focal_pixels->x(), camera.focal_pixels->y()};
+  } else {
+    out["fov_degrees"] = camera.fov_degrees;
+  }
+  if (camera.centre_pixels) {
+    out["centre_pixels"] = {camera.centre_pixels->x(),
+                            camera.centre_pixels->y()};
+  }
+  if (!placed || camera.world_from_camera) return out;
   out["from"] = Triple(camera.from);
   out["to"] = Triple(camera.to);
   out["up"] = Triple(camera.up);
+  return out;
+}
+
+json ViewsJson(const ViewsSpec& views) {
+  if (!views.transforms.empty()) return {{"transforms", views.transforms}};
+  if (!views.colmap.empty()) return {{"colmap", views.colmap}};
+  json out = json::array();
+  for (const ViewSpec& view : views.list) {
+    out.push_back({{"name", view.name},
+                   {"camera", CameraJson(view.camera, /*placed=*/true)}});
+  }
   return out;
 }
 
@@ -96,12 +121,27 @@ json AnalyticJson(const CookTorrance& f) {
             {"f0", Triple(f.f0)}}}};
 }
 
+json ValueJson(const SurfaceValue& v, bool triple) {
+  if (!v.texture.empty()) return v.texture;
+  return triple ? Triple(v.value) : json(v.value[0]);
+}
+
+json PrincipledJson(const PrincipledSpec& p) {
+  return {{"principled",
+           {{"base", ValueJson(p.base, true)},
+            {"roughness", ValueJson(p.roughness, false)},
+            {"metallic", ValueJson(p.metallic, false)},
+            {"specular", ValueJson(p.specular, false)}}}};
+}
+
 json KnownReflectanceJson(const ReflectanceSpec& reflectance) {
   const std::optional<PaintSpec>& paint = reflectance.paint;
   if (!paint.has_value() && !reflectance.known_file.empty()) {
     return reflectance.known_file;
   }
-  json known = reflectance.analytic.has_value()
+  json known = reflectance.principled.has_value()
+                   ? PrincipledJson(*reflectance.principled)
+               : reflectance.analytic.has_value()
                    ? AnalyticJson(*reflectance.analytic)
                    : json{{"brdf", reflectance.known_file}};
   if (paint.has_value()) {
@@ -209,12 +249,17 @@ nlohmann::json ProblemToJson(const Problem& problem) {
   const bool rendered = problem.image.file.empty();
   json out = {
       {"image", ImageJson(problem.image)},
-      // Maps of normals and depth are in the camera's frame.
-      {"camera", CameraJson(problem.camera, !problem.geometry.HasNormalMap())},
       {"geometry", GeometryJson(problem.geometry)},
       {"reflectance", ReflectanceJson(problem.reflectance)},
       {"illumination", IlluminationJson(problem.illumination, rendered)},
       {"effects", EffectsJson(problem.effects)}};
+  if (problem.views.given()) {
+    out["views"] = ViewsJson(problem.views);
+  } else {
+    // Maps of normals and depth are in the camera's frame.
+    out["camera"] =
+        CameraJson(problem.camera, !problem.geometry.HasNormalMap());
+  }
   if (rendered) {
     out["quality"] = WordOf("quality", problem.quality);
     out["noise"] = problem.noise;

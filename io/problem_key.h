@@ -15,9 +15,13 @@ enum class ValueType {
   kTriple,        // a list of three numbers, each in `range`
   kOneOrTriple,   // the same, or one number for all three
   kAutoOrTriple,  // the word auto, or as kOneOrTriple
+  kNumberOrPath,  // a number in `range`, or the name of a file
+  kTripleOrPath,  // as kOneOrTriple, or the name of a file
   kNumberList,    // a list of numbers, each in `range`
   kPathList,      // a list of names of files
   kPair,          // a list of two numbers, each in `range`
+  kOneOrPair,     // the same, or one number for both
+  kMatrix,        // four lists of four numbers
   kChoice,        // one of `words`
   kChoiceOrMap,   // the same, or a map of the keys below this one
   kWordOrList,    // one of `words`, or a list of some of `list_words`
@@ -26,6 +30,7 @@ enum class ValueType {
   kMap,           // of the keys below this one
   kPathOrMap,     // the name of a file, or such a map
   kOptionalMap,   // {}, or a map of the keys below this one
+  kListOrMap,     // a list of maps, or a map of the keys below this one
 };
 
 // Bits: who uses a key or a word. The first three are ibrdf_solve with that

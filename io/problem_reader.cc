@@ -9,13 +9,32 @@ namespace ibrdf {
 ProblemReader::ProblemReader(const ProblemSchema* schema,
                              const std::string& map, const ConfigNode* node,
                              ConfigContext* context)
+    : ProblemReader(schema, map, map, node, context) {}
+
+ProblemReader::ProblemReader(const ProblemSchema* schema,
+                             const std::string& map, const std::string& shown,
+                             const ConfigNode* node, ConfigContext* context)
     : schema_(schema),
       map_(map),
+      shown_(shown),
       context_(context),
-      reader_(context, node, map, schema->NamesBelow(map)) {}
+      reader_(context, node, shown, schema->NamesBelow(map)) {}
 
 ProblemReader ProblemReader::Below(const std::string& name) const {
-  return {schema_, JoinPath(map_, name), Find(name), context_};
+  return {schema_, JoinPath(map_, name), JoinPath(shown_, name), Find(name),
+          context_};
+}
+
+ProblemReader ProblemReader::Like(const std::string& map,
+                                  const std::string& shown,
+                                  const ConfigNode* node) const {
+  return {schema_, map, shown, node, context_};
+}
+
+ConfigReader ProblemReader::Other(const std::string& shown,
+                                  const ConfigNode& node,
+                                  const std::vector<std::string>& known) const {
+  return {context_, &node, shown, known};
 }
 
 const ConfigNode* ProblemReader::Find(const std::string& name) const {
@@ -75,7 +94,28 @@ void ProblemReader::Read(const std::string& name, std::vector<double>* out) {
 }
 
 void ProblemReader::Read(const std::string& name, Eigen::Vector2d* out) {
-  reader_.Pair(name, Typed(name, ValueType::kPair).range, out);
+  reader_.Pair(name, Typed(name, ValueType::kPair).range,
+               /*one_for_all=*/false, out);
+}
+
+void ProblemReader::Read(const std::string& name,
+                         std::optional<Eigen::Vector2d>* out) {
+  const ProblemKey& key = Key(name);
+  const bool one_for_all = key.type == ValueType::kOneOrPair;
+  CHECK(one_for_all || key.type == ValueType::kPair) << key.path;
+  Eigen::Vector2d value;
+  value.setConstant(std::numeric_limits<double>::quiet_NaN());
+  reader_.Pair(name, key.range, one_for_all, &value);
+  if (value.allFinite()) *out = value;
+}
+
+void ProblemReader::Read(const std::string& name,
+                         std::optional<Eigen::Matrix4d>* out) {
+  Typed(name, ValueType::kMatrix);
+  Eigen::Matrix4d value;
+  value.setConstant(std::numeric_limits<double>::quiet_NaN());
+  reader_.Matrix(name, &value);
+  if (value.allFinite()) *out = value;
 }
 
 void ProblemReader::Read(const std::string& name, Eigen::Vector3d* out) {
@@ -114,6 +154,25 @@ void ProblemReader::Read(const std::string& name,
   if (value.allFinite()) *out = value.array();
 }
 
+void ProblemReader::Read(const std::string& name, SurfaceValue* out) {
+  const ProblemKey& key = Key(name);
+  const bool triple = key.type == ValueType::kTripleOrPath;
+  CHECK(triple || key.type == ValueType::kNumberOrPath) << key.path;
+  const ConfigNode* node = Find(name);
+  if (node == nullptr) return;
+  if (reader_.IsPath(name)) {
+    reader_.Path(name, &out->texture);
+  } else if (triple) {
+    Eigen::Vector3d value = out->value.matrix();
+    reader_.Triple(name, key.range, /*one_for_all=*/true, &value);
+    out->value = value.array();
+  } else {
+    double value = out->value[0];
+    reader_.Number(name, key.range, &value);
+    out->value.setConstant(value);
+  }
+}
+
 void ProblemReader::ReadChoice(const std::string& name, int* index) {
   const ProblemKey& key = Key(name);
   CHECK(key.type == ValueType::kChoice || key.type == ValueType::kChoiceOrMap)
@@ -126,7 +185,7 @@ void ProblemReader::Fail(const std::string& name, const std::string& what) {
 }
 
 void ProblemReader::Fail(const std::string& what) {
-  context_->Fail(map_, what);
+  context_->Fail(shown_, what);
 }
 
 void ProblemReader::FailExpected(const std::string& name,

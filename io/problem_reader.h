@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "ibrdf/io/config_reader.h"
+#include "ibrdf/io/problem.h"
 #include "ibrdf/io/problem_schema.h"
 
 namespace ibrdf {
@@ -20,6 +21,13 @@ class ProblemReader {
                 const ConfigNode* node, ConfigContext* context);
   // The map that a key holds.
   ProblemReader Below(const std::string& name) const;
+  // A map with the keys of the schema's `map` that stands elsewhere: messages
+  // call it `shown`.
+  ProblemReader Like(const std::string& map, const std::string& shown,
+                     const ConfigNode* node) const;
+  // A map of other keys than the schema's.
+  ConfigReader Other(const std::string& shown, const ConfigNode& node,
+                     const std::vector<std::string>& known) const;
 
   bool Has(const std::string& name) const { return reader_.Has(name); }
   // Null when absent.
@@ -33,12 +41,16 @@ class ProblemReader {
   void Read(const std::string& name, std::vector<std::string>* paths);
   void Read(const std::string& name, std::vector<double>* out);
   void Read(const std::string& name, Eigen::Vector2d* out);
+  void Read(const std::string& name, std::optional<Eigen::Vector2d>* out);
+  void Read(const std::string& name, std::optional<Eigen::Matrix4d>* out);
   void Read(const std::string& name, Eigen::Vector3d* out);
   void Read(const std::string& name, Eigen::Array3d* out);
   // The word auto leaves it unset.
   void Read(const std::string& name, std::optional<double>* out);
   void Read(const std::string& name, std::optional<Eigen::Array3d>* out);
   void Read(const std::string& name, std::optional<int64_t>* out);
+  // One number for all channels or, where the key takes three, a triple.
+  void Read(const std::string& name, SurfaceValue* out);
   template <typename Enum,
             typename = std::enable_if_t<std::is_enum<Enum>::value>>
   void Read(const std::string& name, Enum* out) {
@@ -71,8 +83,13 @@ class ProblemReader {
  private:
   const ProblemKey& Typed(const std::string& name, ValueType type) const;
 
+  ProblemReader(const ProblemSchema* schema, const std::string& map,
+                const std::string& shown, const ConfigNode* node,
+                ConfigContext* context);
+
   const ProblemSchema* schema_;
   std::string map_;
+  std::string shown_;  // in messages
   ConfigContext* context_;
   ConfigReader reader_;
 };

@@ -127,12 +127,20 @@ std::string RangeText(const ProblemKey& key) {
       return interval + ", one number or three";
     case ValueType::kAutoOrTriple:
       return "`auto` or " + interval + ", one number or three";
+    case ValueType::kNumberOrPath:
+      return interval + ", or a texture: " + key.files;
+    case ValueType::kTripleOrPath:
+      return interval + ", one number or three, or a texture: " + key.files;
     case ValueType::kNumberList:
       return "a list of numbers" + (interval.empty() ? "" : " " + interval);
     case ValueType::kPathList:
       return "a list of " + key.files;
     case ValueType::kPair:
       return "two numbers" + (interval.empty() ? "" : " " + interval);
+    case ValueType::kOneOrPair:
+      return interval + ", one number or two";
+    case ValueType::kMatrix:
+      return "four rows of four numbers";
     case ValueType::kChoice:
       return "a word, below";
     case ValueType::kChoiceOrMap:
@@ -149,6 +157,8 @@ std::string RangeText(const ProblemKey& key) {
       return key.files + " or a map";
     case ValueType::kOptionalMap:
       return "`{}` or a map";
+    case ValueType::kListOrMap:
+      return "a list of maps, or a map";
   }
   return "";
 }

@@ -18,6 +18,7 @@ const Range kNotNegative{0.0, kInfinity, true, true};
 const Range kUnitInterval{0.0, 1.0, true, true};
 const Range kAnyNumber{};
 
+constexpr char kTextureFiles[] = ".exr, .png";
 constexpr char kMapFiles[] = ".exr, .hdr, .pfm, .tif, .npy";
 
 // A map's far light and the solver's unknowns grow with these.
@@ -92,6 +93,21 @@ class Row {
     key_.range = range;
     return Type(ValueType::kPair, "");
   }
+  Row& NumberOrPath(const Range& range, const std::string& default_value) {
+    key_.range = range;
+    key_.files = kTextureFiles;
+    return Type(ValueType::kNumberOrPath, default_value);
+  }
+  Row& TripleOrPath(const Range& range, const std::string& default_value) {
+    key_.range = range;
+    key_.files = kTextureFiles;
+    return Type(ValueType::kTripleOrPath, default_value);
+  }
+  Row& OneOrPair(const Range& range) {
+    key_.range = range;
+    return Type(ValueType::kOneOrPair, "");
+  }
+  Row& Matrix() { return Type(ValueType::kMatrix, ""); }
   Row& WordOrList(const std::string& default_value, Words words, Words listed) {
     key_.words = std::move(words);
     key_.list_words = std::move(listed);
@@ -107,6 +123,7 @@ class Row {
     return Type(ValueType::kPathOrMap, "");
   }
   Row& OptionalMap() { return Type(ValueType::kOptionalMap, ""); }
+  Row& ListOrMap() { return Type(ValueType::kListOrMap, ""); }
 
   Row& Unit(const std::string& unit) {
     key_.unit = unit;
@@ -282,7 +299,12 @@ Keys CameraKeys() {
       Row("camera",
           "The camera that took the image. "
           "[Conventions](conventions.md#frames) "
-          "has its frame."),
+          "has its frame.")
+          .Notes({"A calibrated camera has `world_from_camera` in place of "
+                  "`from`, `to` and `up`, and `focal_pixels` in place of "
+                  "`fov_degrees`.",
+                  "A rotation may be rounded to three digits. A mirror image "
+                  "or a scale is refused."}),
       Row("camera.type", "How the camera projects.")
           .Choice("orthographic",
                   {{"orthographic",
@@ -303,7 +325,52 @@ Keys CameraKeys() {
           .Needs(pinhole),
       Row("camera.up", "Upward direction, not parallel to the view.")
           .Triple(kAnyNumber, "[0, 1, 0]")
+          .Needs(pinhole),
+      Row("camera.world_from_camera",
+          "The pose: four rows of a rotation and the camera's centre. Columns: "
+          "right, up, against the view (OpenGL), and the centre.")
+          .Matrix()
+          .Without("by `from`, `to` and `up`"),
+      Row("camera.focal_pixels", "Focal length, along x and y.")
+          .OneOrPair(kPositive)
+          .Unit("pixels")
+          .Without("by `fov_degrees`")
+          .Needs(pinhole),
+      Row("camera.centre_pixels",
+          "Where the view meets the image, from its top left corner, x to the "
+          "right and y down.")
+          .Pair(kAnyNumber)
+          .Unit("pixels")
+          .Without("the middle")
           .Needs(pinhole)};
+}
+
+Keys ViewKeys() {
+  return {
+      Row("views",
+          "Several cameras in place of `camera`: a list, or a file of "
+          "another program. All are rendered in one run.")
+          .ListOrMap()
+          .UsedBy(kUsedByRender)
+          .Notes({"Each item of a list has a `name` and a `camera` with "
+                  "the keys above: `views: [{name: left, camera: {...}}]`.",
+                  "Results of a view have its name. Those of files are "
+                  "named by their images.",
+                  "With `views`, `geometry.fit` is `none` by default: "
+                  "cameras and mesh share one frame.",
+                  "The focal length of a file is scaled to the size of "
+                  "`image`, which has its proportions.",
+                  "A solve takes a list of one view, which is its camera."}),
+      Row("views.transforms",
+          "transforms.json of NeRF, Stanford-ORB or instant-ngp: poses in "
+          "OpenGL's frame, of cameras without distortion.")
+          .Path(".json")
+          .UsedBy(kUsedByRender),
+      Row("views.colmap",
+          "Folder of a model of COLMAP, text or binary, with PINHOLE or "
+          "SIMPLE_PINHOLE cameras.")
+          .Path("a folder")
+          .UsedBy(kUsedByRender)};
 }
 
 // Of PictureAxis, in its order.
@@ -401,6 +468,7 @@ Keys GeometryKeys() {
 
 Keys ReflectanceKeys() {
   const std::string lobe = "reflectance.known.cook_torrance";
+  const std::string principled = "reflectance.known.principled";
   return {
       Row("reflectance",
           "The BRDF of the object: a trained model where it is unknown, else "
@@ -444,8 +512,9 @@ Keys ReflectanceKeys() {
           .Path(".png")
           .UsedBy(kUnknownReflectance),
       Row("reflectance.known",
-          "The known BRDF: a MERL table, or one of `brdf`, `lambertian` and "
-          "`cook_torrance`, and perhaps paint over it, `albedo`.")
+          "The known BRDF: a MERL table, or one of `brdf`, `lambertian`, "
+          "`cook_torrance` and `principled`, and perhaps paint over it, "
+          "`albedo`.")
           .PathOrMap(".binary")
           .Without("needed")
           .UsedBy(kKnownReflectance),
@@ -482,6 +551,25 @@ Keys ReflectanceKeys() {
           .UsedBy(kKnownReflectance),
       Row(lobe + ".f0", "Reflectance of a microfacet at normal incidence.")
           .OneOrTriple(kUnitInterval, "0.04")
+          .UsedBy(kKnownReflectance),
+      Row(principled,
+          "The principled BRDF's base (Burley 2012): a diffuse part and one "
+          "GGX "
+          "lobe. A render takes textures ([programs](programs.md#textures)).")
+          .UsedBy(kKnownReflectance),
+      Row(principled + ".base", "Base colour; a PNG texture is in sRGB.")
+          .TripleOrPath(kUnitInterval, "0.5")
+          .UsedBy(kKnownReflectance),
+      Row(principled + ".roughness",
+          "Square root of GGX's alpha. Below 0.03 it is rendered as 0.03.")
+          .NumberOrPath(kUnitInterval, "0.5")
+          .UsedBy(kKnownReflectance),
+      Row(principled + ".metallic", "0: dielectric, 1: metal.")
+          .NumberOrPath(kUnitInterval, "0")
+          .UsedBy(kKnownReflectance),
+      Row(principled + ".specular",
+          "F0 of the dielectric part divided by 0.08.")
+          .NumberOrPath({0.0, 12.5, true, true}, "0.5")
           .UsedBy(kKnownReflectance)};
 }
 
@@ -785,7 +873,7 @@ Keys RenderKeys() {
 ProblemSchema MakeSchema() {
   ProblemSchema schema;
   for (const auto& section :
-       {KindKeys(), ImageKeys(), CameraKeys(), GeometryKeys(),
+       {KindKeys(), ImageKeys(), CameraKeys(), ViewKeys(), GeometryKeys(),
         ReflectanceKeys(), IlluminationKeys(), SkyKeys(), LikelihoodKeys(),
         EffectsKeys(), SolverKeys(), TruthKeys(), RenderKeys()}) {
     schema.keys.insert(schema.keys.end(), section.begin(), section.end());

@@ -11,6 +11,7 @@
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/forward/known_brdf.h"
 #include "ibrdf/solvers/forward/known_paint.h"
+#include "ibrdf/solvers/forward/known_texture.h"
 
 namespace ibrdf {
 
@@ -28,13 +29,26 @@ struct ForwardScene {
   Image map;                        // the illumination
   KnownBrdf brdf;                   // its Lookup() refers to this
   std::optional<KnownPaint> paint;  // over it
-  // What the object shows itself: the BRDF's, or its paint's mean; empty where
+  // Set: in place of `brdf`, which is then its mean over the points; and the
+  // material of the point of least roughness.
+  std::optional<KnownTexture> texture;
+  BrdfFunction sharpest;
+  // What the object shows itself: the BRDF's, or a paint's mean; empty where
   // nothing casts shadows.
   BrdfGrid grid;
   // Whether the object may see itself as in a mirror: it casts shadows, and its
   // lobe is narrower than kNarrowLobe.
   bool narrow_lobe = false;
   std::vector<std::string> warnings;  // of the inputs: sentences for the user
+};
+
+// What all views share.
+struct ForwardInputs {
+  Scene scene = Scene::UnitSphere();
+  Image map;
+  KnownBrdf brdf;
+  std::optional<KnownTexture> texture;  // in its place
+  std::vector<std::string> warnings;
 };
 
 // Sorts points by the angle between normal and view.
@@ -55,7 +69,11 @@ int SamplesPerSide(RenderQuality quality);
 Status RenderInterrupted(const Problem& problem);
 
 // Reads geometry, illumination and reflectance. CheckRenderable first.
-StatusOr<ForwardScene> LoadForwardScene(const Problem& problem,
-                                        int num_threads);
+StatusOr<ForwardInputs> LoadForwardInputs(const Problem& problem);
+
+// Before the problem's camera.
+StatusOr<ForwardScene> PlaceForwardScene(const Problem& problem,
+                                         const ForwardInputs& inputs,
+                                         int num_threads);
 
 }  // namespace ibrdf

@@ -66,11 +66,11 @@ Status PlanRadiance(const Problem& problem, const ForwardScene& scene,
 
 // What the points may be rendered by. A preview takes what is fast; reference
 // quality only what the user asks for.
-ApproximationOptions MayTake(const Problem& problem,
-                             const EffectsPlan& effects) {
+ApproximationOptions MayTake(const Problem& problem, const EffectsPlan& effects,
+                             bool textured) {
   ApproximationOptions options;
   options.log_error = RenderTolerances::Of(problem.quality).approximation;
-  if (effects.visibility) return options;
+  if (effects.visibility || textured) return options;
   options.reflectance_map = effects.reflectance_map;
   const EffectsSpec& spec = problem.effects;
   if (spec.mode == EffectsMode::kAuto) {
@@ -113,8 +113,9 @@ bool PlanApproximation(const Problem& problem, const ForwardScene& scene,
   const SceneReference reference(scene, effects, num_threads);
   out->approximation =
       std::make_unique<ApproximateRadiance>(scene.map, scene.brdf, num_threads);
-  if (!out->approximation->Choose(scene.view.points, *out->radiance, reference,
-                                  MayTake(problem, effects))) {
+  if (!out->approximation->Choose(
+          scene.view.points, *out->radiance, reference,
+          MayTake(problem, effects, scene.texture.has_value()))) {
     return false;
   }
   out->plan.approximation = out->approximation->plan();

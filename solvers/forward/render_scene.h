@@ -2,6 +2,7 @@
 // load, plan, render.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -26,7 +27,7 @@ struct RenderedScene {
   Image image;         // radiance; 0 outside the object
   Mask mask;           // pixels whose centre (preview) or any sample sees it
   Image illumination;  // the map used
-  // A painted object has the BRDF of its mean paint.
+  // A painted or textured object has the BRDF of its mean paint or values.
   std::optional<MerlTable> painted_brdf;
   RenderPlan plan;
   PixelCounts counts;
@@ -43,5 +44,15 @@ std::string Describe(const RenderedScene& rendered);
 // exp(noise * normal). CheckRenderable first.
 StatusOr<RenderedScene> RenderScene(const Problem& problem,
                                     const RenderSceneOptions& options);
+
+// Called with one view after another.
+using TakeRender =
+    std::function<Status(const ViewSpec& view, const RenderedScene& rendered)>;
+
+// The same for every view of problem.views, which share what is read. The
+// noise's seed is that of a single render for the first view, the next one for
+// the second, and so on. Messages name the view.
+Status RenderViews(const Problem& problem, const RenderSceneOptions& options,
+                   const TakeRender& take);
 
 }  // namespace ibrdf

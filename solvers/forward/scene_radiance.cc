@@ -106,20 +106,28 @@ void SceneRadiance::set_lobe_rays(int rays) {
 
 bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
                            const Progress& progress, double* L_o) const {
+  if (scene_.texture) {
+    return ReferenceRadiance(*renderer_, scene_.texture->Brdf(),
+                             scene_.sharpest, Emitted())
+        .Render(points, progress, L_o);
+  }
   return RenderWith(scene_.brdf, points, progress, L_o);
 }
 
 bool SceneRadiance::RenderWith(const KnownBrdf& brdf,
                                const std::vector<ShadingPoint>& points,
                                const Progress& progress, double* L_o) const {
-  EmittedLight emitted;
-  if (bounces_ > 0) emitted = {emitted_[bounces_].data(), bounces_};
   if (brdf.function) {
-    return ReferenceRadiance(*renderer_, brdf.function, emitted)
+    return ReferenceRadiance(*renderer_, brdf.function, Emitted())
         .Render(points, progress, L_o);
   }
-  return ReferenceRadiance(*renderer_, brdf.table, emitted)
+  return ReferenceRadiance(*renderer_, brdf.table, Emitted())
       .Render(points, progress, L_o);
+}
+
+EmittedLight SceneRadiance::Emitted() const {
+  if (bounces_ == 0) return {};
+  return {emitted_[bounces_].data(), bounces_};
 }
 
 }  // namespace ibrdf

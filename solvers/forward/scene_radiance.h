@@ -38,8 +38,8 @@ struct SceneRadianceOptions {
   static SceneRadianceOptions Of(RenderQuality quality, int num_threads);
 };
 
-// The scene's reflectance is unpainted. What the object throws on itself has
-// the paint's mean (ForwardScene::grid).
+// The scene's reflectance is unpainted; its texture is rendered. What the
+// object throws on itself has the paint's mean (ForwardScene::grid).
 class SceneRadiance final : public RadianceRenderer {
  public:
   // `scene` must live as long as this. `points`: of the image; where the object
@@ -68,6 +68,7 @@ class SceneRadiance final : public RadianceRenderer {
                   const Progress& progress, double* L_o) const;
 
  private:
+  EmittedLight Emitted() const;
   // Places patches that `points` see, and lights them.
   void LightObject(const std::vector<ShadingPoint>& points,
                    const SceneRadianceOptions& options);

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "ibrdf/base/pi.h"
-
 namespace ibrdf {
 namespace {
 
@@ -21,9 +19,10 @@ class Surface {
   Surface(const DepthMap& map, const Camera& camera)
       : map_(map),
         perspective_(camera.type == CameraType::kPerspective),
-        pixel_(perspective_ ? 2.0 * std::tan(camera.fov_degrees * kPi / 360.0) /
-                                  map.height
-                            : 1.0) {}
+        grid_(PixelGridOf(camera, map.width, map.height)) {
+    // An orthographic camera's depth is in pixels.
+    if (!perspective_) grid_.side.setOnes();
+  }
 
   bool Has(int x, int y) const {
     return x >= 0 && x < map_.width && y >= 0 && y < map_.height &&
@@ -37,9 +36,9 @@ class Surface {
   // In the camera's frame; only differences count before an orthographic one.
   Eigen::Vector3d Position(int x, int y) const {
     const double depth = Depth(x, y);
-    const double side = pixel_ * (perspective_ ? depth : 1.0);
-    return {(x + 0.5 - 0.5 * map_.width) * side,
-            (0.5 * map_.height - y - 0.5) * side, -depth};
+    const double scale = perspective_ ? depth : 1.0;
+    return {(x + 0.5 - grid_.centre.x()) * (grid_.side.x() * scale),
+            (grid_.centre.y() - y - 0.5) * (grid_.side.y() * scale), -depth};
   }
 
   // Along x (dx = 1, dy = 0) or along y; unset: no neighbour.
@@ -48,7 +47,8 @@ class Surface {
     if (!before && !after) return std::nullopt;
     if (before && after) {
       const double here = Depth(x, y);
-      const double side = pixel_ * (perspective_ ? here : 1.0);
+      const double side = (dx != 0 ? grid_.side.x() : grid_.side.y()) *
+                          (perspective_ ? here : 1.0);
       const double from = std::abs(here - Depth(x - dx, y - dy)) / side;
       const double to = std::abs(Depth(x + dx, y + dy) - here) / side;
       if (to > kJump && to > kJumpFactor * from) after = false;
@@ -61,7 +61,7 @@ class Surface {
  private:
   const DepthMap& map_;
   bool perspective_;
-  double pixel_;  // side of a pixel at depth 1
+  PixelGrid grid_;
 };
 
 }  // namespace

@@ -14,6 +14,8 @@
 #include "ibrdf/light/procedural_sky.h"
 #include "ibrdf/solvers/problem/load_depth.h"
 #include "ibrdf/solvers/problem/load_normals.h"
+#include "ibrdf/surface/charts.h"
+#include "ibrdf/surface/surface_atlas.h"
 
 namespace ibrdf {
 namespace {
@@ -60,13 +62,47 @@ Status CheckNotMoved(const Problem& problem, const Eigen::Vector3d& centre,
   return OkStatus();
 }
 
+// One texel that lies at several places cannot tell them apart.
+void WarnOfOverlaps(const std::string& file, const TriangleMesh& mesh,
+                    std::vector<std::string>* warnings) {
+  constexpr int kSize = 256;
+  const StatusOr<SurfaceAtlas> atlas =
+      SurfaceAtlas::OfMesh(mesh, Eigen::Vector3d::Zero(), kSize, kSize);
+  if (!atlas.ok() || atlas->overlapped == 0) return;
+  warnings->push_back(
+      file +
+      ": texture coordinates overlap: " + std::to_string(atlas->overlapped) +
+      " of " + std::to_string(atlas->texels.size()) +
+      " texels of a picture of 256x256 are on several places of the surface");
+}
+
+// Charts of our own where the file has none.
+Status SetTexture(const Problem& problem, const MeshNotes& notes,
+                  TriangleMesh* mesh, std::vector<std::string>* warnings) {
+  const std::optional<PrincipledSpec>& values = problem.reflectance.principled;
+  if (!values.has_value() || !values->textured()) return OkStatus();
+  const std::string& file = problem.geometry.file;
+  if (!notes.texture_fault.empty()) {
+    return InvalidInput(file, notes.texture_fault);
+  }
+  if (mesh->texture.empty()) {
+    AddCharts(mesh);
+    return OkStatus();
+  }
+  const std::string fault = TextureFault(*mesh);
+  if (!fault.empty()) return InvalidInput(file, fault);
+  WarnOfOverlaps(file, *mesh, warnings);
+  return OkStatus();
+}
+
 StatusOr<Scene> LoadMesh(const Problem& problem,
                          std::vector<std::string>* warnings) {
   const GeometrySpec& geometry = problem.geometry;
   MeshNotes notes;
   StatusOr<TriangleMesh> mesh = ReadMesh(geometry.file, &notes);
   if (!mesh.ok()) return mesh.status();
-  *warnings = std::move(notes.warnings);
+  *warnings = notes.warnings;
+  IBRDF_RETURN_IF_ERROR(SetTexture(problem, notes, &*mesh, warnings));
   if (geometry.fit == MeshFit::kNone) {
     return OfFile(geometry.file, Scene::FromMesh(*mesh, notes.origin));
   }
@@ -114,7 +150,19 @@ StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination,
   return ReadMap(illumination.known_file, illumination.frame, warnings);
 }
 
+Disney PrincipledBrdf(const PrincipledSpec& spec) {
+  Disney brdf;
+  brdf.base = spec.base.value;
+  brdf.roughness = std::max(spec.roughness.value[0], kMinRoughness);
+  brdf.metallic = spec.metallic.value[0];
+  brdf.specular = spec.specular.value[0];
+  return brdf;
+}
+
 StatusOr<MerlTable> LoadKnownReflectance(const ReflectanceSpec& reflectance) {
+  if (reflectance.principled.has_value()) {
+    return SampleMerl(PrincipledBrdf(*reflectance.principled).Function());
+  }
   if (reflectance.analytic.has_value()) {
     return SampleMerl(reflectance.analytic->Function());
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ibrdf/base/status.h"
+#include "ibrdf/brdf/disney.h"
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/io/problem.h"
@@ -23,6 +24,11 @@ StatusOr<Scene> LoadScene(const Problem& problem, int width, int height,
 StatusOr<Image> LoadKnownIllumination(
     const IlluminationSpec& illumination,
     std::vector<std::string>* warnings = nullptr);
+
+// Rendered in place of all below.
+inline constexpr double kMinRoughness = 0.03;
+// Of the numbers; textures are not looked at.
+Disney PrincipledBrdf(const PrincipledSpec& spec);
 
 // The known reflectance as a table: the file, or the analytic BRDF at the bin
 // centres.

@@ -73,10 +73,12 @@ Image MapForPicture(const Image& map) {
 
 std::string MiddleOfMapPicture(const Camera& camera) {
   constexpr double kLeastCosine = 0.985;  // 10 degrees
-  const bool ahead =
-      camera.type == CameraType::kOrthographic ||
-      ((camera.from - camera.to).normalized().z() > kLeastCosine &&
-       camera.up.normalized().y() > kLeastCosine);
+  const Eigen::Matrix3d axes = AxesOf(camera).world_from_camera;
+  const double upright = camera.world_from_camera ? axes(1, 1)
+                         : camera.type == CameraType::kOrthographic
+                             ? 1.0
+                             : camera.up.normalized().y();
+  const bool ahead = axes(2, 2) > kLeastCosine && upright > kLeastCosine;
   return ahead ? "what the camera looks at" : "-z";
 }
 

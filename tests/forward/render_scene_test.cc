@@ -11,6 +11,7 @@
 #include "ibrdf/io/map_file.h"
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/light/environment_map.h"
+#include "tests/support/camera_files.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/temp_dir.h"
 
@@ -218,6 +219,78 @@ TEST(RenderScene, MissingFilesAreNamed) {
   const Status status = RenderScene(problem, {}).status();
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
   EXPECT_NE(std::string::npos, status.message().find("/nowhere/a.obj"));
+}
+
+Camera LookingFrom(const Eigen::Vector3d& from) {
+  Camera camera;
+  camera.type = CameraType::kPerspective;
+  camera.from = from;
+  return camera;
+}
+
+// Views share what is read; each is the render of its camera, bit for bit.
+TEST(RenderViews, EachIsTheRenderOfItsCamera) {
+  Problem problem = Scene24();
+  problem.noise = 0.02;
+  problem.views.list = {{"front", LookingFrom({0, 0, 4})},
+                        {"side", LookingFrom({3, 1, 2})},
+                        {"square", Camera()}};
+  std::vector<std::string> names;
+  std::vector<Image> images;
+  RenderSceneOptions options;
+  double last = 0.0;
+  options.progress = [&](double share) {
+    EXPECT_GE(share, last);
+    last = share;
+    return true;
+  };
+  ASSERT_TRUE(RenderViews(problem, options,
+                          [&](const ViewSpec& view, const RenderedScene& out) {
+                            names.push_back(view.name);
+                            images.push_back(out.image);
+                            return OkStatus();
+                          })
+                  .ok());
+  EXPECT_EQ((std::vector<std::string>{"front", "side", "square"}), names);
+  EXPECT_EQ(1.0, last);
+  for (size_t i = 0; i < images.size(); ++i) {
+    Problem one = Scene24();
+    one.noise = 0.02;
+    one.camera = problem.views.list[i].camera;
+    RenderSceneOptions of_one;
+    of_one.seed = options.seed + i;
+    EXPECT_EQ(RenderScene(one, of_one)->image.rgb, images[i].rgb) << names[i];
+  }
+}
+
+TEST(RenderViews, ComeFromFilesAndAreNamedInMessages) {
+  const TempDir dir;
+  WriteBytes(dir.File("t.json"), SmallTransforms());
+  Problem problem = Scene24();
+  problem.views.transforms = dir.File("t.json");
+  const auto take = [&](const ViewSpec&, const RenderedScene& out) {
+    EXPECT_GT(out.mask.CountInside(), 50u);
+    return OkStatus();
+  };
+  EXPECT_TRUE(RenderViews(problem, {}, take).ok());
+  // COLMAP's have a size.
+  WriteBytes(dir.File("cameras.txt"), SmallColmapCameras());
+  WriteBytes(dir.File("images.txt"), SmallColmapImages());
+  problem.views.transforms.clear();
+  problem.views.colmap = dir.path();
+  EXPECT_NE(std::string::npos, RenderViews(problem, {}, take)
+                                   .message()
+                                   .find("the proportions of view a, 160 x"));
+  problem.image.width = 32;
+  EXPECT_TRUE(RenderViews(problem, {}, take).ok());
+  // One that looks away.
+  problem.views = {};
+  problem.views.list = {{"away", LookingFrom({0, 0, 4})}};
+  problem.views.list[0].camera.to = {0, 0, 9};
+  EXPECT_NE(std::string::npos,
+            RenderViews(problem, {}, take)
+                .message()
+                .find(": view away: geometry: no pixel sees the object"));
 }
 
 }  // namespace

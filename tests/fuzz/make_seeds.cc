@@ -24,6 +24,7 @@
 #include "ibrdf/io/radiance_hdr.h"
 #include "ibrdf/solvers/bench/results_table.h"
 #include "tests/fuzz/parsers.h"
+#include "tests/support/camera_files.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/photo_files.h"
 #include "tests/support/temp_dir.h"
@@ -481,6 +482,18 @@ void WriteMerl(const std::string& folder) {
   WriteBytes(folder + "/ones", bytes);
 }
 
+void WriteCameras(const std::string& transforms, const std::string& text,
+                  const std::string& binary) {
+  WriteBytes(transforms + "/angle", SmallTransforms());
+  WriteBytes(transforms + "/pixels", PixelTransforms());
+  WriteBytes(text + "/two",
+             SmallColmapCameras() + "\xff" + SmallColmapImages());
+  const std::string cameras = SmallColmapCamerasBinary();
+  WriteBytes(binary + "/two",
+             LittleEndianBytes(static_cast<uint32_t>(cameras.size()), 2) +
+                 cameras + SmallColmapImagesBinary());
+}
+
 void WriteSeeds(const std::string& folder) {
   const auto in = [&](const std::string& parser) {
     return folder + "/" + parser;
@@ -506,6 +519,7 @@ void WriteSeeds(const std::string& folder) {
   WriteMeshes(in("obj"), in("ply"));
   WriteOtherMeshes(in("ply"), in("stl"), in("glb"));
   WriteGeometryImages(in("map"), in("depth"), in("normals"));
+  WriteCameras(in("transforms"), in("colmap_text"), in("colmap_binary"));
   WriteTexts(in("config"), in("flags"));
   WriteProblems(in("problem"));
   WriteModels(in("model"));

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <set>
 
+#include "ibrdf/io/calibrated_views.h"
 #include "ibrdf/io/checksum.h"
 #include "ibrdf/io/config_text.h"
 #include "ibrdf/io/config_tree.h"
@@ -44,6 +46,11 @@ void FuzzMesh(const std::string& name, const std::string& bytes) {
   for (const Eigen::Vector3f& n : mesh->normals) {
     CHECK_LT(std::fabs(n.norm() - 1.0f), 1e-4f) << n.transpose();
   }
+  CHECK(mesh->texture.empty() ||
+        mesh->texture.size() == mesh->triangles.size());
+  for (const auto& corners : mesh->texture) {
+    for (const Eigen::Vector2f& uv : corners) CHECK(uv.allFinite());
+  }
   const int count = static_cast<int>(mesh->vertices.size());
   for (const auto& triangle : mesh->triangles) {
     for (const int v : triangle) CHECK(v >= 0 && v < count) << v;
@@ -73,6 +80,43 @@ std::vector<std::string> Parts(const std::string& input) {
     }
   }
   return parts;
+}
+
+void FuzzViews(const StatusOr<std::vector<CalibratedView>>& views,
+               const std::string& name) {
+  if (!views.ok()) return CheckError(views.status(), name);
+  CHECK(!views->empty() && views->size() <= kMaxViews);
+  std::set<std::string> names;
+  for (const CalibratedView& view : *views) {
+    CHECK_EQ(ViewNameFault(view.name), "");
+    CHECK(names.insert(view.name).second) << view.name;
+    const StatusOr<Camera> camera = CameraOf(view, 64, 48);
+    if (camera.ok()) {
+      CHECK_EQ(PoseFault(*camera->world_from_camera), "");
+    } else {
+      CheckError(camera.status(), "image");
+    }
+  }
+}
+
+void FuzzColmap(const std::string& input) {
+  std::vector<std::string> files = Parts(input);
+  files.resize(2);
+  FuzzViews(
+      ParseColmapText({"cameras.txt", files[0]}, {"images.txt", files[1]}),
+      ".txt");
+}
+
+// The first two bytes are the size of the first file.
+void FuzzColmapBinary(const std::string& input) {
+  if (input.size() < 2) return;
+  const size_t size =
+      static_cast<uint8_t>(input[0]) + 256u * static_cast<uint8_t>(input[1]);
+  const std::string rest = input.substr(2);
+  const size_t split = std::min(size, rest.size());
+  FuzzViews(ParseColmapBinary({"cameras.bin", rest.substr(0, split)},
+                              {"images.bin", rest.substr(split)}),
+            ".bin");
 }
 
 bool SameTree(const ConfigNode& a, const ConfigNode& b) {
@@ -201,6 +245,12 @@ const std::vector<FuzzedParser>& Parsers() {
         {"ply", [](const std::string& b) { FuzzMesh("a.ply", b); }},
         {"stl", [](const std::string& b) { FuzzMesh("a.stl", b); }},
         {"glb", FuzzGlb},
+        {"transforms",
+         [](const std::string& b) {
+           FuzzViews(ParseTransforms("a.json", b), "a.json");
+         }},
+        {"colmap_text", FuzzColmap},
+        {"colmap_binary", FuzzColmapBinary},
         {"config", FuzzConfig},
         {"flags", FuzzFlags},
         {"problem", FuzzProblem},

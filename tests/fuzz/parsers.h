@@ -23,7 +23,8 @@ const std::vector<std::string>& FuzzedColumns();
 // Names of the parsers. Files that users bring: exr, hdr, png, merl, obj, ply,
 // stl, glb, problem, model; photographs photo_png, photo_jpeg, photo_tiff,
 // photo_exr, npy, pfm, and what is inside of them, exif, icc; maps, depth and
-// normals of any format: map, depth, normals. What is written of problems:
+// normals of any format: map, depth, normals. Cameras of other programs:
+// transforms, colmap_text, colmap_binary. What is written of problems:
 // config, flags. What programs leave for themselves: checkpoint (a training's),
 // results (a sweep's table), trace (in result.json).
 const std::vector<std::string>& FuzzedParsers();
@@ -47,6 +48,11 @@ const std::vector<std::string>& FuzzedParsers();
 //            and encodings
 //   glb      after the first byte; where that is odd, the JSON up to a byte
 //            0xff and the buffer, in a container that fits them
+//   colmap_text
+//            cameras.txt up to a byte 0xff, then images.txt
+//   colmap_binary
+//            two bytes, the size of cameras.bin, which then comes before
+//            images.bin
 //   problem  the text up to a byte 0xff, then overrides, split there
 //   flags    the flags of problem_from_flags.h in order, then overrides, split
 //            there

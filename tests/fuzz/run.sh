@@ -16,16 +16,17 @@ shift
 parsers=("$@")
 if [ ${#parsers[@]} -eq 0 ]; then
   parsers=(checkpoint results trace hdr merl npy pfm exif icc stl png photo_png
-           photo_jpeg photo_tiff depth normals ply model obj exr photo_exr map
+           photo_jpeg photo_tiff depth normals colmap_binary colmap_text
+           transforms ply model obj exr photo_exr map
            glb config flags problem)
 fi
 # What the seeds take and more.
 declare -A max_len=(
-  [checkpoint]=256 [config]=1024 [depth]=2048 [exif]=512 [exr]=4096 [flags]=1024
+  [checkpoint]=256 [colmap_binary]=1024 [colmap_text]=512 [config]=1024 [depth]=2048 [exif]=512 [exr]=4096 [flags]=1024
   [glb]=4096 [hdr]=1024 [icc]=2048 [map]=2048 [merl]=1200 [model]=4096 [normals]=2048
   [npy]=512 [obj]=1024 [pfm]=512 [photo_exr]=4096 [photo_jpeg]=2048 [photo_png]=2048
   [photo_tiff]=4096 [ply]=1024 [png]=1024 [problem]=2048 [results]=512 [stl]=1024
-  [trace]=1024)
+  [trace]=1024 [transforms]=1024)
 mkdir -p build/fuzz/findings
 [ -f "${table}" ] || echo "parser,executions,seconds,features,findings" > "${table}"
 # What is freed goes to the system soon: small inputs, large tables of libraries.

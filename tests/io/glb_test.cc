@@ -175,6 +175,38 @@ TEST(Glb, QuantisedAndInterleavedAttributes) {
   EXPECT_EQ(Eigen::Vector3f(0, -1, 0), mesh.vertices[2]);
 }
 
+// TEXCOORD_0 runs down from the top left.
+TEST(Glb, TextureCoordinatesAreTurnedUp) {
+  std::string buffer;
+  Json json = GltfJsonOf(Tetrahedron(), &buffer);
+  while (buffer.size() % 4 != 0) buffer += '\0';
+  json["bufferViews"].push_back(
+      {{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", 32}});
+  for (int i = 0; i < 8; ++i)
+    AppendRaw(0.125f * static_cast<float>(i), &buffer);
+  json["buffers"][0]["byteLength"] = buffer.size();
+  json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
+                               {"componentType", 5126},
+                               {"count", 4},
+                               {"type", "VEC2"}});
+  json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+      json["accessors"].size() - 1;
+  const TriangleMesh mesh = Decoded(GlbOf(json.dump(), buffer));
+  ASSERT_EQ(4u, mesh.texture.size());
+  // The first triangle is 0, 2, 1.
+  EXPECT_EQ(Eigen::Vector2f(0.5f, 1.0f - 0.625f), mesh.texture[0][1]);
+  // What is wrong with it leaves the mesh.
+  json["accessors"].back()["count"] = 3;
+  MeshNotes notes;
+  const StatusOr<TriangleMesh> bare =
+      DecodeMesh("a.glb", GlbOf(json.dump(), buffer), &notes);
+  ASSERT_TRUE(bare.ok()) << bare.status().message();
+  EXPECT_TRUE(bare->texture.empty());
+  EXPECT_EQ("expected 4 pairs of TEXCOORD_0 at meshes[0].primitives[0]",
+            notes.texture_fault);
+  EXPECT_EQ(mesh.triangles, bare->triangles);
+}
+
 TEST(Glb, TheSceneSaysWhatIsThere) {
   // Two nodes, of which a scene shows one; without a scene, all roots; without
   // nodes, all meshes.

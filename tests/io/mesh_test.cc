@@ -421,6 +421,96 @@ TEST(Mesh, BadMeshesAreRefused) {
   refused(ply, replaced("1 0 0\n", "nan 0 0\n"));
 }
 
+constexpr char kSquare[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST(MeshTexture, SeamsOfTextureAreNoSeamsOfShading) {
+  // Two triangles that share an edge on the surface, not in the picture.
+  const StatusOr<TriangleMesh> mesh = DecodeMesh(
+      "a.obj", std::string(kSquare) +
+                   "vt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0.75\nvt 1 0.5 0\nvt "
+                   "0.75 1\nf 1/1 2/2 3/3\nf 1/-3 3/-2 4/-1\n");
+  ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+  EXPECT_EQ(4u, mesh->vertices.size());
+  ASSERT_EQ(2u, mesh->texture.size());
+  EXPECT_EQ(Eigen::Vector2f(0.5f, 0.0f), mesh->texture[0][1]);
+  EXPECT_EQ(Eigen::Vector2f(0.75f, 0.0f), mesh->texture[1][0]);
+  EXPECT_EQ(Eigen::Vector2f(1.0f, 0.5f), mesh->texture[1][1]);
+}
+
+TEST(MeshTexture, FollowsTheCornersOfPolygons) {
+  const StatusOr<TriangleMesh> mesh = DecodeMesh(
+      "a.obj", std::string(kSquare) +
+                   "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+  ASSERT_TRUE(mesh.ok());
+  ASSERT_EQ(2u, mesh->texture.size());
+  for (size_t t = 0; t < 2; ++t) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(mesh->vertices[mesh->triangles[t][k]].head<2>(),
+                mesh->texture[t][k]);
+    }
+  }
+}
+
+// The rest of the mesh is as without it.
+TEST(MeshTexture, FaultsAreToldAndLeaveTheMesh) {
+  const std::string plain = std::string(kSquare) + "f 1 2 3\nf 1 3 4\n";
+  const TriangleMesh without = DecodeMesh("a.obj", plain).value();
+  EXPECT_TRUE(without.texture.empty());
+  const std::string vt = std::string(kSquare) + "vt 0 0\nvt 1 0\nvt 1 1\n";
+  const struct {
+    std::string text, fault;
+  } cases[] = {
+      {plain, ""},
+      {vt + "f 1 2 3\nf 1 3 4\n", ""},
+      {vt + "f 1/1 2/2 3/3\nf 1 3 4\n",
+       "expected texture coordinates (vt) on all faces or on none"},
+      {vt + "f 1/1 2/2 3\nf 1 3 4\n",
+       "expected texture coordinates (vt) on all faces or on none"},
+      {vt + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
+       "expected indices of the file's 3 texture coordinates (vt) at line 9"},
+      {vt + "f 1/1 2/2 3/3\nf 1/1 3/0 4/1\n",
+       "expected indices of the file's 3 texture coordinates (vt) at line 9"},
+      {vt + "f 1/1 2/2 3/x\nf 1/1 3/3 4/1\n",
+       "expected indices of the file's 3 texture coordinates (vt) at line 8"},
+      {std::string(kSquare) + "vt nan 0\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n",
+       "expected vt and finite numbers at line 5"},
+      {std::string(kSquare) + "vt\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n",
+       "expected vt and finite numbers at line 5"}};
+  for (const auto& c : cases) {
+    MeshNotes notes;
+    const StatusOr<TriangleMesh> mesh = DecodeMesh("a.obj", c.text, &notes);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    EXPECT_EQ(c.fault, notes.texture_fault);
+    EXPECT_TRUE(mesh->texture.empty());
+    EXPECT_EQ(without.vertices, mesh->vertices);
+    EXPECT_EQ(without.triangles, mesh->triangles);
+    EXPECT_EQ(without.normals, mesh->normals);
+  }
+}
+
+TEST(MeshTexture, PlyHasItUnderThreeNames) {
+  for (const auto& [u, v] :
+       {std::pair("s", "t"), {"u", "v"}, {"texture_u", "texture_v"}}) {
+    const std::string ply =
+        std::string(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float "
+            "x\nproperty float y\nproperty float z\nproperty float ") +
+        u + "\nproperty float " + v +
+        "\nelement face 1\nproperty list uchar int "
+        "vertex_indices\nend_header\n0 0 0 0.1 0.2\n1 0 0 0.3 0.4\n0 1 0 0.5 "
+        "0.6\n3 0 1 2\n";
+    const StatusOr<TriangleMesh> mesh = DecodeMesh("a.ply", ply);
+    ASSERT_TRUE(mesh.ok()) << mesh.status().message();
+    ASSERT_EQ(1u, mesh->texture.size());
+    EXPECT_EQ(Eigen::Vector2f(0.3f, 0.4f), mesh->texture[0][1]);
+    MeshNotes notes;
+    std::string bad = ply;
+    bad.replace(bad.find("0.3"), 3, "nan");
+    EXPECT_TRUE(DecodeMesh("a.ply", bad, &notes)->texture.empty());
+    EXPECT_EQ("expected finite texture coordinates", notes.texture_fault);
+  }
+}
+
 TEST(Mesh, WhatIsNotAMeshFile) {
   const TempDir dir;
   EXPECT_FALSE(ReadMesh(dir.File("missing.obj")).ok());

@@ -84,6 +84,8 @@ std::string OtherValue(const ProblemKey& key) {
     case ValueType::kAutoOrNumber:
     case ValueType::kOneOrTriple:
     case ValueType::kAutoOrTriple:
+    case ValueType::kNumberOrPath:
+    case ValueType::kTripleOrPath:
       return std::to_string(InsideOf(key.range));
     case ValueType::kInteger:
       return std::to_string(key.most);
@@ -93,7 +95,12 @@ std::string OtherValue(const ProblemKey& key) {
     case ValueType::kPathList:
       return "[one.file, other.file]";
     case ValueType::kPair:
+    case ValueType::kOneOrPair:
       return "[0.25, 0.5]";
+    case ValueType::kMatrix:
+      return "[[0, 1, 0, 4], [0, 0, 1, 5], [1, 0, 0, 6], [0, 0, 0, 1]]";
+    case ValueType::kListOrMap:
+      return "[{name: left}]";
     case ValueType::kChoice:
     case ValueType::kChoiceOrMap:
       // The opposite, which leaves the other axes what they are.
@@ -156,7 +163,8 @@ TEST(ProblemSchema, NoOtherKeyIsAccepted) {
   Strings maps = {""};
   for (const ProblemKey& key : AllKeys()) {
     if (key.type == ValueType::kMap || key.type == ValueType::kPathOrMap ||
-        key.type == ValueType::kOptionalMap) {
+        key.type == ValueType::kOptionalMap ||
+        key.type == ValueType::kListOrMap) {
       maps.push_back(key.path);
     }
   }
@@ -208,7 +216,9 @@ TEST(ProblemSchema, NumbersEndWhereItSays) {
     if (key.type != ValueType::kNumber &&
         key.type != ValueType::kAutoOrNumber &&
         key.type != ValueType::kOneOrTriple &&
-        key.type != ValueType::kAutoOrTriple) {
+        key.type != ValueType::kAutoOrTriple &&
+        key.type != ValueType::kNumberOrPath &&
+        key.type != ValueType::kTripleOrPath) {
       continue;
     }
     const auto accepted = [&](double value) {

@@ -49,6 +49,21 @@ refused illumination.known "${known[@]}" --out out.exr \
   --illumination-out ./map.exr
 cmp map.exr copy.exr || fail "an input was changed"
 
+# Several views go to a folder, each to its own.
+views=(--set 'views=[{name: a}, {name: b, camera: {type: perspective}}]')
+refused --out "${quick[@]}" "${views[@]}" --out views.exr
+refused --mask "${quick[@]}" "${views[@]}" --out views --mask mask.png
+"${render}" --scene scene.yaml --quiet "${quick[@]}" "${views[@]}" --out views \
+  --brdf-out views/brdf.binary
+for view in a b; do
+  for file in render.exr render.png mask.png; do
+    [ -s "views/views/${view}/${file}" ] || fail "no ${file} of view ${view}"
+  done
+done
+[ -s views/brdf.binary ] || fail "no BRDF of the views"
+"${render}" --scene scene.yaml --quiet "${quick[@]}" --out a.exr
+cmp a.exr views/views/a/render.exr || fail "a view is not its render"
+
 # A signal ends a render with nothing written.
 for signal in INT TERM; do
   timeout 60 "${render}" --scene scene.yaml --quiet --threads 1 \

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -68,7 +69,48 @@ Camera AnyCamera() {
   view.from = AnyTriple<Eigen::Vector3d>(-1e9, 1e9);
   view.to = AnyTriple<Eigen::Vector3d>(-1e9, 1e9);
   view.up = AnyTriple<Eigen::Vector3d>(-1e9, 1e9);
+  if (*rc::gen::arbitrary<bool>()) {
+    view.fov_degrees = Camera().fov_degrees;
+    view.focal_pixels =
+        Eigen::Vector2d(AnyNumber(kLeast, kMost), AnyNumber(kLeast, kMost));
+  }
+  if (*rc::gen::arbitrary<bool>()) {
+    view.centre_pixels =
+        Eigen::Vector2d(AnyNumber(-kMost, kMost), AnyNumber(-kMost, kMost));
+  }
   return IsValidCamera(view) ? view : camera;
+}
+
+// In place of from, to and up.
+Camera WithAnyPose(Camera camera) {
+  Eigen::Vector4d q(AnyNumber(-1, 1), AnyNumber(-1, 1), AnyNumber(-1, 1), 0.5);
+  q.normalize();
+  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
+  pose.topLeftCorner<3, 3>() =
+      Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+  pose.topRightCorner<3, 1>() = AnyTriple<Eigen::Vector3d>(-kMost, kMost);
+  camera.world_from_camera = pose;
+  camera.from = Camera().from;
+  camera.to = Camera().to;
+  camera.up = Camera().up;
+  return camera;
+}
+
+ViewsSpec AnyViews() {
+  ViewsSpec views;
+  switch (*Choice(3)) {
+    case 0:
+      views.transforms = AnyPath();
+      break;
+    case 1:
+      views.colmap = AnyPath();
+      break;
+    default:
+      for (int i = *Choice(3); i >= 0; --i) {
+        views.list.push_back({"view " + std::to_string(i), AnyCamera()});
+      }
+  }
+  return views;
 }
 
 CookTorrance AnyAnalyticBrdf() {
@@ -82,6 +124,25 @@ CookTorrance AnyAnalyticBrdf() {
   brdf.roughness = AnyTriple<Eigen::Array3d>(1e-3, 10.0);
   brdf.f0 = AnyTriple<Eigen::Array3d>(0.0, 1.0);
   return brdf;
+}
+
+SurfaceValue AnySurfaceValue(double most, bool triple) {
+  SurfaceValue value{Eigen::Array3d::Constant(AnyNumber(0.0, most)), ""};
+  if (triple) value.value = AnyTriple<Eigen::Array3d>(0.0, most);
+  return value;
+}
+
+PrincipledSpec AnyPrincipled(bool textured) {
+  PrincipledSpec spec;
+  spec.base = AnySurfaceValue(1.0, true);
+  spec.roughness = AnySurfaceValue(1.0, false);
+  spec.metallic = AnySurfaceValue(1.0, false);
+  spec.specular = AnySurfaceValue(12.5, false);
+  if (textured) {
+    spec.base = {PrincipledSpec().base.value, AnyPath()};
+    spec.metallic = {PrincipledSpec().metallic.value, AnyPath()};
+  }
+  return spec;
 }
 
 PaintSpec AnyPaint() {
@@ -191,14 +252,27 @@ Problem AnyProblem() {
     p.camera.to = Camera().to;
     p.camera.up = Camera().up;
   }
+  if (!p.geometry.HasNormalMap() && *rc::gen::arbitrary<bool>()) {
+    p.camera = WithAnyPose(p.camera);
+  }
+  if (!p.geometry.HasNormalMap() && !p.geometry.outline.has_value() &&
+      *rc::gen::arbitrary<bool>()) {
+    p.views = AnyViews();
+    p.camera = p.views.list.size() == 1 ? p.views.list[0].camera : Camera();
+  }
   if (rendered || p.kind == ProblemKind::kIllumination) {
-    if (*rc::gen::arbitrary<bool>()) {
+    const int known = *Choice(3);
+    const bool textured = rendered && *rc::gen::arbitrary<bool>();
+    if (known == 0) {
       p.reflectance.known_file = AnyPath();
+    } else if (known == 1) {
+      p.reflectance.principled = AnyPrincipled(textured);
     } else {
       p.reflectance.analytic = AnyAnalyticBrdf();
     }
-    if (rendered && *rc::gen::arbitrary<bool>())
+    if (rendered && !(known == 1 && textured) && *rc::gen::arbitrary<bool>()) {
       p.reflectance.paint = AnyPaint();
+    }
   } else {
     if (*rc::gen::arbitrary<bool>()) p.reflectance.model = AnyPath();
     p.reflectance.lobes = *rc::gen::inRange(1, 9);
@@ -265,6 +339,9 @@ Problem AnyProblem() {
 void AssertSame(const Camera& a, const Camera& b) {
   RC_ASSERT(a.type == b.type && a.fov_degrees == b.fov_degrees);
   RC_ASSERT(a.from == b.from && a.to == b.to && a.up == b.up);
+  RC_ASSERT(a.world_from_camera == b.world_from_camera);
+  RC_ASSERT(a.focal_pixels == b.focal_pixels);
+  RC_ASSERT(a.centre_pixels == b.centre_pixels);
 }
 
 void AssertSame(const CookTorrance& a, const CookTorrance& b) {
@@ -272,6 +349,15 @@ void AssertSame(const CookTorrance& a, const CookTorrance& b) {
   RC_ASSERT((a.specular == b.specular).all());
   RC_ASSERT((a.roughness == b.roughness).all());
   RC_ASSERT((a.f0 == b.f0).all());
+}
+
+void AssertSame(const PrincipledSpec& a, const PrincipledSpec& b) {
+  for (const auto member :
+       {&PrincipledSpec::base, &PrincipledSpec::roughness,
+        &PrincipledSpec::metallic, &PrincipledSpec::specular}) {
+    RC_ASSERT(((a.*member).value == (b.*member).value).all());
+    RC_ASSERT((a.*member).texture == (b.*member).texture);
+  }
 }
 
 void AssertSame(const PaintSpec& a, const PaintSpec& b) {
@@ -305,6 +391,13 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
   RC_ASSERT(p.image.width == q.image.width);
   RC_ASSERT(p.image.height == q.image.height);
   AssertSame(p.camera, q.camera);
+  RC_ASSERT(p.views.transforms == q.views.transforms);
+  RC_ASSERT(p.views.colmap == q.views.colmap);
+  RC_ASSERT(p.views.list.size() == q.views.list.size());
+  for (size_t i = 0; i < p.views.list.size(); ++i) {
+    RC_ASSERT(p.views.list[i].name == q.views.list[i].name);
+    AssertSame(p.views.list[i].camera, q.views.list[i].camera);
+  }
   RC_ASSERT(p.geometry.kind == q.geometry.kind);
   RC_ASSERT(p.geometry.file == q.geometry.file);
   RC_ASSERT(p.geometry.fit == q.geometry.fit);
@@ -327,6 +420,11 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
             q.reflectance.analytic.has_value());
   if (p.reflectance.analytic.has_value()) {
     AssertSame(*p.reflectance.analytic, *q.reflectance.analytic);
+  }
+  RC_ASSERT(p.reflectance.principled.has_value() ==
+            q.reflectance.principled.has_value());
+  if (p.reflectance.principled.has_value()) {
+    AssertSame(*p.reflectance.principled, *q.reflectance.principled);
   }
   RC_ASSERT(p.reflectance.paint.has_value() == q.reflectance.paint.has_value());
   if (p.reflectance.paint.has_value()) {

@@ -11,6 +11,10 @@ struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Eigen::Vector3f> normals;       // per vertex, unit; or empty
   std::vector<std::array<int, 3>> triangles;  // indices of vertices
+  // Texture coordinates of each triangle's corners, finite, (0, 0) at the
+  // bottom left of the picture; or empty. Corners of one vertex may differ: a
+  // seam.
+  std::vector<std::array<Eigen::Vector2f, 3>> texture;
 };
 
 // Sets normals to the mean of the adjacent faces' normals weighted by the angle

@@ -54,7 +54,7 @@ void SampleNearOf(const PointFrame& frame, const PointQuadrature& quadrature,
                         std::max(frame.wo.dot(t), 0.0), samples);
 }
 
-ViewGroups::ViewGroups(const std::vector<ShadingPoint>& points)
+ViewGroups::ViewGroups(const std::vector<ShadingPoint>& points, size_t most)
     : order(points.size()) {
   std::vector<double> cosine(points.size());
   for (size_t i = 0; i < points.size(); ++i) {
@@ -66,7 +66,7 @@ ViewGroups::ViewGroups(const std::vector<ShadingPoint>& points)
                    [&](int a, int b) { return cosine[a] < cosine[b]; });
   for (size_t k = 0; k < order.size(); ++k) {
     if (k == 0 || cosine[order[k]] != cosine[order[begins.back()]] ||
-        k - begins.back() == kMaxGroup) {
+        k - begins.back() == most) {
       begins.push_back(k);
     }
   }

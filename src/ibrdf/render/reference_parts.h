@@ -73,7 +73,9 @@ struct PointFrame {
 // larger ones would starve other threads.
 struct ViewGroups {
   static constexpr size_t kMaxGroup = 64;
-  explicit ViewGroups(const std::vector<ShadingPoint>& points);
+  // most: points of a group; 1 where they share no reflectance.
+  explicit ViewGroups(const std::vector<ShadingPoint>& points,
+                      size_t most = kMaxGroup);
   int64_t count() const { return static_cast<int64_t>(begins.size()) - 1; }
 
   std::vector<int> order;

@@ -21,6 +21,8 @@ bool ReferenceRadiance::Render(const std::vector<ShadingPoint>& points,
                                          points.begin() + end);
     if (table_ != nullptr) {
       renderer_.Render(some, *table_, L_o + 3 * begin, emitted_);
+    } else if (surface_) {
+      renderer_.Render(some, surface_, function_, L_o + 3 * begin, emitted_);
     } else {
       renderer_.Render(some, function_, L_o + 3 * begin, emitted_);
     }

@@ -21,6 +21,14 @@ class ReferenceRadiance final : public RadianceRenderer {
                     const EmittedLight& emitted = {})
       : renderer_(renderer), function_(std::move(brdf)), emitted_(emitted) {}
 
+  // A reflectance that varies, and its sharpest lobe (ReferenceRenderer).
+  ReferenceRadiance(const ReferenceRenderer& renderer, SurfaceBrdf brdf,
+                    BrdfFunction sharpest, const EmittedLight& emitted)
+      : renderer_(renderer),
+        function_(std::move(sharpest)),
+        surface_(std::move(brdf)),
+        emitted_(emitted) {}
+
   // `progress` is called between steps of some thousand points, well below a
   // second each.
   bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
@@ -30,6 +38,7 @@ class ReferenceRadiance final : public RadianceRenderer {
   const ReferenceRenderer& renderer_;
   const MerlTable* table_ = nullptr;  // null: the function
   const BrdfFunction function_;
+  const SurfaceBrdf surface_;  // set: `function_` is its sharpest
   const EmittedLight emitted_;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <type_traits>
 #include <utility>
 
 #include "ibrdf/base/parallel_for.h"
@@ -69,6 +70,20 @@ class MerlSampler {
  private:
   std::vector<float> lanes_;  // [bin][4]
 };
+
+// What a point's reflectance is looked up in.
+template <typename Lookup>
+const Lookup& OfPoint(const Lookup& lookup, const ShadingPoint&) {
+  return lookup;
+}
+BrdfFunction OfPoint(const SurfaceBrdf& brdf, const ShadingPoint& point) {
+  return brdf(point);
+}
+
+// Points that share their near samples share a reflectance.
+template <typename Lookup>
+constexpr size_t kGroup =
+    std::is_same_v<Lookup, SurfaceBrdf> ? 1 : ViewGroups::kMaxGroup;
 
 // Bilinear in a map of four floats a texel, at a position of place_rays.
 Float4 LookUpTexels(const PaddedMaps& map, float row, float column) {
@@ -338,8 +353,8 @@ std::vector<char> ReferenceRenderer::MeetObject(
   ParallelFor(groups.count(), num_threads_, [&](int64_t group, int worker) {
     Scratch& s = scratch[worker];
     const size_t begin = groups.begins[group];
-    ShadeNear(PointFrame(points[groups.order[begin]]), pass.lookup, &s.near,
-              &s.rays);
+    const ShadingPoint& first = points[groups.order[begin]];
+    ShadeNear(PointFrame(first), OfPoint(pass.lookup, first), &s.near, &s.rays);
     const std::vector<Eigen::Vector3f> lobe =
         Bundle(s.near, pass.settings.width, rays, &s.rays);
     for (size_t k = begin; k < groups.begins[group + 1]; ++k) {
@@ -412,8 +427,9 @@ void ReferenceRenderer::RenderGroup(const Pass<Lookup>& pass,
                                     const LobeLight& lobes, Scratch* scratch,
                                     double* L_o) const {
   const size_t begin = groups.begins[group];
-  ShadeNear(PointFrame(pass.points[groups.order[begin]]), pass.lookup,
-            &scratch->near, &scratch->rays);
+  const ShadingPoint& first = pass.points[groups.order[begin]];
+  const auto& lookup = OfPoint(pass.lookup, first);
+  ShadeNear(PointFrame(first), lookup, &scratch->near, &scratch->rays);
   if (lobes.rays > 0) {
     Bundle(scratch->near, pass.settings.width, lobes.rays, &scratch->rays);
   }
@@ -425,8 +441,8 @@ void ReferenceRenderer::RenderGroup(const Pass<Lookup>& pass,
       sight.lobe = &lobes.radiance[size_t{3} * lobes.rays * i];
     }
     Eigen::Array3d sum = Gather(scratch->rays, frame.Axes(), sight);
-    sum += GatherBright(frame, pass.settings.bright, pass.lookup, sight.hidden);
-    AddFar(frame, pass.lookup, sight, scratch, &sum);
+    sum += GatherBright(frame, pass.settings.bright, lookup, sight.hidden);
+    AddFar(frame, lookup, sight, scratch, &sum);
     for (int c = 0; c < 3; ++c) L_o[size_t{3} * i + c] = sum[c];
   }
 }
@@ -434,7 +450,7 @@ void ReferenceRenderer::RenderGroup(const Pass<Lookup>& pass,
 template <typename Lookup>
 void ReferenceRenderer::RenderPass(const Pass<Lookup>& pass,
                                    double* L_o) const {
-  const ViewGroups groups(pass.points);
+  const ViewGroups groups(pass.points, kGroup<Lookup>);
   const LobeLight lobes = LightOfLobes(pass, groups);
   std::vector<Scratch> scratch(num_threads_ > 0 ? num_threads_
                                                 : HardwareThreads());
@@ -446,13 +462,14 @@ void ReferenceRenderer::RenderPass(const Pass<Lookup>& pass,
 template <typename Lookup>
 void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
                                    const Lookup& lookup,
+                                   const BrdfFunction& sharpest,
                                    const EmittedLight& emitted,
                                    double* L_o) const {
   LobeSettings settings;
   const bool follow =
       lobe_rays_ > 0 && patches_ != nullptr && emitted.radiance != nullptr;
   if (follow || !bright_.empty()) {
-    const double half = LobeHalfWidth(std::cref(lookup));
+    const double half = LobeHalfWidth(sharpest);
     if (follow && half < kNarrowLobe) settings.width = kLobeWidths * half;
     settings.bright = SampleBrightTexels(bright_, map_.height, map_.width,
                                          BrightSamplesPerSide(half));
@@ -463,13 +480,21 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
                                const MerlTable& table, double* L_o,
                                const EmittedLight& emitted) const {
-  RenderWith(points, MerlSampler(table), emitted, L_o);
+  const MerlSampler sampler(table);
+  RenderWith(points, sampler, std::cref(sampler), emitted, L_o);
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
                                const BrdfFunction& brdf, double* L_o,
                                const EmittedLight& emitted) const {
-  RenderWith(points, brdf, emitted, L_o);
+  RenderWith(points, brdf, brdf, emitted, L_o);
+}
+
+void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
+                               const SurfaceBrdf& brdf,
+                               const BrdfFunction& sharpest, double* L_o,
+                               const EmittedLight& emitted) const {
+  RenderWith(points, brdf, sharpest, emitted, L_o);
 }
 
 Image PixelMeans(const std::vector<ShadingPoint>& points, const double* L_o,

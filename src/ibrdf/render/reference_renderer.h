@@ -17,6 +17,7 @@
 // camera) share the BRDF values of their near samples.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct EmittedLight {
   int bounces = 0;
 };
 
+// The BRDF at a point of a surface where it varies.
+using SurfaceBrdf = std::function<BrdfFunction(const ShadingPoint& point)>;
+
 // A renderer is immutable. One thread at a time may call its functions (they
 // are parallel inside). ReferenceRadiance binds it to a reflectance.
 class ReferenceRenderer {
@@ -52,12 +56,17 @@ class ReferenceRenderer {
   // Several threads may call `brdf` at a time.
   void Render(const std::vector<ShadingPoint>& points, const BrdfFunction& brdf,
               double* L_o, const EmittedLight& emitted = {}) const;
+  // sharpest: one of the narrowest lobes among them, for which the sun and what
+  // lobes see of the object are sampled.
+  void Render(const std::vector<ShadingPoint>& points, const SurfaceBrdf& brdf,
+              const BrdfFunction& sharpest, double* L_o,
+              const EmittedLight& emitted = {}) const;
 
  private:
   // What a call has found out about its reflectance.
   struct LobeSettings;
   // One rendering of points: those of a call, or what its lobes' rays met after
-  // `depth` bounces. Lookup: f_r(theta_h, theta_d, phi_d).
+  // `depth` bounces. Lookup: f_r(theta_h, theta_d, phi_d), or a SurfaceBrdf.
   template <typename Lookup>
   struct Pass;
   // Radiance that lobes' rays bring: `rays` of each point.
@@ -83,7 +92,8 @@ class ReferenceRenderer {
   // From a call to a point.
   template <typename Lookup>
   void RenderWith(const std::vector<ShadingPoint>& points, const Lookup& lookup,
-                  const EmittedLight& emitted, double* L_o) const;
+                  const BrdfFunction& sharpest, const EmittedLight& emitted,
+                  double* L_o) const;
   template <typename Lookup>
   void RenderPass(const Pass<Lookup>& pass, double* L_o) const;
   template <typename Lookup>

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/scene/face_viewer.h"
 
 namespace ibrdf {
@@ -32,6 +33,7 @@ bool IntersectSphere(const Ray& ray, const Eigen::Vector3d& center,
   hit->distance = radius * t;
   hit->normal = FaceViewer(normal, normal, -ray.direction);
   hit->position = center + radius * point;
+  hit->texture = SphereTexture(normal);
   return true;
 }
 
@@ -166,6 +168,11 @@ bool Scene::Impl::IntersectMesh(const Ray& ray, bool from_infinity,
   hit->position = LiftedPosition(query.hit, geometric.dot(wo) < 0.0
                                                 ? Eigen::Vector3d(-geometric)
                                                 : geometric);
+  if (!mesh.texture.empty()) {
+    const std::array<Eigen::Vector2f, 3>& uv = mesh.texture[query.hit.primID];
+    const float u = query.hit.u, v = query.hit.v;
+    hit->texture = (1.0f - u - v) * uv[0] + u * uv[1] + v * uv[2];
+  }
   hit->distance = (start + query.ray.tfar) * radius;
   hit->normal = FaceViewer(normal, geometric, wo);
   return true;
@@ -270,6 +277,13 @@ void Scene::Impl::MeshOccludes(const Eigen::Vector3d& position,
   }
 }
 
+Eigen::Vector2f SphereTexture(const Eigen::Vector3d& direction) {
+  const double longitude = std::atan2(direction.x(), direction.z());
+  const double polar = std::acos(std::clamp(direction.y(), -1.0, 1.0));
+  return Eigen::Vector2d(0.5 + longitude / (2.0 * kPi), 1.0 - polar / kPi)
+      .cast<float>();
+}
+
 Scene Scene::UnitSphere() { return Scene(std::make_shared<Impl>()); }
 
 Scene Scene::Sphere(const Eigen::Vector3d& center, double radius) {
@@ -285,6 +299,11 @@ StatusOr<Scene> Scene::FromMesh(const TriangleMesh& mesh,
   const auto num_vertices = static_cast<int>(mesh.vertices.size());
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
     return InvalidInput("mesh", "expected one normal per vertex or none");
+  }
+  if (!mesh.texture.empty() && mesh.texture.size() != mesh.triangles.size()) {
+    return InvalidInput("mesh",
+                        "expected texture coordinates of all triangles or "
+                        "none");
   }
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
   bool has_area = false;

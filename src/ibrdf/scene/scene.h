@@ -28,6 +28,8 @@ struct ShadingPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   // Which of the object's materials it is of, >= 0.
   int material = 0;
+  // Texture coordinates (SurfaceHit).
+  Eigen::Vector2f texture = Eigen::Vector2f::Zero();
 };
 
 struct SurfaceHit {
@@ -37,7 +39,14 @@ struct SurfaceHit {
   // describe, and a little more to the viewer's side: a ray from here above the
   // horizon of `normal` meets no facet of a convex part.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  // Of the mesh, interpolated, or SphereTexture; 0 where a mesh has none.
+  Eigen::Vector2f texture = Eigen::Vector2f::Zero();
 };
+
+// Texture coordinates of a sphere in a direction from its centre, unit: u is
+// longitude, 1/2 at +z and growing toward +x, [0, 1]; v is latitude, 0 at -y
+// and 1 at +y.
+Eigen::Vector2f SphereTexture(const Eigen::Vector3d& direction);
 
 // Geometry that rays can be cast at. Immutable; safe to share between threads;
 // copies share the geometry.

@@ -37,12 +37,10 @@ bool NormalAt(const Image& normals, double x, double y,
 
 // Whether the camera's frame is the world's.
 bool LooksAlongZ(const Camera& camera) {
-  if (camera.type == CameraType::kOrthographic) return true;
-  const Eigen::Vector3d view = (camera.to - camera.from).normalized();
-  const Eigen::Vector3d right = view.cross(camera.up).normalized();
   constexpr double kRounding = 1e-9;
-  return (view + Eigen::Vector3d::UnitZ()).norm() < kRounding &&
-         (right - Eigen::Vector3d::UnitX()).norm() < kRounding;
+  return (AxesOf(camera).world_from_camera - Eigen::Matrix3d::Identity())
+             .cwiseAbs()
+             .maxCoeff() < kRounding;
 }
 
 Status CheckSizes(const Scene& scene, const Camera& camera, int width,
@@ -59,7 +57,8 @@ Status CheckSizes(const Scene& scene, const Camera& camera, int width,
   if (!IsValidCamera(camera)) {
     return InvalidInput("camera",
                         "expected fov_degrees in (0, 180), from apart from to, "
-                        "up not parallel to the view");
+                        "up not parallel to the view; a rotation and focal "
+                        "lengths > 0");
   }
   if (normals.empty()) return Status();
   if (!LooksAlongZ(camera)) {
@@ -94,6 +93,7 @@ bool SeePoint(const Scene& scene, const Camera& camera, double x, double y,
   point->normal = hit.normal.cast<float>();
   point->wo = wo.cast<float>();
   point->position = hit.position;
+  point->texture = hit.texture;
   return true;
 }
 

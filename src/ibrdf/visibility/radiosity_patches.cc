@@ -197,6 +197,7 @@ bool RadiosityPatches::Meet(const ShadingPoint& point,
   hit->position = surface.position;
   hit->normal = surface.normal;
   hit->wo = -direction;
+  hit->texture = surface.texture;
   return true;
 }
 
@@ -209,6 +210,7 @@ bool RadiosityPatches::Meet(const ShadingPoint& point,
   point_met.normal = hit.normal.cast<float>();
   point_met.wo = hit.wo.cast<float>();
   point_met.position = hit.position;
+  point_met.texture = hit.texture;
   point_met.pixel = -1;
   point_met.coverage = 1.0f;
   *met = point_met;

@@ -110,6 +110,7 @@ class RadiosityPatches {
   struct Hit {
     Eigen::Vector3d position;
     Eigen::Vector3d normal, wo;  // unit; wo back along the ray
+    Eigen::Vector2f texture = Eigen::Vector2f::Zero();
   };
   // A cell of the lattice that holds hidden directions, and one of them.
   struct HiddenCell {

@@ -1,0 +1,95 @@
+// What several views see of the texels of a surface.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/geometry/camera.h"
+#include "ibrdf/image/image.h"
+#include "ibrdf/scene/scene.h"
+#include "ibrdf/surface/surface_atlas.h"
+
+namespace ibrdf {
+
+struct ObservedView {
+  Camera camera;
+  Image radiance;
+  // Pixels that are samples of the object: inside of its mask, not clipped and
+  // with all channels. Empty: all. Pixels of radiance that is not finite or
+  // below 0 are none, whatever it says.
+  Mask samples;
+};
+
+// A row of num_views for each texel of a block.
+struct TexelObservations {
+  int num_texels = 0;
+  int num_views = 0;
+  // [num_texels, num_views, 3]: unit, from the texel to the camera, in its
+  // frame: along tangent, bitangent and normal.
+  std::vector<float> directions;
+  // [num_texels, num_views, 3]: radiance that leaves along the direction,
+  // W/(m^2 sr), bilinear between pixels; 0 where there is no sample.
+  std::vector<float> outgoing;
+  // [num_texels, num_views, 3]: radiance of the prefiltered map in the mirror
+  // direction 2 (n.w) n - w; 0 where `shadowed_light` and the object hides it.
+  std::vector<float> incoming;
+  // [num_texels, num_views]: 1 where the view has a sample of the texel, else
+  // 0.
+  std::vector<float> weight;
+  // [num_texels, num_views]: 1 where a ray reaches the camera, sample or not.
+  std::vector<uint8_t> visible;
+};
+
+struct ObserverOptions {
+  // Texels below the horizon of a view by this cosine are not seen by it.
+  float least_cosine = 1e-3f;
+  // Whether light that the object hides in the mirror direction is left out.
+  // The published model has none of it (Wiersma et al. 2025).
+  bool shadowed_light = false;
+  int num_threads = 0;  // <= 0: all
+};
+
+// Sees blocks of texels, so that memory is that of the views and of one block:
+// 44 bytes a texel and view. Immutable; one thread at a time may call it.
+class TexelObserver {
+ public:
+  // prefiltered: PrefilterMap of the known light. Fails where a camera is
+  // invalid, or a mask has another size than its image; the message has the
+  // view's number.
+  static StatusOr<TexelObserver> Make(const Scene& scene, SurfaceAtlas atlas,
+                                      std::vector<ObservedView> views,
+                                      Image prefiltered,
+                                      const ObserverOptions& options);
+
+  const SurfaceAtlas& atlas() const { return atlas_; }
+  int num_views() const { return static_cast<int>(views_.size()); }
+  // Pixels of a view that are samples: those of ObservedView without
+  // silhouettes, pixels beside one that sees nothing or that is farther or
+  // nearer than the surface explains.
+  const Mask& usable(int view) const { return views_[view].samples; }
+
+  // Of atlas().texels [begin, end).
+  TexelObservations Observe(int64_t begin, int64_t end) const;
+
+ private:
+  TexelObserver(const Scene& scene, SurfaceAtlas atlas,
+                std::vector<ObservedView> views, Image prefiltered,
+                const ObserverOptions& options);
+  void KeepSamples(ObservedView* view) const;
+  void ObserveTexel(const SurfaceTexel& texel, int row,
+                    TexelObservations* out) const;
+  // Directions to the cameras that may see the texel, and the views' numbers.
+  std::vector<int> ViewsAbove(const SurfaceTexel& texel,
+                              std::vector<Eigen::Vector3f>* directions) const;
+
+  Scene scene_;
+  SurfaceAtlas atlas_;
+  std::vector<ObservedView> views_;  // cameras with pose and focal length
+  Image prefiltered_;
+  ObserverOptions options_;
+  double offset_ = 0.0;  // of rays from the surface
+};
+
+}  // namespace ibrdf
