@@ -12,12 +12,6 @@
 namespace ibrdf {
 namespace {
 
-TEST(PrefilterMap, AlphaFollowsTheViews) {
-  EXPECT_EQ(0.1, PrefilterAlpha(100));
-  EXPECT_EQ(1.0 / 7.0, PrefilterAlpha(60));  // the paper's example
-  EXPECT_EQ(1.0, PrefilterAlpha(1));
-}
-
 TEST(PrefilterMap, ConstantLightStaysAsItIs) {
   Image map(32, 16);
   for (float& v : map.rgb) v = 2.5f;

@@ -24,11 +24,6 @@ constexpr int kMostRows = 256;
 
 }  // namespace
 
-double PrefilterAlpha(int views) {
-  CHECK_GE(views, 1);
-  return 1.0 / std::floor(std::sqrt(static_cast<double>(views)));
-}
-
 Image PrefilterMap(const Image& map, double alpha, int num_threads) {
   CHECK(alpha > 0.0 && alpha <= 1.0);
   const int order = std::min(

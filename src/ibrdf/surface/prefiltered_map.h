@@ -4,12 +4,8 @@
 
 namespace ibrdf {
 
-// alpha' = 1 / floor(sqrt(views)): the width of the blur that makes the light
-// as coarse as that many views sample it (Wiersma et al. 2025, Appendix C).
-// views >= 1.
-double PrefilterAlpha(int views);
-
-// The map with harmonics of degree l times exp(-(alpha l)^2), in (0, 1]. Its
+// The map with harmonics of degree l times exp(-(alpha l)^2), alpha in (0, 1]:
+// as coarse as views sample the light (PrefilterAlpha of band_limit.h). Its
 // coefficients are exact integrals; degrees of which less than 1e-6 is left are
 // left out, as are those above 100. At least 64 rows. Beside a small sun the
 // result rings below 0, by a few hundredths of the sun's peak: a linear filter
