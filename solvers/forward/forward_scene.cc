@@ -107,20 +107,20 @@ StatusOr<ForwardInputs> LoadForwardInputs(const Problem& problem) {
 }
 
 StatusOr<ForwardScene> PlaceForwardScene(const Problem& problem,
-                                         const ForwardInputs& inputs,
+                                         ForwardInputs inputs,
                                          int num_threads) {
   StatusOr<ViewPoints> view = SeePoints(problem, inputs.scene, num_threads);
   if (!view.ok()) return view.status();
   ForwardScene scene;
   scene.view = *std::move(view);
-  scene.map = inputs.map;
-  scene.brdf = inputs.brdf;
-  scene.texture = inputs.texture;
+  scene.map = std::move(inputs.map);
+  scene.brdf = std::move(inputs.brdf);
+  scene.texture = std::move(inputs.texture);
   if (scene.texture) {
     scene.brdf.function = scene.texture->Mean(scene.view.points).Function();
     scene.sharpest = scene.texture->Sharpest(scene.view.points).Function();
   }
-  scene.warnings = inputs.warnings;
+  scene.warnings = std::move(inputs.warnings);
   if (problem.reflectance.paint.has_value()) {
     IBRDF_RETURN_IF_ERROR(AddKnownPaint(*problem.reflectance.paint, &scene));
   }

@@ -73,7 +73,6 @@ StatusOr<ForwardInputs> LoadForwardInputs(const Problem& problem);
 
 // Before the problem's camera.
 StatusOr<ForwardScene> PlaceForwardScene(const Problem& problem,
-                                         const ForwardInputs& inputs,
-                                         int num_threads);
+                                         ForwardInputs inputs, int num_threads);
 
 }  // namespace ibrdf

@@ -18,10 +18,10 @@ uint64_t SeedOf(const Problem& problem, const RenderSceneOptions& options) {
 }
 
 StatusOr<RenderedScene> RenderInputs(const Problem& problem,
-                                     const ForwardInputs& inputs,
+                                     ForwardInputs inputs,
                                      const RenderSceneOptions& options) {
   StatusOr<ForwardScene> scene =
-      PlaceForwardScene(problem, inputs, options.num_threads);
+      PlaceForwardScene(problem, std::move(inputs), options.num_threads);
   if (!scene.ok()) return scene.status();
   const StatusOr<PlannedRender> planned =
       PlanRender(problem, *scene, options.num_threads);
@@ -72,9 +72,9 @@ std::string Describe(const RenderedScene& rendered) {
 
 StatusOr<RenderedScene> RenderScene(const Problem& problem,
                                     const RenderSceneOptions& options) {
-  const StatusOr<ForwardInputs> inputs = LoadForwardInputs(problem);
+  StatusOr<ForwardInputs> inputs = LoadForwardInputs(problem);
   if (!inputs.ok()) return inputs.status();
-  return RenderInputs(problem, *inputs, options);
+  return RenderInputs(problem, *std::move(inputs), options);
 }
 
 Status RenderViews(const Problem& problem, const RenderSceneOptions& options,

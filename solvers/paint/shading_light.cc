@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "ibrdf/base/pi.h"
 #include "ibrdf/solvers/paint/chroma_plane.h"
+#include "ibrdf/solvers/paint/like_colours.h"
 
 namespace ibrdf {
 namespace {
 
 constexpr double kMinCosine = 0.2;
-// Colours are alike within this deviation of log chroma; of pairs, those that
-// differ by less than 1.5 of it take part. First to find a lamp by luminance;
-// then wider, as the lamp's colour moves a paint's chroma between light and
-// shade.
+// Colours are alike within this deviation of log chroma. First to find a lamp
+// by luminance; then wider, as the lamp's colour moves a paint's chroma between
+// light and shade.
 constexpr double kLikeColour = 0.06, kLikePaint = 0.15;
-constexpr size_t kPairs = 5000, kFewestPairs = 200, kTries = 400000;
 // What shadows, bounces and a paint's own variation make of log luminance and
 // log chroma is beyond these.
 constexpr double kRobustLuminance = 0.15, kRobustChroma = 0.05;
@@ -31,16 +29,11 @@ constexpr double kMostStrength = 100.0, kChromaStd = 0.2, kPriorPairs = 20.0;
 constexpr double kSoftness = 0.015;
 constexpr double kFirstStep = 0.1, kLastStep = 0.003;
 
-struct Pair {
-  int first, second;
-  double weight;
-};
-
 // What takes part: normals, log radiances and pairs of like colour.
 struct Shading {
   std::vector<Eigen::Vector3d> normals;
   std::vector<Eigen::Array3d> log_radiance;
-  std::vector<Pair> pairs;
+  std::vector<ColourPair> pairs;
 };
 
 Shading Facing(const std::vector<ShadingPoint>& points,
@@ -60,17 +53,16 @@ Shading Facing(const std::vector<ShadingPoint>& points,
 
 // Pairs whose colours under the light at hand differ little, and the pixels
 // that they hold.
-Shading PairsOfLikeColour(const Shading& all, const ShadingLight& light,
-                          double like) {
+Shading PixelsOfLikeColour(const Shading& all, const ShadingLight& light,
+                           double like) {
   Shading used;
-  if (all.normals.empty()) return used;
   std::vector<Eigen::Array2d> chroma;
   for (size_t i = 0; i < all.normals.size(); ++i) {
     chroma.push_back(ChromaPlane(all.log_radiance[i] -
                                  Irradiance(light, all.normals[i]).log()));
   }
   std::vector<int> place(all.normals.size(), -1);
-  const auto take = [&](size_t i) {
+  const auto take = [&](int i) {
     if (place[i] < 0) {
       place[i] = static_cast<int>(used.normals.size());
       used.normals.push_back(all.normals[i]);
@@ -78,15 +70,9 @@ Shading PairsOfLikeColour(const Shading& all, const ShadingLight& light,
     }
     return place[i];
   };
-  std::mt19937_64 bits(1);
-  for (size_t k = 0; k < kTries && used.pairs.size() < kPairs; ++k) {
-    const size_t first = bits() % all.normals.size();
-    const size_t second = bits() % all.normals.size();
-    const double lengths =
-        (chroma[first] - chroma[second]).matrix().norm() / like;
-    if (first == second || lengths > 1.5) continue;
-    const int a = take(first), b = take(second);
-    used.pairs.push_back({a, b, std::exp(-0.5 * lengths * lengths)});
+  for (const ColourPair& pair : PairsOfLikeColour(chroma, like)) {
+    const int a = take(pair.first), b = take(pair.second);
+    used.pairs.push_back({a, b, pair.weight});
   }
   return used;
 }
@@ -101,7 +87,7 @@ double Cost(const Shading& shading, const ShadingLight& light,
                    Irradiance(light, shading.normals[i]).log());
   }
   double cost = 0.0;
-  for (const Pair& pair : shading.pairs) {
+  for (const ColourPair& pair : shading.pairs) {
     const Eigen::Array3d r = left[pair.first] - left[pair.second];
     const double luminance = r.mean();
     double misfit = std::log1p(luminance * luminance /
@@ -176,8 +162,8 @@ Eigen::Array3d Irradiance(const ShadingLight& light,
 std::optional<ShadingLight> FindShadingLight(
     const std::vector<ShadingPoint>& points, const Observations& observed) {
   const Shading all = Facing(points, observed);
-  const Shading alike = PairsOfLikeColour(all, ShadingLight(), kLikeColour);
-  if (alike.pairs.size() < kFewestPairs) return std::nullopt;
+  const Shading alike = PixelsOfLikeColour(all, ShadingLight(), kLikeColour);
+  if (alike.pairs.size() < kFewestColourPairs) return std::nullopt;
   const double flat = Cost(alike, ShadingLight(), false);
   ShadingLight best;
   double least = flat;
@@ -193,7 +179,7 @@ std::optional<ShadingLight> FindShadingLight(
     }
   }
   if (!(least < (1.0 - kLeastExplained) * flat)) return std::nullopt;
-  return Improve(PairsOfLikeColour(all, best, kLikePaint), best);
+  return Improve(PixelsOfLikeColour(all, best, kLikePaint), best);
 }
 
 }  // namespace ibrdf

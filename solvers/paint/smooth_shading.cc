@@ -4,10 +4,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "ibrdf/approximation/harmonics.h"
 #include "ibrdf/solvers/paint/chroma_plane.h"
+#include "ibrdf/solvers/paint/like_colours.h"
 
 namespace ibrdf {
 namespace {
@@ -16,13 +16,12 @@ constexpr double kLeastFacing = 0.2;
 constexpr int kOrder = 2;
 // The constant harmonic is paint's level.
 constexpr int kHarmonics = (kOrder + 1) * (kOrder + 1) - 1;
-constexpr size_t kNeighbours = 6000, kLikePairs = 5000, kPairTries = 400000;
-constexpr size_t kFewestLike = 200;
+constexpr size_t kNeighbours = 6000;
 // Both kinds of pairs weigh as much, whatever their number.
 constexpr double kWeightOfKind = 5000.0;
 // As in shading_light.cc: first of nearly one colour; then wider, as the
 // light's colour is known.
-constexpr double kFirstAlike = 0.06, kNextAlike = 0.09, kMostLengths = 1.5;
+constexpr double kFirstAlike = 0.06, kNextAlike = 0.09;
 // Where normals turn by more from pixel to pixel, radians, neighbours say
 // little of each other.
 constexpr double kSharpTurn = 0.05;
@@ -88,11 +87,11 @@ class ShadingFit {
   // The coefficients of s; 0 where too few points have partners.
   Coefficients Run() {
     Coefficients s = Coefficients::Zero();
-    if (facing_.size() < kFewestLike) return s;
+    if (facing_.size() < kFewestColourPairs) return s;
     for (int round = 0; round < kRounds; ++round) {
       const size_t steps = differences_.size();
       AddLikeColours(s, round == 0 ? kFirstAlike : kNextAlike);
-      if (differences_.size() < steps + kFewestLike) return s;
+      if (differences_.size() < steps + kFewestColourPairs) return s;
       for (int k = 0; k < kIterations; ++k) s = Reweighted(s);
       differences_.resize(steps);
     }
@@ -145,18 +144,14 @@ class ShadingFit {
   // Pairs whose chroma differs little without the shading at hand.
   void AddLikeColours(const Coefficients& s, double like) {
     const size_t first = differences_.size();
-    std::mt19937_64 bits(1);
-    for (size_t k = 0;
-         k < kPairTries && differences_.size() < first + kLikePairs; ++k) {
-      const size_t a = facing_[bits() % facing_.size()];
-      const size_t b = facing_[bits() % facing_.size()];
-      const Colour shading =
-          s.transpose() * Harmonics(harmonics_[b] - harmonics_[a]);
-      const Colour left = colours_[b] - colours_[a] - shading;
-      const double lengths = left.tail<2>().matrix().norm() / like;
-      if (a == b || lengths > kMostLengths) continue;
-      Add(a, b, std::exp(-0.5 * lengths * lengths), kLuminanceOfColour,
-          kChromaOfColour);
+    std::vector<Eigen::Array2d> chroma;
+    for (const size_t i : facing_) {
+      const Colour shading = s.transpose() * harmonics_[i];
+      chroma.push_back((colours_[i] - shading).tail<2>());
+    }
+    for (const ColourPair& pair : PairsOfLikeColour(chroma, like)) {
+      Add(facing_[pair.first], facing_[pair.second], pair.weight,
+          kLuminanceOfColour, kChromaOfColour);
     }
     Normalise(first);
   }

@@ -10,6 +10,7 @@
 
 #include "ibrdf/approximation/harmonics.h"
 #include "ibrdf/base/simd_dispatch.h"
+#include "ibrdf/base/to_float.h"
 
 namespace ibrdf {
 namespace {
@@ -92,12 +93,9 @@ TEST(HarmonicBatch, EveryInstructionSetAgrees) {
 #endif
   const int order = 10;
   const HarmonicBasis basis(order);
-  const auto to_float = [](const std::vector<double>& v) {
-    return std::vector<float>(v.begin(), v.end());
-  };
-  const std::vector<float> diagonal = to_float(basis.diagonal()),
-                           up = to_float(basis.up()),
-                           down = to_float(basis.down());
+  const std::vector<float> diagonal = ToFloat(basis.diagonal()),
+                           up = ToFloat(basis.up()),
+                           down = ToFloat(basis.down());
   const HarmonicConstants constants{order, diagonal.data(), up.data(),
                                     down.data()};
   const Directions u = ManyDirections();

@@ -10,6 +10,7 @@
 
 #include "ibrdf/base/pi.h"
 #include "tests/uncertainty/random_samples.h"
+#include "tests/uncertainty/spoilt_options.h"
 
 namespace ibrdf {
 namespace {
@@ -278,21 +279,19 @@ TEST(AngularEntropy, IsFiniteForAnyInput) {
 }
 
 TEST(AngularOptions, BadOnesAreNamed) {
-  const auto message = [](void (*spoil)(AngularOptions*)) {
-    AngularOptions options;
-    spoil(&options);
-    return options.Check().message();
-  };
-  const auto names = [](const std::string& text, const char* name) {
-    return text.find(name) != std::string::npos;
-  };
   EXPECT_TRUE(AngularOptions().Check().ok());
-  EXPECT_TRUE(names(message([](auto* o) { o->num_alpha = 1; }), "num_alpha"));
-  EXPECT_TRUE(names(message([](auto* o) { o->num_ks = 65; }), "num_ks"));
-  EXPECT_TRUE(names(message([](auto* o) { o->num_kd = 1; }), "num_kd"));
-  EXPECT_TRUE(names(message([](auto* o) { o->sigma = -1.0; }), "sigma"));
-  EXPECT_TRUE(names(message([](auto* o) { o->prior = {1.0}; }), "prior"));
-  EXPECT_TRUE(names(message([](auto* o) { o->fit.order = 0; }), "order"));
+  EXPECT_TRUE(CheckNames<AngularOptions>("num_alpha",
+                                         [](auto* o) { o->num_alpha = 1; }));
+  EXPECT_TRUE(
+      CheckNames<AngularOptions>("num_ks", [](auto* o) { o->num_ks = 65; }));
+  EXPECT_TRUE(
+      CheckNames<AngularOptions>("num_kd", [](auto* o) { o->num_kd = 1; }));
+  EXPECT_TRUE(
+      CheckNames<AngularOptions>("sigma", [](auto* o) { o->sigma = -1.0; }));
+  EXPECT_TRUE(
+      CheckNames<AngularOptions>("prior", [](auto* o) { o->prior = {1.0}; }));
+  EXPECT_TRUE(
+      CheckNames<AngularOptions>("order", [](auto* o) { o->fit.order = 0; }));
 }
 
 }  // namespace

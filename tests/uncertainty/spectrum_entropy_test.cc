@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/uncertainty/random_samples.h"
+#include "tests/uncertainty/spoilt_options.h"
 
 namespace ibrdf {
 namespace {
@@ -274,23 +275,20 @@ TEST(SpectrumEntropy, APriorNarrowsIt) {
 TEST(SpectrumOptions, BadOnesAreNamed) {
   EXPECT_TRUE(SpectrumOptions().Check().ok());
   EXPECT_TRUE(SpectrumOptions::Published(1e-5).Check().ok());
-  const auto message = [](void (*spoil)(SpectrumOptions*)) {
-    SpectrumOptions options;
-    spoil(&options);
-    return options.Check().message();
-  };
-  const auto names = [](const std::string& text, const char* name) {
-    return text.find(name) != std::string::npos;
-  };
-  EXPECT_TRUE(names(message([](auto* o) { o->num_alpha = 1; }), "num_alpha"));
-  EXPECT_TRUE(names(message([](auto* o) { o->num_ks = 257; }), "num_ks"));
-  EXPECT_TRUE(names(message([](auto* o) { o->sigma = 0.0; }), "sigma"));
+  EXPECT_TRUE(CheckNames<SpectrumOptions>("num_alpha",
+                                          [](auto* o) { o->num_alpha = 1; }));
   EXPECT_TRUE(
-      names(message([](auto* o) { o->relative_floor = 0.0; }), "floor"));
-  EXPECT_TRUE(names(message([](auto* o) { o->prior = {1.0}; }), "prior"));
+      CheckNames<SpectrumOptions>("num_ks", [](auto* o) { o->num_ks = 257; }));
   EXPECT_TRUE(
-      names(message([](auto* o) { o->prior.assign(64, -1.0); }), "prior"));
-  EXPECT_TRUE(names(message([](auto* o) { o->fit.order = 0; }), "order"));
+      CheckNames<SpectrumOptions>("sigma", [](auto* o) { o->sigma = 0.0; }));
+  EXPECT_TRUE(CheckNames<SpectrumOptions>(
+      "floor", [](auto* o) { o->relative_floor = 0.0; }));
+  EXPECT_TRUE(
+      CheckNames<SpectrumOptions>("prior", [](auto* o) { o->prior = {1.0}; }));
+  EXPECT_TRUE(CheckNames<SpectrumOptions>(
+      "prior", [](auto* o) { o->prior.assign(64, -1.0); }));
+  EXPECT_TRUE(
+      CheckNames<SpectrumOptions>("order", [](auto* o) { o->fit.order = 0; }));
 }
 
 TEST(SpectrumEntropyEvaluator, RefusesBadSamples) {

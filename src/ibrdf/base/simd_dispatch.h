@@ -2,8 +2,8 @@
 //
 // A kernel file is compiled once per instruction set by the CMake function
 // ibrdf_add_simd_kernels(), each time with another IBRDF_SIMD_NAMESPACE
-// (portable, avx2, avx512), and a caller picks a table of function pointers by
-// ActiveSimdLevel(). Kernels agree between levels to float rounding
+// (portable, avx2, avx512), and a caller picks a function or a table of them
+// by IBRDF_ACTIVE_KERNEL. Kernels agree between levels to float rounding
 // (experiments/precision).
 #pragma once
 
@@ -22,5 +22,29 @@ SimdLevel ActiveSimdLevel();
 bool SimdLevelSupported(SimdLevel level);
 
 const char* SimdLevelName(SimdLevel level);
+
+// One of three versions of a kernel, the one for ActiveSimdLevel().
+template <typename Kernel>
+Kernel KernelOfActiveLevel(Kernel portable, Kernel avx2, Kernel avx512) {
+  switch (ActiveSimdLevel()) {
+    case SimdLevel::kAvx512:
+      return avx512;
+    case SimdLevel::kAvx2:
+      return avx2;
+    case SimdLevel::kPortable:
+    case SimdLevel::kDouble:
+      break;
+  }
+  return portable;
+}
+
+// The same of an object or function `name` of the kernels' namespaces, as a
+// pointer: a macro, as two of the three are there on x86 alone.
+#if defined(IBRDF_HAVE_X86_KERNELS)
+#define IBRDF_ACTIVE_KERNEL(name) \
+  ::ibrdf::KernelOfActiveLevel(&portable::name, &avx2::name, &avx512::name)
+#else
+#define IBRDF_ACTIVE_KERNEL(name) (&portable::name)
+#endif
 
 }  // namespace ibrdf

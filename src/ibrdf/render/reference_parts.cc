@@ -9,18 +9,7 @@
 namespace ibrdf {
 
 const ReferenceKernels& ActiveReferenceKernels() {
-#if defined(IBRDF_HAVE_X86_KERNELS)
-  switch (ActiveSimdLevel()) {
-    case SimdLevel::kAvx512:
-      return avx512::kReferenceKernels;
-    case SimdLevel::kAvx2:
-      return avx2::kReferenceKernels;
-    case SimdLevel::kPortable:
-    case SimdLevel::kDouble:
-      break;
-  }
-#endif
-  return portable::kReferenceKernels;
+  return *IBRDF_ACTIVE_KERNEL(kReferenceKernels);
 }
 
 QuadratureOptions NearOptions(int map_width, const ReferenceOptions& options) {

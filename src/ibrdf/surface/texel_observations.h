@@ -10,6 +10,7 @@
 #include "ibrdf/image/image.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/surface/surface_atlas.h"
+#include "ibrdf/uncertainty/texel_samples.h"
 
 namespace ibrdf {
 
@@ -22,22 +23,12 @@ struct ObservedView {
   Mask samples;
 };
 
-// A row of num_views for each texel of a block.
-struct TexelObservations {
-  int num_texels = 0;
-  int num_views = 0;
-  // [num_texels, num_views, 3]: unit, from the texel to the camera, in its
-  // frame: along tangent, bitangent and normal.
-  std::vector<float> directions;
-  // [num_texels, num_views, 3]: radiance that leaves along the direction,
-  // W/(m^2 sr), bilinear between pixels; 0 where there is no sample.
-  std::vector<float> outgoing;
-  // [num_texels, num_views, 3]: radiance of the prefiltered map in the mirror
-  // direction 2 (n.w) n - w; 0 where `shadowed_light` and the object hides it.
-  std::vector<float> incoming;
-  // [num_texels, num_views]: 1 where the view has a sample of the texel, else
-  // 0.
-  std::vector<float> weight;
+// Samples of a block of texels. Directions are along tangent, bitangent and
+// normal. Outgoing radiance is bilinear between pixels, 0 where there is no
+// sample; incoming radiance 0 where `shadowed_light` and the object hides it.
+// What is said of the map, mean_radiance and prefilter_alpha, is the caller's
+// to set.
+struct TexelObservations : TexelSamples {
   // [num_texels, num_views]: 1 where a ray reaches the camera, sample or not.
   std::vector<uint8_t> visible;
 };

@@ -12,6 +12,7 @@
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/base/simd_dispatch.h"
+#include "ibrdf/base/to_float.h"
 #include "ibrdf/uncertainty/angular_kernels.h"
 #include "ibrdf/uncertainty/parameter_prior.h"
 
@@ -25,30 +26,6 @@ constexpr double kLargestDistance = 1e30;
 constexpr double kSingular = 1e-10;
 // Light whose square is less tells nothing, and quotients by it overflow.
 constexpr double kNoLight = 1e-20;
-
-struct AngularKernels {
-  void (*moments)(const AngularArguments&);
-  void (*entropy)(const AngularGrid&, const AngularSignals&);
-};
-
-AngularKernels KernelsOfAngular() {
-#if defined(IBRDF_HAVE_X86_KERNELS)
-  switch (ActiveSimdLevel()) {
-    case SimdLevel::kAvx512:
-      return {avx512::AngularMoments, avx512::AngularEntropy};
-    case SimdLevel::kAvx2:
-      return {avx2::AngularMoments, avx2::AngularEntropy};
-    case SimdLevel::kPortable:
-    case SimdLevel::kDouble:
-      break;
-  }
-#endif
-  return {portable::AngularMoments, portable::AngularEntropy};
-}
-
-std::vector<float> Floats(const std::vector<double>& v) {
-  return std::vector<float>(v.begin(), v.end());
-}
 
 // int max(cos, 0) Y_l0 of each degree: irradiance of harmonics in the frame of
 // the normal.
@@ -165,10 +142,10 @@ class AngularBatch {
         filter_.push_back(FilterOf(options.filter, alpha, l) / Prefilter(l));
       }
     }
-    Ks_ = Floats(UnitValues(options.num_ks));
-    Kd_ = options.num_kd > 0 ? Floats(UnitValues(options.num_kd))
+    Ks_ = ToFloat(UnitValues(options.num_ks));
+    Kd_ = options.num_kd > 0 ? ToFloat(UnitValues(options.num_kd))
                              : std::vector<float>{0.0f};
-    penalty_ = Floats(PriorPenalty(options.prior));
+    penalty_ = ToFloat(PriorPenalty(options.prior));
   }
 
   void Evaluate(int64_t first, EntropyMaps* maps) {
@@ -189,8 +166,8 @@ class AngularBatch {
                            Ks_.data(),
                            Kd_.data(),
                            penalty_.empty() ? nullptr : penalty_.data()};
-    KernelsOfAngular().entropy(grid,
-                               {rows_.data(), kBatchSignals, entropy.data()});
+    const auto kernel = IBRDF_ACTIVE_KERNEL(AngularEntropy);
+    kernel(grid, {rows_.data(), kBatchSignals, entropy.data()});
     for (int lane = 0; lane < texels; ++lane) {
       for (int c = 0; c < 3; ++c) {
         maps->entropy[3 * (first + lane) + c] = entropy[c * kFitBatch + lane];
@@ -209,25 +186,17 @@ class AngularBatch {
     numbers_.resize(
         AngularWorkspaceSize(basis_.order(), batch_.num_views, kMostDoubles));
     AngularArguments a;
-    a.order = basis_.order();
+    a.batch = batch_.Arguments(basis_);
     a.num_alpha = options_.num_alpha;
-    a.diagonal = basis_.diagonal().data();
-    a.up = basis_.up().data();
-    a.down = basis_.down().data();
     a.filter = filter_.data();
     a.alpha = alpha_.data();
     a.fresnel = options_.fresnel;
     a.masking = options_.masking;
-    a.num_views = batch_.num_views;
-    a.polar = batch_.polar.data();
-    a.zero = batch_.zero.data();
-    a.side = batch_.side.data();
-    a.weight = batch_.weight.data();
-    a.values = batch_.values.data();
     a.coefficients = coefficients_.data();
     a.workspace = numbers_.data();
     a.moments = moments_.data();
-    KernelsOfAngular().moments(a);
+    const auto kernel = IBRDF_ACTIVE_KERNEL(AngularMoments);
+    kernel(a);
   }
 
   // Radiance of a white matte surface: E / pi.

@@ -22,7 +22,7 @@ struct ViewFields {
   double* masking;  // of the alpha at hand
 
   ViewFields(const AngularArguments& a, int view) {
-    const int lanes = 3 * (a.order + 1);
+    const int lanes = 3 * (a.batch.order + 1);
     degrees = a.workspace + static_cast<int64_t>(view) * (lanes + 4) * kDoubles;
     weight = degrees + lanes * kDoubles;
     schlick = weight + kDoubles;
@@ -34,27 +34,28 @@ struct ViewFields {
 void FillView(const AngularArguments& a, int lane, int view) {
   const ViewFields to(a, view);
   const int at = view * kFitBatch + lane;
-  const Vd cosine = Widen(a.polar + at);
-  StoreDoubles(to.weight, Widen(a.weight + at));
+  const Vd cosine = Widen(a.batch.polar + at);
+  StoreDoubles(to.weight, Widen(a.batch.weight + at));
   const Vd t = 1.0 - cosine;
   StoreDoubles(to.schlick, a.fresnel ? t * t * t * t * t : Vd{});
   StoreDoubles(to.tangent2, (1.0 - cosine * cosine) / (cosine * cosine));
   Vd sums[3 * 11] = {};
   int degree_of[11 * 11];
-  for (int l = 0; l <= a.order; ++l) {
+  for (int l = 0; l <= a.batch.order; ++l) {
     for (int k = l * l; k < (l + 1) * (l + 1); ++k) degree_of[k] = l;
   }
-  EvaluateRecurrence(
-      a.order, a.diagonal, a.up, a.down, cosine, Widen(a.zero + at),
-      Widen(a.side + at), [&](int harmonic, Vd y) {
-        const double* const c =
-            a.coefficients + (harmonic * kFitValues + 3) * kFitBatch + lane;
-        Vd* const sum = sums + 3 * degree_of[harmonic];
-        for (int k = 0; k < 3; ++k) {
-          sum[k] += y * LoadDoubles(c + k * kFitBatch);
-        }
-      });
-  for (int k = 0; k < 3 * (a.order + 1); ++k) {
+  EvaluateRecurrence(a.batch.order, a.batch.diagonal, a.batch.up, a.batch.down,
+                     cosine, Widen(a.batch.zero + at), Widen(a.batch.side + at),
+                     [&](int harmonic, Vd y) {
+                       const double* const c =
+                           a.coefficients +
+                           (harmonic * kFitValues + 3) * kFitBatch + lane;
+                       Vd* const sum = sums + 3 * degree_of[harmonic];
+                       for (int k = 0; k < 3; ++k) {
+                         sum[k] += y * LoadDoubles(c + k * kFitBatch);
+                       }
+                     });
+  for (int k = 0; k < 3 * (a.batch.order + 1); ++k) {
     StoreDoubles(to.degrees + k * kDoubles, sums[k]);
   }
 }
@@ -71,12 +72,12 @@ void FillMasking(const AngularArguments& a, double alpha, int view) {
 }
 
 void SumMoments(const AngularArguments& a, int lane, int i, int channel) {
-  const double* const filter = a.filter + i * (a.order + 1);
+  const double* const filter = a.filter + i * (a.batch.order + 1);
   Vd sums[kAngularMoments] = {};
-  for (int view = 0; view < a.num_views; ++view) {
+  for (int view = 0; view < a.batch.num_views; ++view) {
     const ViewFields fields(a, view);
     Vd gloss = {};
-    for (int l = 0; l <= a.order; ++l) {
+    for (int l = 0; l <= a.batch.order; ++l) {
       gloss += filter[l] *
                LoadDoubles(fields.degrees + (3 * l + channel) * kDoubles);
     }
@@ -85,7 +86,7 @@ void SumMoments(const AngularArguments& a, int lane, int i, int channel) {
     const Vd x0 = LoadDoubles(fields.schlick) * gloss;
     const Vd x = gloss - x0;
     const float* const B =
-        a.values + (view * kFitValues + channel) * kFitBatch + lane;
+        a.batch.values + (view * kFitValues + channel) * kFitBatch + lane;
     const Vd y = Widen(B) - x0;
     const Vd w = LoadDoubles(fields.weight);
     sums[0] += w * y;
@@ -128,9 +129,10 @@ void ForEachCell(const AngularGrid& g, const float* rows, int stride,
 
 void AngularMoments(const AngularArguments& a) {
   for (int lane = 0; lane < kFitBatch; lane += kDoubles) {
-    for (int view = 0; view < a.num_views; ++view) FillView(a, lane, view);
+    for (int view = 0; view < a.batch.num_views; ++view)
+      FillView(a, lane, view);
     for (int i = 0; i < a.num_alpha; ++i) {
-      for (int view = 0; view < a.num_views; ++view) {
+      for (int view = 0; view < a.batch.num_views; ++view) {
         FillMasking(a, a.alpha[i], view);
       }
       for (int c = 0; c < 3; ++c) SumMoments(a, lane, i, c);

@@ -2,6 +2,8 @@
 #pragma once
 #include <cstdint>
 
+#include "ibrdf/uncertainty/harmonic_fit_kernels.h"
+
 namespace ibrdf {
 
 // Moments of a channel under one alpha, each a sum over views of weight times:
@@ -10,14 +12,11 @@ inline constexpr int kAngularMoments = 5;
 
 // The texels of a FitBatch. Radiance is Kd D + x Ks + x_0, y = B - x_0.
 struct AngularArguments {
-  int order, num_alpha;
-  const double *diagonal, *up, *down;  // constants of HarmonicBasis
-  const double* filter;                // [num_alpha, order + 1]
-  const double* alpha;                 // [num_alpha]
+  BatchArguments batch;
+  int num_alpha;
+  const double* filter;  // [num_alpha, order + 1]
+  const double* alpha;   // [num_alpha]
   bool fresnel, masking;
-  int num_views;
-  const float *polar, *zero, *side, *weight;  // [num_views, kFitBatch]
-  const float* values;         // [num_views, kFitValues, kFitBatch]
   const double* coefficients;  // [count, kFitValues, kFitBatch]
   double* workspace;           // AngularWorkspaceSize()
   double* moments;             // [num_alpha, 3, kAngularMoments, kFitBatch]

@@ -9,6 +9,7 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/base/simd_dispatch.h"
+#include "ibrdf/base/to_float.h"
 #include "ibrdf/uncertainty/expected_entropy_kernels.h"
 #include "ibrdf/uncertainty/parameter_prior.h"
 
@@ -17,28 +18,6 @@ namespace {
 
 // Texels whose sums are joined before all others are.
 constexpr int kTexelsPerSum = 16;
-
-using ExpectedFunction = void (*)(const SpectrumGrid& grid,
-                                  const ExpectedSignals& signals);
-
-ExpectedFunction ExpectedKernel() {
-#if defined(IBRDF_HAVE_X86_KERNELS)
-  switch (ActiveSimdLevel()) {
-    case SimdLevel::kAvx512:
-      return avx512::ExpectedEntropy;
-    case SimdLevel::kAvx2:
-      return avx2::ExpectedEntropy;
-    case SimdLevel::kPortable:
-    case SimdLevel::kDouble:
-      break;
-  }
-#endif
-  return portable::ExpectedEntropy;
-}
-
-std::vector<float> AsFloats(const std::vector<double>& v) {
-  return std::vector<float>(v.begin(), v.end());
-}
 
 double UnitOf(const TexelSamples& samples, const SpectrumOptions& options) {
   return options.unit_exposure ? samples.mean_radiance : 1.0;
@@ -93,12 +72,12 @@ BestViewSearch::BestViewSearch(const TexelSamples& candidates,
   CHECK(options_.Check().ok()) << options_.Check().message();
   CHECK(candidates.Check().ok()) << candidates.Check().message();
   const SpectrumOptions& spectrum = options_.spectrum;
-  filter_ = AsFloats(FilterTable(spectrum, candidates.prefilter_alpha));
+  filter_ = ToFloat(FilterTable(spectrum, candidates.prefilter_alpha));
   SpectrumOptions shown = spectrum;
   if (options_.published_alpha) shown.alpha_grid = AlphaGrid::kUniformAlpha;
-  hypothetical_ = AsFloats(FilterTable(shown, candidates.prefilter_alpha));
-  factor_ = AsFloats(FactorTable(spectrum));
-  penalty_ = AsFloats(PriorPenalty(spectrum.prior));
+  hypothetical_ = ToFloat(FilterTable(shown, candidates.prefilter_alpha));
+  factor_ = ToFloat(FactorTable(spectrum));
+  penalty_ = ToFloat(PriorPenalty(spectrum.prior));
   // What k shows has S_B(0) = Ks^2 S_L(0), where distances depend on it.
   for (const double Ks : UnitValues(spectrum.num_ks)) {
     scale_.push_back(
@@ -197,9 +176,10 @@ void BestViewSearch::AddExpected(int texel, double* sums) const {
   std::vector<float> expected(stride);
   for (int channel = 0; channel < 3; ++channel) {
     const std::vector<float> p = Probabilities(texel, channel);
-    ExpectedKernel()(
-        grid, {hypothetical_.data(), scale_.data(), p.data(), stride,
-               &signals[channel * order * stride], count + 1, expected.data()});
+    const auto kernel = IBRDF_ACTIVE_KERNEL(ExpectedEntropy);
+    kernel(grid,
+           {hypothetical_.data(), scale_.data(), p.data(), stride,
+            &signals[channel * order * stride], count + 1, expected.data()});
     for (int view = 0, k = 0; view < num_views; ++view) {
       const bool sees = k < count && seeing[k] == view;
       sums[view] += expected[sees ? k++ : count];

@@ -14,23 +14,6 @@ namespace {
 // Squares of spectra must stay finite in single precision.
 constexpr double kLargestPower = 1e15;
 
-using FitFunction = void (*)(const FitArguments& arguments);
-
-FitFunction FitKernel() {
-#if defined(IBRDF_HAVE_X86_KERNELS)
-  switch (ActiveSimdLevel()) {
-    case SimdLevel::kAvx512:
-      return avx512::FitHarmonics;
-    case SimdLevel::kAvx2:
-      return avx2::FitHarmonics;
-    case SimdLevel::kPortable:
-    case SimdLevel::kDouble:
-      break;
-  }
-#endif
-  return portable::FitHarmonics;
-}
-
 size_t FitWorkspaceSize(int count, int num_views) {
   const size_t padded = RoundUpToTile(count);
   const size_t all = padded + RoundUpToTile(kFitValues);
@@ -130,6 +113,14 @@ void GatherBatch(const TexelSamples& samples, int64_t first, double unit,
   }
 }
 
+BatchArguments FitBatch::Arguments(const HarmonicBasis& basis) const {
+  return {basis.order(),     basis.diagonal().data(),
+          basis.up().data(), basis.down().data(),
+          num_views,         polar.data(),
+          zero.data(),       side.data(),
+          weight.data(),     values.data()};
+}
+
 HarmonicFitter::HarmonicFitter(const HarmonicFitOptions& options)
     : options_(options),
       basis_(options.order),
@@ -142,21 +133,13 @@ void HarmonicFitter::Fit(const FitBatch& batch, Workspace* workspace,
   workspace->numbers.resize(std::max(
       workspace->numbers.size(), FitWorkspaceSize(count(), batch.num_views)));
   FitArguments a;
-  a.order = options_.order;
-  a.diagonal = basis_.diagonal().data();
-  a.up = basis_.up().data();
-  a.down = basis_.down().data();
+  a.batch = batch.Arguments(basis_);
   a.regulariser = regulariser_.data();
   a.cosine_power = options_.cosine_power;
-  a.num_views = batch.num_views;
-  a.polar = batch.polar.data();
-  a.zero = batch.zero.data();
-  a.side = batch.side.data();
-  a.weight = batch.weight.data();
-  a.values = batch.values.data();
   a.workspace = workspace->numbers.data();
   a.coefficients = coefficients;
-  FitKernel()(a);
+  const auto kernel = IBRDF_ACTIVE_KERNEL(FitHarmonics);
+  kernel(a);
 }
 
 SequentialFit::SequentialFit(const HarmonicFitOptions& options,

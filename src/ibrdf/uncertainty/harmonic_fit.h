@@ -43,6 +43,9 @@ struct FitBatch {
   std::vector<float> polar, zero, side;
   std::vector<float> weight;  // [num_views, kFitBatch]: without the cosine
   std::vector<float> values;  // [num_views, kFitValues, kFitBatch]
+
+  // Pointers into this and into the basis.
+  BatchArguments Arguments(const HarmonicBasis& basis) const;
 };
 
 // Texels [first, first + kFitBatch) of the samples, divided by `unit`; those

@@ -23,15 +23,15 @@ struct Rows {
 // weight.
 void WeightedRows(const FitArguments& a, int lane, const Rows& rows,
                   double* samples) {
-  for (int view = 0; view < a.num_views; ++view) {
+  for (int view = 0; view < a.batch.num_views; ++view) {
     double* const row =
         samples + static_cast<int64_t>(view) * rows.all * kDoubles;
     for (int k = 0; k < rows.all; ++k) StoreDoubles(row + k * kDoubles, Vd{});
     const int at = view * kFitBatch + lane;
-    const Vd polar = Widen(a.polar + at);
+    const Vd polar = Widen(a.batch.polar + at);
     Vd root;
     for (int i = 0; i < kDoubles; ++i) {
-      const double w = a.weight[at + i];
+      const double w = a.batch.weight[at + i];
       root[i] = w > 0.0 ? __builtin_sqrt(w) : 0.0;
       if (a.cosine_power == 2.0) {
         root[i] *= polar[i];
@@ -39,14 +39,14 @@ void WeightedRows(const FitArguments& a, int lane, const Rows& rows,
         root[i] *= __builtin_pow(polar[i], 0.5 * a.cosine_power);
       }
     }
-    EvaluateRecurrence(a.order, a.diagonal, a.up, a.down, polar,
-                       Widen(a.zero + at), Widen(a.side + at),
-                       [&](int harmonic, Vd y) {
+    EvaluateRecurrence(a.batch.order, a.batch.diagonal, a.batch.up,
+                       a.batch.down, polar, Widen(a.batch.zero + at),
+                       Widen(a.batch.side + at), [&](int harmonic, Vd y) {
                          StoreDoubles(row + harmonic * kDoubles, y * root);
                        });
     for (int c = 0; c < kFitValues; ++c) {
       const float* const f =
-          a.values + (view * kFitValues + c) * kFitBatch + lane;
+          a.batch.values + (view * kFitValues + c) * kFitBatch + lane;
       StoreDoubles(row + (rows.padded + c) * kDoubles, Widen(f) * root);
     }
   }
@@ -130,15 +130,15 @@ void BackSubstitute(const Rows& rows, int lane, const double* normal,
 }  // namespace
 
 void FitHarmonics(const FitArguments& a) {
-  const int n = (a.order + 1) * (a.order + 1);
+  const int n = (a.batch.order + 1) * (a.batch.order + 1);
   Rows rows{n, RoundUpToTile(n), 0};
   rows.all = rows.padded + RoundUpToTile(kFitValues);
   double* const samples = a.workspace;
   double* const normal =
-      samples + static_cast<int64_t>(a.num_views) * rows.all * kDoubles;
+      samples + static_cast<int64_t>(a.batch.num_views) * rows.all * kDoubles;
   for (int lane = 0; lane < kFitBatch; lane += kDoubles) {
     WeightedRows(a, lane, rows, samples);
-    NormalEquations(a.num_views, rows, samples, normal);
+    NormalEquations(a.batch.num_views, rows, samples, normal);
     Factorise(rows, a.regulariser, normal);
     BackSubstitute(rows, lane, normal, a.coefficients);
   }

@@ -11,15 +11,20 @@ inline constexpr int kFitValues = 6;
 // Doubles of the widest vector: a workspace is for any instruction set.
 inline constexpr int kMostDoubles = 8;
 
-// What HarmonicFitter hands to its kernel.
-struct FitArguments {
+// A FitBatch and the harmonics, as kernels take them.
+struct BatchArguments {
   int order;
   const double *diagonal, *up, *down;  // constants of HarmonicBasis
-  const double* regulariser;           // [count]
-  double cosine_power;
   int num_views;
   const float *polar, *zero, *side, *weight;  // [num_views, kFitBatch]
-  const float* values;   // [num_views, kFitValues, kFitBatch]
+  const float* values;  // [num_views, kFitValues, kFitBatch]
+};
+
+// What HarmonicFitter hands to its kernel.
+struct FitArguments {
+  BatchArguments batch;
+  const double* regulariser;  // [count]
+  double cosine_power;
   double* workspace;     // see FitWorkspaceSize()
   double* coefficients;  // [count, kFitValues, kFitBatch]
 };

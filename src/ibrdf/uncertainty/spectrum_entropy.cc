@@ -10,6 +10,7 @@
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/base/simd_dispatch.h"
+#include "ibrdf/base/to_float.h"
 #include "ibrdf/uncertainty/parameter_prior.h"
 #include "ibrdf/uncertainty/spectrum_kernels.h"
 
@@ -18,29 +19,6 @@ namespace {
 
 // Texels per piece of work, one channel at a time.
 constexpr int kTexelsPerPiece = 2048;
-
-using SpectrumFunction = void (*)(const SpectrumGrid& grid,
-                                  const SpectrumScale& scale,
-                                  const SpectrumSignals& signals);
-
-SpectrumFunction SpectrumKernel() {
-#if defined(IBRDF_HAVE_X86_KERNELS)
-  switch (ActiveSimdLevel()) {
-    case SimdLevel::kAvx512:
-      return avx512::SpectrumEntropy;
-    case SimdLevel::kAvx2:
-      return avx2::SpectrumEntropy;
-    case SimdLevel::kPortable:
-    case SimdLevel::kDouble:
-      break;
-  }
-#endif
-  return portable::SpectrumEntropy;
-}
-
-std::vector<float> SinglePrecision(const std::vector<double>& v) {
-  return std::vector<float>(v.begin(), v.end());
-}
 
 // What ComparedSignal multiplies S_L and S_B of degree l with that does not
 // depend on them.
@@ -63,12 +41,11 @@ struct SpectrumTables {
   SpectrumGrid grid;
 
   SpectrumTables(const SpectrumOptions& options, double prefilter_alpha)
-      : filter(SinglePrecision(FilterTable(options, prefilter_alpha))),
-        factor(SinglePrecision(FactorTable(options))),
-        penalty(SinglePrecision(PriorPenalty(options.prior))),
-        alpha(SinglePrecision(
-            AlphaValues(options.alpha_grid, options.num_alpha))),
-        Ks(SinglePrecision(UnitValues(options.num_ks))) {
+      : filter(ToFloat(FilterTable(options, prefilter_alpha))),
+        factor(ToFloat(FactorTable(options))),
+        penalty(ToFloat(PriorPenalty(options.prior))),
+        alpha(ToFloat(AlphaValues(options.alpha_grid, options.num_alpha))),
+        Ks(ToFloat(UnitValues(options.num_ks))) {
     for (int l = 1; l <= options.fit.order; ++l) {
       scale.push_back(static_cast<float>(ScaleOfDegree(options, l)));
     }
@@ -92,11 +69,11 @@ void EvaluatePiece(const PowerSpectra& spectra, const SpectrumOptions& options,
                                : 0.0f,
       tables.scale.data(),
       options.unit_exposure ? nullptr : &spectra.outgoing[from]};
-  SpectrumKernel()(
-      tables.grid, scale,
-      {spectra.num_signals, &spectra.incoming[spectra.num_signals + from],
-       &spectra.outgoing[spectra.num_signals + from], count, entropy.data(),
-       distance.data(), misfit.data(), cell.data()});
+  const auto kernel = IBRDF_ACTIVE_KERNEL(SpectrumEntropy);
+  kernel(tables.grid, scale,
+         {spectra.num_signals, &spectra.incoming[spectra.num_signals + from],
+          &spectra.outgoing[spectra.num_signals + from], count, entropy.data(),
+          distance.data(), misfit.data(), cell.data()});
   for (int i = 0; i < count; ++i) {
     const size_t to = 3 * (static_cast<size_t>(first) + i) + channel;
     maps->entropy[to] = entropy[i];
