@@ -46,6 +46,10 @@ StatusOr<std::vector<CalibratedView>> ReadTransforms(const std::string& path);
 StatusOr<std::vector<CalibratedView>> ParseTransforms(const std::string& path,
                                                       const std::string& bytes);
 
+// A file that ReadTransforms reads back, to within rounding; the views are then
+// named by their images.
+std::string TransformsText(const std::vector<CalibratedView>& views);
+
 // COLMAP's sparse model in a folder: cameras and images, .bin or else .txt.
 // Poses are camera_from_world in OpenCV's frame (x right, y down, z ahead) as
 // quaternions w, x, y, z. Cameras are PINHOLE or SIMPLE_PINHOLE; the others are

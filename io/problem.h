@@ -17,7 +17,8 @@ namespace ibrdf {
 // Paths are resolved: usable from the current folder. Whether the files exist
 // is found out by whoever reads them.
 
-enum class ProblemKind { kJoint, kReflectance, kIllumination };
+// kTextures: of every texel, from several views (ibrdf_uncertainty).
+enum class ProblemKind { kJoint, kReflectance, kIllumination, kTextures };
 
 // Which curve made the values of an image of radiance. kAuto: what the file
 // says; sRGB of 8 bits that say nothing. From kLinear on the kinds of
@@ -64,6 +65,8 @@ struct ImageSpec {
 struct ViewSpec {
   std::string name;  // ViewNameFault; unlike the others'
   Camera camera;
+  // Of kTextures: as ImageSpec's; mask empty: none.
+  std::string file, mask;
 };
 
 // Several views: at most one of the three is set.
@@ -71,6 +74,9 @@ struct ViewsSpec {
   std::vector<ViewSpec> list;
   std::string transforms;  // .json
   std::string colmap;      // a folder
+  // Of kTextures: folders of the images that such a file names, and of their
+  // masks. Empty: the file's folder, or the model's; none.
+  std::string images, masks;
 
   bool given() const {
     return !list.empty() || !transforms.empty() || !colmap.empty();
@@ -280,6 +286,24 @@ struct TruthSpec {
   std::optional<MapFrame> frame;  // of illumination; unset: as there
 };
 
+// The picture of a surface.
+struct TextureSpec {
+  int width = 256, height = 256;  // texels
+};
+
+// The model that an entropy is of (src/ibrdf/uncertainty).
+enum class EntropyModel { kAngular, kSpectrum };
+// kMirror: light that the object hides in the mirror direction is left out.
+enum class EntropyShadows { kNone, kMirror };
+struct UncertaintySpec {
+  EntropyModel evaluator = EntropyModel::kAngular;
+  int order = 5;  // of the harmonics, [1, 10]
+  // Standard deviation, in units of the map's mean radiance; unset: the
+  // evaluator's own.
+  std::optional<double> sigma;
+  EntropyShadows shadows = EntropyShadows::kNone;
+};
+
 enum class RenderQuality { kPreview, kReference };
 
 struct Problem {
@@ -296,6 +320,9 @@ struct Problem {
   EffectsSpec effects;
   SolverSpec solver;
   TruthSpec truth;
+  // For ibrdf_uncertainty alone.
+  TextureSpec texture;
+  UncertaintySpec uncertainty;
   // For ibrdf_render alone.
   RenderQuality quality = RenderQuality::kReference;
   double noise = 0.0;  // standard deviation of the log-normal noise, >= 0

@@ -18,7 +18,8 @@ using Strings = std::vector<std::string>;
 
 constexpr size_t kMaxFileBytes = size_t{1} << 20;
 
-void ReadImageSpec(ProblemReader reader, ImageSpec* image) {
+// The views of textures have the files.
+void ReadImageSpec(ProblemReader reader, ProblemKind kind, ImageSpec* image) {
   reader.Read("file", &image->file);
   reader.Read("mask", &image->mask);
   reader.Read("layer", &image->layer);
@@ -31,7 +32,9 @@ void ReadImageSpec(ProblemReader reader, ImageSpec* image) {
   reader.Read("bracket_exposures", &image->bracket_exposures);
   reader.Read("width", &image->width);
   reader.Read("height", &image->height);
-  if (reader.Has("file") == (reader.Has("width") || reader.Has("height"))) {
+  const bool sized = reader.Has("width") || reader.Has("height");
+  if (kind == ProblemKind::kTextures && !reader.Has("file") && !sized) return;
+  if (reader.Has("file") == sized) {
     reader.Fail(reader.Has("file")
                     ? "expected either file or width and height, found both"
                     : "expected file or width and height");
@@ -90,8 +93,10 @@ void ReadCamera(ProblemReader reader, Camera* camera) {
 
 // One of a list.
 void ReadView(const ProblemReader& root, const std::string& shown,
-              const ConfigNode& node, std::vector<ViewSpec>* views) {
-  ConfigReader reader = root.Other(shown, node, {"name", "camera"});
+              const ConfigNode& node, ProblemKind kind,
+              std::vector<ViewSpec>* views) {
+  ConfigReader reader =
+      root.Other(shown, node, {"name", "camera", "file", "mask"});
   ViewSpec view;
   reader.Text("name", &view.name);
   if (!reader.Has("name")) reader.FailExpected("name", "the view's name");
@@ -103,10 +108,16 @@ void ReadView(const ProblemReader& root, const std::string& shown,
   }
   ReadCamera(root.Like("camera", shown + ".camera", reader.Find("camera")),
              &view.camera);
+  reader.Path("file", &view.file);
+  reader.Path("mask", &view.mask);
+  for (const char* key : {"file", "mask"}) {
+    if (kind == ProblemKind::kTextures || !reader.Has(key)) continue;
+    reader.Fail(key, "expected with problem: textures only");
+  }
   views->push_back(view);
 }
 
-void ReadViews(ProblemReader* root, ViewsSpec* views) {
+void ReadViews(ProblemReader* root, ProblemKind kind, ViewsSpec* views) {
   const ConfigNode* node = root->Find("views");
   if (node == nullptr) return;
   if (root->Has("camera")) {
@@ -119,14 +130,19 @@ void ReadViews(ProblemReader* root, ViewsSpec* views) {
       return;
     }
     for (size_t i = 0; i < node->items.size(); ++i) {
-      ReadView(*root, "views[" + std::to_string(i) + "]", node->items[i],
+      ReadView(*root, "views[" + std::to_string(i) + "]", node->items[i], kind,
                &views->list);
     }
     return;
   }
   ProblemReader reader = root->Below("views");
+  for (const char* key : {"images", "masks"}) {
+    reader.CheckNeeds(key, kind == ProblemKind::kTextures);
+  }
   reader.Read("transforms", &views->transforms);
   reader.Read("colmap", &views->colmap);
+  reader.Read("images", &views->images);
+  reader.Read("masks", &views->masks);
   if (reader.Has("transforms") == reader.Has("colmap")) {
     reader.Fail("expected a list, or one of transforms and colmap");
   }
@@ -490,6 +506,25 @@ void ReadTruth(ProblemReader reader, TruthSpec* truth) {
   reader.CheckNeeds("frame", reader.Has("illumination"));
 }
 
+void ReadTexture(ProblemReader reader, ProblemKind kind, TextureSpec* texture) {
+  for (const char* key : {"width", "height"}) {
+    reader.CheckNeeds(key, kind == ProblemKind::kTextures);
+  }
+  reader.Read("width", &texture->width);
+  reader.Read("height", &texture->height);
+}
+
+void ReadUncertainty(ProblemReader reader, ProblemKind kind,
+                     UncertaintySpec* uncertainty) {
+  for (const char* key : {"evaluator", "order", "sigma", "shadows"}) {
+    reader.CheckNeeds(key, kind == ProblemKind::kTextures);
+  }
+  reader.Read("evaluator", &uncertainty->evaluator);
+  reader.Read("order", &uncertainty->order);
+  reader.Read("sigma", &uncertainty->sigma);
+  reader.Read("shadows", &uncertainty->shadows);
+}
+
 // What `auto` stands for.
 void SettlePrior(const SolverSpec& solver, IlluminationSpec* illumination) {
   if (illumination->prior != IlluminationPrior::kAuto) return;
@@ -503,13 +538,17 @@ void SettlePrior(const SolverSpec& solver, IlluminationSpec* illumination) {
 
 // The first error is the context's.
 void ReadKeys(ProblemReader root, Problem* problem) {
-  for (const char* key : {"image", "geometry"}) {
-    if (!root.Has(key)) root.Fail(key, "expected this key, found nothing");
-  }
   root.Read("problem", &problem->kind);
-  ReadImageSpec(root.Below("image"), &problem->image);
+  for (const char* key : {"image", "geometry"}) {
+    // CheckTextures says what textures need in the image's place.
+    const bool needed =
+        problem->kind != ProblemKind::kTextures || std::string(key) != "image";
+    if (!needed || root.Has(key)) continue;
+    root.Fail(key, "expected this key, found nothing");
+  }
+  ReadImageSpec(root.Below("image"), problem->kind, &problem->image);
   ReadCamera(root.Below("camera"), &problem->camera);
-  ReadViews(&root, &problem->views);
+  ReadViews(&root, problem->kind, &problem->views);
   const std::vector<ViewSpec>& list = problem->views.list;
   if (list.size() == 1) problem->camera = list[0].camera;
   ReadGeometry(root.Below("geometry"),
@@ -537,6 +576,9 @@ void ReadKeys(ProblemReader root, Problem* problem) {
   }
   SettlePrior(problem->solver, &problem->illumination);
   ReadTruth(root.Below("truth"), &problem->truth);
+  ReadTexture(root.Below("texture"), problem->kind, &problem->texture);
+  ReadUncertainty(root.Below("uncertainty"), problem->kind,
+                  &problem->uncertainty);
   root.Read("noise", &problem->noise);
   root.Read("quality", &problem->quality);
 }
@@ -604,6 +646,12 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
   for (const std::string& bracket : problem.image.brackets) {
     files.push_back({"image.brackets", bracket});
   }
+  const std::vector<ViewSpec>& list = problem.views.list;
+  for (size_t i = 0; i < list.size(); ++i) {
+    const std::string key = "views[" + std::to_string(i) + "].";
+    files.push_back({key + "file", list[i].file});
+    files.push_back({key + "mask", list[i].mask});
+  }
   files.erase(std::remove_if(files.begin(), files.end(),
                              [](const NamedFile& f) { return f.path.empty(); }),
               files.end());
@@ -633,9 +681,17 @@ Status CheckSolvableReflectance(const Problem& problem) {
   return OkStatus();
 }
 
+// Textures are another program's.
+Status CheckNotTextures(const Problem& problem) {
+  if (problem.kind != ProblemKind::kTextures) return OkStatus();
+  return InvalidInput(problem.path + ": problem",
+                      "textures are ibrdf_uncertainty's alone");
+}
+
 }  // namespace
 
 Status CheckSolvable(const Problem& problem) {
+  IBRDF_RETURN_IF_ERROR(CheckNotTextures(problem));
   const auto fail = [&](const std::string& key, const std::string& what) {
     return InvalidInput(problem.path + ": " + key, what);
   };
@@ -685,7 +741,48 @@ Status CheckSolvable(const Problem& problem) {
   return OkStatus();
 }
 
+Status CheckTextures(const Problem& problem) {
+  const auto fail = [&](const std::string& key, const std::string& what) {
+    return InvalidInput(problem.path + ": " + key, what);
+  };
+  if (problem.kind != ProblemKind::kTextures) {
+    return fail("problem",
+                "expected textures, found " + WordOf("problem", problem.kind));
+  }
+  if (!problem.views.given()) {
+    return fail("views", "expected with problem: textures, found nothing");
+  }
+  const ImageSpec& image = problem.image;
+  if (!image.file.empty() || !image.mask.empty() || image.width > 0 ||
+      !image.brackets.empty()) {
+    return fail("image",
+                "expected no file, mask, size or brackets beside views: each "
+                "view has its file");
+  }
+  if (image.response >= ResponseChoice::kUnknown) {
+    return fail("image.response", "expected a known curve");
+  }
+  for (size_t i = 0; i < problem.views.list.size(); ++i) {
+    if (!problem.views.list[i].file.empty()) continue;
+    return fail("views[" + std::to_string(i) + "].file",
+                "expected the view's image, found nothing");
+  }
+  if (problem.geometry.HasNormalMap() || problem.geometry.outline.has_value()) {
+    return fail("geometry",
+                "expected a mesh, or sphere: {}, with problem: textures");
+  }
+  if (problem.reflectance.known()) {
+    return fail("reflectance.known", "expected without problem: textures");
+  }
+  if (!problem.illumination.known()) {
+    return fail("illumination.known",
+                "expected with problem: textures, found nothing");
+  }
+  return OkStatus();
+}
+
 Status CheckRenderable(const Problem& problem) {
+  IBRDF_RETURN_IF_ERROR(CheckNotTextures(problem));
   const auto fail = [&](const std::string& key, const std::string& what) {
     return InvalidInput(problem.path + ": " + key, what);
   };

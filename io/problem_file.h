@@ -34,6 +34,10 @@ std::vector<NamedFile> NamedFiles(const Problem& problem);
 // is known.
 Status CheckSolvable(const Problem& problem);
 
+// What a map of uncertainty needs: views with their images, a surface, and
+// known illumination.
+Status CheckTextures(const Problem& problem);
+
 // What a render needs: known reflectance and illumination, and the size of the
 // image.
 Status CheckRenderable(const Problem& problem);

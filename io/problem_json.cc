@@ -24,10 +24,11 @@ json AutoOr(const std::optional<Eigen::Array3d>& value) {
 }
 
 json ImageJson(const ImageSpec& image) {
-  if (image.file.empty()) {
+  if (image.width > 0) {
     return {{"width", image.width}, {"height", image.height}};
   }
-  json out = {{"file", image.file}};
+  json out;
+  if (!image.file.empty()) out["file"] = image.file;
   if (!image.mask.empty()) out["mask"] = image.mask;
   if (!image.layer.empty()) out["layer"] = image.layer;
   out["response"] = WordOf("image.response", image.response);
@@ -71,12 +72,18 @@ json CameraJson(const Camera& camera, bool placed) {
 }
 
 json ViewsJson(const ViewsSpec& views) {
-  if (!views.transforms.empty()) return {{"transforms", views.transforms}};
-  if (!views.colmap.empty()) return {{"colmap", views.colmap}};
-  json out = json::array();
+  json out;
+  if (!views.transforms.empty()) out["transforms"] = views.transforms;
+  if (!views.colmap.empty()) out["colmap"] = views.colmap;
+  if (!views.images.empty()) out["images"] = views.images;
+  if (!views.masks.empty()) out["masks"] = views.masks;
+  if (!out.empty()) return out;
+  out = json::array();
   for (const ViewSpec& view : views.list) {
     out.push_back({{"name", view.name},
                    {"camera", CameraJson(view.camera, /*placed=*/true)}});
+    if (!view.file.empty()) out.back()["file"] = view.file;
+    if (!view.mask.empty()) out.back()["mask"] = view.mask;
   }
   return out;
 }
@@ -228,6 +235,26 @@ json SolverJson(const SolverSpec& solver, ProblemKind kind) {
   return out;
 }
 
+json UncertaintyJson(const UncertaintySpec& u) {
+  return {{"evaluator", WordOf("uncertainty.evaluator", u.evaluator)},
+          {"order", u.order},
+          {"sigma", AutoOr(u.sigma)},
+          {"shadows", WordOf("uncertainty.shadows", u.shadows)}};
+}
+
+json TexturesJson(const Problem& problem) {
+  return {
+      {"problem", WordOf("problem", problem.kind)},
+      {"image", ImageJson(problem.image)},
+      {"views", ViewsJson(problem.views)},
+      {"geometry", GeometryJson(problem.geometry)},
+      {"illumination",
+       IlluminationJson(problem.illumination, /*rendered=*/true)},
+      {"texture",
+       {{"width", problem.texture.width}, {"height", problem.texture.height}}},
+      {"uncertainty", UncertaintyJson(problem.uncertainty)}};
+}
+
 void AppendLeaves(const std::string& key, const json& value,
                   std::vector<ProblemSetting>* settings) {
   if (value.is_object() && !value.empty()) {
@@ -246,6 +273,7 @@ void AppendLeaves(const std::string& key, const json& value,
 }  // namespace
 
 nlohmann::json ProblemToJson(const Problem& problem) {
+  if (problem.kind == ProblemKind::kTextures) return TexturesJson(problem);
   const bool rendered = problem.image.file.empty();
   json out = {
       {"image", ImageJson(problem.image)},

@@ -40,8 +40,9 @@ enum ProblemUse : unsigned {
   kUsedByReflectance = 2,
   kUsedByIllumination = 4,
   kUsedByRender = 8,
+  kUsedByTextures = 16,  // ibrdf_uncertainty
   kUsedBySolve = 7,
-  kUsedByAll = 15,
+  kUsedByAll = 31,
 };
 
 struct ProblemWord {

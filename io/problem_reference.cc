@@ -20,12 +20,13 @@ constexpr char kHead[] =
 
 constexpr char kIntroduction[] =
     "A problem file says what an image shows, what is known of it, and how to "
-    "solve or render it. It is written in YAML. `ibrdf_solve --problem` and "
-    "`ibrdf_render --scene` read the same keys. `ibrdf_solve --keys` prints "
-    "this page.";
+    "solve or render it. It is written in YAML. `ibrdf_solve --problem`, "
+    "`ibrdf_render --scene` and `ibrdf_uncertainty --problem` read the same "
+    "keys. `ibrdf_solve --keys` prints this page.";
 
 const char* const kRules[] = {
-    "Only `image` and `geometry` are needed. Every other key has a default.",
+    "Only `image` and `geometry` are needed, with `problem: textures` `views` "
+    "in place of `image`. Every other key has a default.",
     "An unknown key is an error. The message names the nearest known key.",
     "Relative paths start at the folder of the file.",
     "`--set key.path=value` overrides one key of the file. `--set "
@@ -37,7 +38,8 @@ const char* const kRules[] = {
 constexpr char kUses[] =
     "In the tables, *used by* says who uses a key. `joint`, `reflectance` and "
     "`illumination` are `ibrdf_solve` with that value of `problem`, and "
-    "`solve` is all three. `render` is `ibrdf_render`.";
+    "`solve` is all three. `render` is `ibrdf_render`, and `textures` is "
+    "`ibrdf_uncertainty`.";
 
 constexpr char kAboutExample[] =
     "A complete file for `ibrdf_solve`. Except for the names of files, all "
@@ -101,6 +103,7 @@ std::string UsersText(unsigned uses) {
     if (uses & kUsedByIllumination) users.emplace_back("illumination");
   }
   if (uses & kUsedByRender) users.emplace_back("render");
+  if (uses & kUsedByTextures) users.emplace_back("textures");
   return Joined(users);
 }
 

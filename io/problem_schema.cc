@@ -25,6 +25,8 @@ constexpr char kMapFiles[] = ".exr, .hdr, .pfm, .tif, .npy";
 constexpr int kMaxMapSide = 8192;
 constexpr int kMaxUnetChannels = 128;
 constexpr int kMaxLobes = 8;
+constexpr int kMaxTextureSide = 4096;
+constexpr int kMaxOrder = 10;
 constexpr double kMaxPixels = 1e6;
 constexpr double kMaxDepthScale = 1e6;
 constexpr double kMaxSeconds = 1e7;
@@ -33,7 +35,10 @@ constexpr int64_t kMaxIterations = 100000000;
 constexpr unsigned kUnknownReflectance = kUsedByJoint | kUsedByReflectance;
 constexpr unsigned kUnknownLight = kUsedByJoint | kUsedByIllumination;
 constexpr unsigned kKnownReflectance = kUsedByIllumination | kUsedByRender;
-constexpr unsigned kKnownLight = kUsedByReflectance | kUsedByRender;
+constexpr unsigned kKnownLight =
+    kUsedByReflectance | kUsedByRender | kUsedByTextures;
+constexpr unsigned kPhotographs = kUsedBySolve | kUsedByTextures;
+constexpr unsigned kSolveOrRender = kUsedBySolve | kUsedByRender;
 
 using Words = std::vector<ProblemWord>;
 using Keys = std::vector<ProblemKey>;
@@ -202,18 +207,25 @@ Keys KindKeys() {
                     "needed."},
                    {"illumination",
                     "The reflectance is known, so `reflectance.known` is "
-                    "needed."}})
-          .UsedBy(kUsedBySolve)};
+                    "needed."},
+                   {"textures",
+                    "Roughness, gloss and albedo of every texel, of several "
+                    "`views` under known light. `ibrdf_uncertainty` says what "
+                    "they leave unknown."}})
+          .UsedBy(kPhotographs)};
 }
 
 Keys ImageKeys() {
   return {
       Row("image", "The image to explain, or the size of the image to render.")
           .Without("needed")
-          .Notes({"A solve needs `file`. A render needs `width` and `height`. "
-                  "One problem cannot have both.",
-                  "An image has at most " + std::to_string(kMaxImagePixels) +
-                      " pixels."}),
+          .Notes(
+              {"A solve needs `file`. A render needs `width` and `height`. "
+               "One problem cannot have both.",
+               "With `problem: textures` it has neither: each of `views` has "
+               "its file and mask, and the curve is that of all.",
+               "An image has at most " + std::to_string(kMaxImagePixels) +
+                   " pixels."}),
       Row("image.file",
           "The image: radiance up to one factor that may be unknown, or codes "
           "that `image.response` makes radiance.")
@@ -226,7 +238,7 @@ Keys ImageKeys() {
           "Layer or part of an OpenEXR file, as `ViewLayer.Combined`.")
           .Text()
           .Without("the beauty part")
-          .UsedBy(kUsedBySolve),
+          .UsedBy(kPhotographs),
       Row("image.response", "The curve that made the image's values.")
           .Choice("auto",
                   {{"auto",
@@ -246,25 +258,25 @@ Keys ImageKeys() {
                     "evidence. Files of codes alone."},
                    {"unknown_power", "`power`, and p is found."},
                    {"unknown_aces", "`aces`, and gamma is found."}})
-          .UsedBy(kUsedBySolve),
+          .UsedBy(kPhotographs),
       Row("image.response_parameter",
           "p, gamma, white or mu of the response. `auto`: the usual one.")
           .AutoOrNumber(kPositive)
-          .UsedBy(kUsedBySolve),
+          .UsedBy(kPhotographs),
       Row("image.white",
           "Codes from here on are clipped: of their radiance the least is "
           "known alone. `auto`: "
           "the file's largest code.")
           .AutoOrNumber(kPositive)
-          .UsedBy(kUsedBySolve),
+          .UsedBy(kPhotographs),
       Row("image.black", "The code of no light. `auto`: 0.")
           .AutoOrNumber(kNotNegative)
-          .UsedBy(kUsedBySolve),
+          .UsedBy(kPhotographs),
       Row("image.exposure",
           "Radiance is divided by it: seconds, say, where `image.brackets` has "
           "other exposures.")
           .Number(kPositive, "1")
-          .UsedBy(kUsedBySolve),
+          .UsedBy(kPhotographs),
       Row("image.brackets",
           "Further pictures of the same view at other exposures, of one size "
           "and curve. A value's radiance is what all pictures allow.")
@@ -351,7 +363,7 @@ Keys ViewKeys() {
           "Several cameras in place of `camera`: a list, or a file of "
           "another program. All are rendered in one run.")
           .ListOrMap()
-          .UsedBy(kUsedByRender)
+          .UsedBy(kUsedByRender | kUsedByTextures)
           .Notes({"Each item of a list has a `name` and a `camera` with "
                   "the keys above: `views: [{name: left, camera: {...}}]`.",
                   "Results of a view have its name. Those of files are "
@@ -360,17 +372,34 @@ Keys ViewKeys() {
                   "cameras and mesh share one frame.",
                   "The focal length of a file is scaled to the size of "
                   "`image`, which has its proportions.",
+                  "With `problem: textures` each item has a `file` as well, "
+                  "and may have a `mask`, as `image` has them: `{name: left, "
+                  "file: left.exr, mask: left.png, camera: {...}}`.",
                   "A solve takes a list of one view, which is its camera."}),
       Row("views.transforms",
           "transforms.json of NeRF, Stanford-ORB or instant-ngp: poses in "
           "OpenGL's frame, of cameras without distortion.")
           .Path(".json")
-          .UsedBy(kUsedByRender),
+          .UsedBy(kUsedByRender | kUsedByTextures),
       Row("views.colmap",
           "Folder of a model of COLMAP, text or binary, with PINHOLE or "
           "SIMPLE_PINHOLE cameras.")
           .Path("a folder")
-          .UsedBy(kUsedByRender)};
+          .UsedBy(kUsedByRender | kUsedByTextures),
+      Row("views.images",
+          "Folder of the images that the file or model names. A name without "
+          "extension is that of a PNG.")
+          .Path("a folder")
+          .Without("the file's folder, or `colmap`")
+          .Needs("problem: textures")
+          .UsedBy(kUsedByTextures),
+      Row("views.masks",
+          "Folder of the views' masks, NAME.png each. Transparent pixels of an "
+          "image are outside without a mask, too.")
+          .Path("a folder")
+          .Without("none")
+          .Needs("problem: textures")
+          .UsedBy(kUsedByTextures)};
 }
 
 // Of PictureAxis, in its order.
@@ -385,7 +414,7 @@ Words PictureAxes() {
 
 Keys GeometryKeys() {
   const std::string normals = "geometry.normals";
-  return {
+  Keys keys = {
       Row("geometry",
           "The shape of the object: exactly one of `sphere`, `mesh`, "
           "`normals` and `depth`.")
@@ -464,6 +493,15 @@ Keys GeometryKeys() {
                     "farthest vertex is scaled to distance 1."},
                    {"none", "Its vertices stay as they are."}})
           .Needs("geometry.mesh")};
+  // Several views need a surface.
+  for (ProblemKey& key : keys) {
+    for (const char* map :
+         {"geometry.sphere.", "geometry.normals", "geometry.depth",
+          "geometry.frame", "geometry.encoding"}) {
+      if (key.path.rfind(map, 0) == 0) key.used_by = kSolveOrRender;
+    }
+  }
+  return keys;
 }
 
 Keys ReflectanceKeys() {
@@ -731,6 +769,7 @@ Keys EffectsKeys() {
                 "The map as a mixture of spherical Gaussians. It is fast where "
                 "the reflectance is not mirror-like.",
                 kUsedByRender}})
+          .UsedBy(kSolveOrRender)
           .Notes(
               {"Effects that are listed are simulated whether or not they "
                "matter. A single one needs no brackets.",
@@ -829,7 +868,8 @@ Keys SolverKeys() {
           "expected error and of the network's first weights alone. Equal "
           "results are no sign of robustness.")
           .Integer(0, std::numeric_limits<int64_t>::max(), "")
-          .Without("that of `--seed`")};
+          .Without("that of `--seed`")
+          .UsedBy(kSolveOrRender)};
 }
 
 Keys TruthKeys() {
@@ -850,6 +890,51 @@ Keys TruthKeys() {
           .Choice("auto", AutoOrMapFrames())
           .Needs("truth.illumination")
           .UsedBy(kUsedBySolve)};
+}
+
+Keys TextureKeys() {
+  const std::string needs = "problem: textures";
+  Keys keys = {
+      Row("texture",
+          "The picture that the surface is mapped to: by the mesh's own "
+          "texture coordinates, else by charts of ours; of a sphere by "
+          "longitude and latitude."),
+      Row("texture.width", "Its width.")
+          .Integer(1, kMaxTextureSide, "256")
+          .Unit("texels"),
+      Row("texture.height", "Its height.")
+          .Integer(1, kMaxTextureSide, "256")
+          .Unit("texels"),
+      Row("uncertainty",
+          "What `ibrdf_uncertainty` takes the views to tell of a texel "
+          "([theory](theory.md))."),
+      Row("uncertainty.evaluator", "The model of what a texel reflects.")
+          .Choice(
+              "angular",
+              {{"angular",
+                "Radiance at every view, with Fresnel's reflectance and "
+                "masking; roughness, gloss and albedo are unknown."},
+               {"spectrum",
+                "The power of each degree of the harmonics, as published "
+                "(Wiersma et al. 2025); roughness and gloss are unknown."}}),
+      Row("uncertainty.order", "Highest degree of the harmonics.")
+          .Integer(1, kMaxOrder, "5"),
+      Row("uncertainty.sigma",
+          "Standard deviation of radiance: what noise and a simple model may "
+          "miss. `auto`: 0.07 with `angular`, 0.05 with `spectrum`.")
+          .AutoOrNumber(kPositive)
+          .Unit("mean radiance of the light"),
+      Row("uncertainty.shadows", "Whether the object hides light from itself.")
+          .Choice("none",
+                  {{"none", "It hides none, as published."},
+                   {"mirror",
+                    "Light that it hides in the mirror direction is left "
+                    "out."}})};
+  for (ProblemKey& key : keys) {
+    key.used_by = kUsedByTextures;
+    if (!key.Parent().empty()) key.needs = needs;
+  }
+  return keys;
 }
 
 Keys RenderKeys() {
@@ -875,7 +960,8 @@ ProblemSchema MakeSchema() {
   for (const auto& section :
        {KindKeys(), ImageKeys(), CameraKeys(), ViewKeys(), GeometryKeys(),
         ReflectanceKeys(), IlluminationKeys(), SkyKeys(), LikelihoodKeys(),
-        EffectsKeys(), SolverKeys(), TruthKeys(), RenderKeys()}) {
+        EffectsKeys(), SolverKeys(), TruthKeys(), TextureKeys(),
+        RenderKeys()}) {
     schema.keys.insert(schema.keys.end(), section.begin(), section.end());
   }
   return schema;

@@ -179,4 +179,28 @@ StatusOr<std::vector<CalibratedView>> ParseTransforms(
   return views;
 }
 
+std::string TransformsText(const std::vector<CalibratedView>& views) {
+  Json frames = Json::array();
+  for (const CalibratedView& view : views) {
+    Json frame = {{"file_path", view.image}};
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::RowVector4d row = view.world_from_camera.row(i);
+      frame["transform_matrix"].push_back({row[0], row[1], row[2], row[3]});
+    }
+    if (view.height > 0.0) {
+      frame["w"] = view.width;
+      frame["h"] = view.height;
+      frame["fl_x"] = view.focal.x();
+      frame["fl_y"] = view.focal.y();
+      frame["cx"] = view.centre.x();
+      frame["cy"] = view.centre.y();
+    } else {
+      frame["camera_angle_x"] = 2.0 * std::atan(0.5 / view.focal.x());
+    }
+    frames.push_back(std::move(frame));
+  }
+  const Json file = {{"frames", std::move(frames)}};
+  return file.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace ibrdf

@@ -1,7 +1,5 @@
 #include "ibrdf/solvers/problem/load_object.h"
 
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -14,20 +12,6 @@
 
 namespace ibrdf {
 namespace {
-
-// As ObjectLook's.
-Image KnownRadiance(const Photograph& observed) {
-  Image known = observed.radiance;
-  if (!observed.bounds) return known;
-  for (size_t k = 0; k < known.rgb.size(); ++k) {
-    if (std::isinf(observed.bounds->high.rgb[k])) {
-      known.rgb[k] = std::numeric_limits<float>::quiet_NaN();
-    } else if (observed.bounds->low.rgb[k] == 0.0f) {
-      known.rgb[k] = 0.0f;
-    }
-  }
-  return known;
-}
 
 std::shared_ptr<const ObjectLook> Look(const Problem& problem,
                                        const Photograph& observed,

@@ -262,6 +262,19 @@ void WarnOfClipped(const std::string& path, const Photograph& photograph,
 
 }  // namespace
 
+Image KnownRadiance(const Photograph& observed) {
+  Image known = observed.radiance;
+  if (!observed.bounds) return known;
+  for (size_t k = 0; k < known.rgb.size(); ++k) {
+    if (std::isinf(observed.bounds->high.rgb[k])) {
+      known.rgb[k] = std::numeric_limits<float>::quiet_NaN();
+    } else if (observed.bounds->low.rgb[k] == 0.0f) {
+      known.rgb[k] = 0.0f;
+    }
+  }
+  return known;
+}
+
 std::vector<std::string> DoubtfulValues(const Image& radiance,
                                         const Mask& mask) {
   std::vector<float> values;

@@ -23,7 +23,7 @@ struct Photograph {
   // Where the curve is to be found; `radiance` and `bounds` are then of the
   // first family's curve at its mean.
   std::optional<UnknownCurve> unknown_curve;
-  Mask mask;  // of the object; empty: all pixels
+  Mask mask;           // of the object; empty: all pixels
   bool codes = false;  // the file holds whole numbers
   std::string curve;   // the response curve and who says so, in words
   // Pixels of the mask's file that the image lacks or hides.
@@ -40,6 +40,10 @@ struct Photograph {
 // unless the spec has a curve. Errors name file and field: a curve that nobody
 // states, pixels that are not square, a mask of another size.
 StatusOr<Photograph> LoadPhotograph(const ImageSpec& spec);
+
+// Radiance that is known from both sides; NaN where codes are clipped, 0 where
+// they are black.
+Image KnownRadiance(const Photograph& observed);
 
 // Warns of what the object's values say of the file: many of one greatest value
 // (saturated), all multiples of 1/255 (codes in a file of floats).

@@ -80,7 +80,10 @@ void WarnOfOverlaps(const std::string& file, const TriangleMesh& mesh,
 Status SetTexture(const Problem& problem, const MeshNotes& notes,
                   TriangleMesh* mesh, std::vector<std::string>* warnings) {
   const std::optional<PrincipledSpec>& values = problem.reflectance.principled;
-  if (!values.has_value() || !values->textured()) return OkStatus();
+  if (problem.kind != ProblemKind::kTextures &&
+      (!values.has_value() || !values->textured())) {
+    return OkStatus();
+  }
   const std::string& file = problem.geometry.file;
   if (!notes.texture_fault.empty()) {
     return InvalidInput(file, notes.texture_fault);
@@ -95,21 +98,31 @@ Status SetTexture(const Problem& problem, const MeshNotes& notes,
   return OkStatus();
 }
 
-StatusOr<Scene> LoadMesh(const Problem& problem,
-                         std::vector<std::string>* warnings) {
+// Vertices are relative to the origin.
+struct PlacedMesh {
+  TriangleMesh mesh;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+};
+
+StatusOr<PlacedMesh> LoadMesh(const Problem& problem,
+                              std::vector<std::string>* warnings) {
   const GeometrySpec& geometry = problem.geometry;
   MeshNotes notes;
   StatusOr<TriangleMesh> mesh = ReadMesh(geometry.file, &notes);
   if (!mesh.ok()) return mesh.status();
   *warnings = notes.warnings;
   IBRDF_RETURN_IF_ERROR(SetTexture(problem, notes, &*mesh, warnings));
+  PlacedMesh placed;
   if (geometry.fit == MeshFit::kNone) {
-    return OfFile(geometry.file, Scene::FromMesh(*mesh, notes.origin));
+    placed.mesh = *std::move(mesh);
+    placed.origin = notes.origin;
+    return placed;
   }
   const BoundingSphere bounds = FitUnitSphere(&*mesh);
   IBRDF_RETURN_IF_ERROR(CheckNotMoved(problem, notes.origin + bounds.centre,
                                       bounds.radius, warnings));
-  return OfFile(geometry.file, Scene::FromMesh(*mesh));
+  placed.mesh = *std::move(mesh);
+  return placed;
 }
 
 StatusOr<Scene> LoadShape(const Problem& problem, int width, int height,
@@ -119,7 +132,9 @@ StatusOr<Scene> LoadShape(const Problem& problem, int width, int height,
     return LoadSphere(problem, width, height);
   }
   if (geometry.kind == GeometryKind::kMesh) {
-    return LoadMesh(problem, warnings);
+    const StatusOr<PlacedMesh> placed = LoadMesh(problem, warnings);
+    if (!placed.ok()) return placed.status();
+    return OfFile(geometry.file, Scene::FromMesh(placed->mesh, placed->origin));
   }
   StatusOr<NormalMap> map = geometry.kind == GeometryKind::kDepth
                                 ? LoadDepth(geometry, problem.camera)
@@ -139,6 +154,33 @@ StatusOr<Scene> LoadScene(const Problem& problem, int width, int height,
     warnings->insert(warnings->end(), told.begin(), told.end());
   }
   return scene;
+}
+
+StatusOr<TexturedSurface> LoadTexturedSurface(
+    const Problem& problem, std::vector<std::string>* warnings) {
+  const GeometrySpec& geometry = problem.geometry;
+  const TextureSpec& size = problem.texture;
+  TexturedSurface out;
+  if (geometry.kind == GeometryKind::kSphere) {
+    out.atlas = SurfaceAtlas::OfSphere(Eigen::Vector3d::Zero(), 1.0, size.width,
+                                       size.height);
+    return out;
+  }
+  const StatusOr<PlacedMesh> placed = LoadMesh(problem, warnings);
+  if (!placed.ok()) return placed.status();
+  StatusOr<Scene> scene =
+      OfFile(geometry.file, Scene::FromMesh(placed->mesh, placed->origin));
+  if (!scene.ok()) return scene.status();
+  StatusOr<SurfaceAtlas> atlas = SurfaceAtlas::OfMesh(
+      placed->mesh, placed->origin, size.width, size.height);
+  if (!atlas.ok()) return InvalidInput(geometry.file, atlas.status().message());
+  if (atlas->texels.empty()) {
+    return InvalidInput(geometry.file,
+                        "expected texture coordinates that enclose an area");
+  }
+  out.scene = *std::move(scene);
+  out.atlas = *std::move(atlas);
+  return out;
 }
 
 StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination,

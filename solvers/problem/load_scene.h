@@ -9,6 +9,7 @@
 #include "ibrdf/image/image.h"
 #include "ibrdf/io/problem.h"
 #include "ibrdf/scene/scene.h"
+#include "ibrdf/surface/surface_atlas.h"
 
 namespace ibrdf {
 
@@ -18,6 +19,16 @@ namespace ibrdf {
 // depth. width, height: of the image, pixels.
 StatusOr<Scene> LoadScene(const Problem& problem, int width, int height,
                           std::vector<std::string>* warnings = nullptr);
+
+struct TexturedSurface {
+  Scene scene = Scene::UnitSphere();
+  SurfaceAtlas atlas;
+};
+
+// The sphere or mesh of CheckTextures, whose hits have the texture coordinates
+// of the atlas: those of the file, or charts of our own. At least one texel.
+StatusOr<TexturedSurface> LoadTexturedSurface(
+    const Problem& problem, std::vector<std::string>* warnings);
 
 // The known illumination in the library's frame: the file (ReadMap), or the sky
 // made into a map of the problem's size.

@@ -1,6 +1,7 @@
 #include "ibrdf/solvers/problem/load_views.h"
 
 #include <string>
+#include <utility>
 
 #include "ibrdf/io/calibrated_views.h"
 
@@ -20,7 +21,10 @@ StatusOr<std::vector<ViewSpec>> LoadViews(const Problem& problem, int width,
     if (!camera.ok()) {
       return InvalidInput(problem.path, camera.status().message());
     }
-    out.push_back({view.name, *camera});
+    ViewSpec spec;
+    spec.name = view.name;
+    spec.camera = *camera;
+    out.push_back(std::move(spec));
   }
   return out;
 }

@@ -1,9 +1,6 @@
 // Forward render of a scene file.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <string>
@@ -12,6 +9,7 @@
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/solvers/forward/render_scene.h"
 #include "ibrdf/solvers/programs/common_flags.h"
+#include "ibrdf/solvers/programs/progress_line.h"
 #include "ibrdf/solvers/programs/render_outputs.h"
 
 namespace ibrdf {
@@ -19,37 +17,6 @@ namespace {
 
 std::atomic<bool> stop_requested{false};
 void RequestStop(int) { stop_requested = true; }
-
-// Lines "render 40 %" on stderr: rewritten in place on a terminal, one for
-// every tenth in a file; none in the first two seconds.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool quiet)
-      : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
-
-  void Show(double share) {
-    const std::chrono::duration<double> elapsed = Clock::now() - start_;
-    const int percent = static_cast<int>(100.0 * share);
-    if (quiet_ || percent == shown_) return;
-    if (share < 1.0 && elapsed.count() < kSilentSeconds) return;
-    if (shown_ < 0 && share >= 1.0) return;
-    if (!terminal_ && percent / 10 == shown_ / 10 && shown_ >= 0) return;
-    shown_ = percent;
-    std::fprintf(
-        stderr,
-        terminal_ ? "\rrender %3d %%, %.0f s" : "render %d %%, %.0f s\n",
-        percent, elapsed.count());
-    if (terminal_ && share >= 1.0) std::fputc('\n', stderr);
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static constexpr double kSilentSeconds = 2.0;
-  const bool quiet_;
-  const bool terminal_;
-  const Clock::time_point start_ = Clock::now();
-  int shown_ = -1;
-};
 
 // Render until SIGINT or SIGTERM.
 RenderSceneOptions OptionsOf(bool explain, const CommonFlags& flags,
@@ -70,7 +37,7 @@ RenderSceneOptions OptionsOf(bool explain, const CommonFlags& flags,
 Status RunOne(const Problem& problem, const RenderOutputs& out, bool explain,
               const CommonFlags& flags) {
   if (!explain) IBRDF_RETURN_IF_ERROR(CheckRenderOutputs(problem, out));
-  ProgressLine progress(flags.quiet);
+  ProgressLine progress("render", flags.quiet);
   const StatusOr<RenderedScene> rendered =
       RenderScene(problem, OptionsOf(explain, flags, &progress));
   if (!rendered.ok()) return rendered.status();
@@ -85,7 +52,7 @@ Status RunOne(const Problem& problem, const RenderOutputs& out, bool explain,
 Status RunViews(const Problem& problem, const RenderOutputs& out, bool explain,
                 const CommonFlags& flags) {
   if (!explain) IBRDF_RETURN_IF_ERROR(CheckRenderOutputs(problem, out));
-  ProgressLine progress(flags.quiet);
+  ProgressLine progress("render", flags.quiet);
   bool first = true;
   return RenderViews(
       problem, OptionsOf(explain, flags, &progress),

@@ -4,27 +4,21 @@
 #include <filesystem>
 
 #include "ibrdf/base/format.h"
-#include "ibrdf/base/version.h"
 #include "ibrdf/io/problem_json.h"
 #include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/report/gauge_words.h"
 #include "ibrdf/solvers/report/html.h"
+#include "ibrdf/solvers/report/html_page.h"
 #include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/report/report_metrics.h"
 #include "ibrdf/solvers/report/report_plots.h"
 #include "ibrdf/solvers/report/report_posterior.h"
-#include "ibrdf/solvers/report/report_style.h"
 #include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/report/svg_plot.h"
 #include "ibrdf/solvers/report/verdict.h"
 
 namespace ibrdf {
 namespace {
-
-std::string Section(const std::string& heading, const std::string& body) {
-  return "<section>\n" + HtmlElement("h2", heading) + "\n" + body +
-         "</section>\n";
-}
 
 std::string KindInWords(ProblemKind kind) {
   switch (kind) {
@@ -34,6 +28,8 @@ std::string KindInWords(ProblemKind kind) {
       return "Reflectance under known illumination.";
     case ProblemKind::kIllumination:
       return "Illumination of known reflectance.";
+    case ProblemKind::kTextures:
+      return "Textures under known illumination.";
   }
   return "";
 }
@@ -66,16 +62,10 @@ std::string VerdictSection(const SolvedProblem& solved) {
 }
 
 std::string WarningList(const SolvedProblem& solved) {
-  std::string items;
   std::vector<std::string> warnings = ResultWarnings(solved);
   const std::string note = EffectsNote(solved);
   if (!note.empty()) warnings.push_back(note);
-  for (const std::string& warning : warnings) {
-    items += HtmlElement("li", warning) + "\n";
-  }
-  if (items.empty()) return "";
-  return "<section class=\"warnings\">\n" + HtmlElement("h2", "Warnings") +
-         "\n<ul>\n" + items + "</ul>\n</section>\n";
+  return WarningSection(warnings);
 }
 
 using Rows = std::vector<std::vector<std::string>>;
@@ -104,16 +94,16 @@ std::string ProblemSection(const SolvedProblem& solved) {
   for (const ProblemSetting& setting : ListSettings(solved.problem)) {
     settings.push_back({setting.key, setting.value});
   }
-  return Section("What was solved",
-                 HtmlElement("p", KindInWords(solved.problem.kind)) + "\n" +
-                     HtmlElement("h3", "What the program chose") + "\n" +
-                     HtmlTable({}, Choices(solved)) +
-                     HtmlElement("h3", "The problem as resolved") + "\n" +
-                     HtmlTable({}, settings));
+  return HtmlSection("What was solved",
+                     HtmlElement("p", KindInWords(solved.problem.kind)) + "\n" +
+                         HtmlElement("h3", "What the program chose") + "\n" +
+                         HtmlTable({}, Choices(solved)) +
+                         HtmlElement("h3", "The problem as resolved") + "\n" +
+                         HtmlTable({}, settings));
 }
 
 std::string GaugeSection(const InverseProblem& inverse) {
-  return Section(
+  return HtmlSection(
       "Scale",
       HtmlElement("p",
                   "A reflectance R and a light L render the same image as the "
@@ -138,25 +128,7 @@ std::string PlotSection(const std::vector<TraceEntry>& trace) {
   for (const LinePlot& plot : plots) {
     body += "<div class=\"plot\">\n" + SvgLinePlot(plot) + "</div>\n";
   }
-  return Section("Progress", body + "</div>\n");
-}
-
-std::string Footer() {
-  return HtmlElement("footer", std::string("ibrdf ") + kVersion +
-                                   ". Numbers in full: result.json, beside "
-                                   "this file. Logarithms are natural.") +
-         "\n";
-}
-
-std::string Page(const std::string& title, const std::string& body) {
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
-         "<meta charset=\"utf-8\" />\n"
-         "<meta name=\"viewport\" content=\"width=device-width, "
-         "initial-scale=1\" />\n"
-         "<meta name=\"color-scheme\" content=\"light dark\" />\n" +
-         HtmlElement("title", title + " - ibrdf") + "\n<style>\n" +
-         kReportStyle + "</style>\n</head>\n<body>\n<main>\n" + body +
-         "</main>\n</body>\n</html>\n";
+  return HtmlSection("Progress", body + "</div>\n");
 }
 
 }  // namespace
@@ -179,7 +151,7 @@ StatusOr<std::string> ReportPage(const SolvedProblem& solved,
   if (kind == ProblemKind::kJoint) body += GaugeSection(solved.inverse);
   body += PlotSection(solved.solution.trace);
   body += ProblemSection(solved);
-  return Page(name, body + Footer());
+  return HtmlPage(name, body + ReportFooter());
 }
 
 }  // namespace ibrdf

@@ -20,6 +20,9 @@ using Strings = std::vector<std::string>;
 constexpr char kSolve[] = "image: {file: a.exr}\ngeometry: {sphere: {}}\n";
 constexpr char kRender[] =
     "image: {width: 8, height: 8}\ngeometry: {sphere: {}}\n";
+constexpr char kTextures[] =
+    "problem: textures\nviews: {transforms: t.json}\ngeometry: {sphere: "
+    "{}}\n";
 
 // A problem in which the key may stand: a text, and overrides of it.
 struct Setting {
@@ -46,7 +49,10 @@ struct Setting {
 };
 
 Setting SettingOf(const ProblemKey& key) {
-  Setting setting = {key.used_by & kUsedBySolve ? kSolve : kRender, {}};
+  Setting setting = {key.used_by & kUsedBySolve    ? kSolve
+                     : key.used_by & kUsedByRender ? kRender
+                                                   : kTextures,
+                     {}};
   // Without another shape, light or material.
   const std::string map = key.Parent();
   if (map == "geometry" || map.find('.') != std::string::npos) {

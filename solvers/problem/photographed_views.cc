@@ -1,0 +1,138 @@
+#include "ibrdf/solvers/problem/photographed_views.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "ibrdf/io/calibrated_views.h"
+#include "ibrdf/solvers/problem/load_photograph.h"
+
+namespace ibrdf {
+namespace {
+namespace fs = std::filesystem;
+
+// Of a view: where its camera comes from, and its files.
+struct ViewSource {
+  std::string name, file, mask;
+  Camera camera;                               // of a list
+  const CalibratedView* calibrated = nullptr;  // of a file
+};
+
+// The same word of several files.
+class SharedWarnings {
+ public:
+  void Add(const std::string& file, const std::string& warning) {
+    std::string text = warning;
+    const size_t at = text.find(file);
+    if (at != std::string::npos) text.erase(at, file.size());
+    for (Shared& other : all_) {
+      if (other.text != text) continue;
+      ++other.further;
+      return;
+    }
+    all_.push_back({text, warning, 0});
+  }
+
+  void AppendTo(std::vector<std::string>* warnings) const {
+    for (const Shared& one : all_) {
+      warnings->push_back(one.first +
+                          (one.further == 0
+                               ? ""
+                               : "; and so of " + std::to_string(one.further) +
+                                     " other views"));
+    }
+  }
+
+ private:
+  struct Shared {
+    std::string text, first;
+    int further;
+  };
+  std::vector<Shared> all_;
+};
+
+std::vector<ViewSource> ListedSources(const ViewsSpec& views) {
+  std::vector<ViewSource> out;
+  for (const ViewSpec& view : views.list) {
+    out.push_back({view.name, view.file, view.mask, view.camera, nullptr});
+  }
+  return out;
+}
+
+std::vector<ViewSource> CalibratedSources(
+    const ViewsSpec& views, const std::vector<CalibratedView>& calibrated) {
+  fs::path folder = views.images;
+  if (folder.empty()) {
+    folder = views.colmap.empty() ? fs::path(views.transforms).parent_path()
+                                  : fs::path(views.colmap);
+  }
+  std::vector<ViewSource> out;
+  for (const CalibratedView& view : calibrated) {
+    ViewSource source;
+    source.name = view.name;
+    fs::path file = folder / view.image;
+    // Blender's scripts leave it out.
+    if (!file.has_extension()) file += ".png";
+    source.file = file.string();
+    if (!views.masks.empty()) {
+      source.mask = (fs::path(views.masks) / (view.name + ".png")).string();
+    }
+    source.calibrated = &view;
+    out.push_back(std::move(source));
+  }
+  return out;
+}
+
+StatusOr<PhotographedView> LoadView(const Problem& problem,
+                                    const ViewSource& source,
+                                    SharedWarnings* warnings) {
+  ImageSpec spec = problem.image;
+  spec.file = source.file;
+  spec.mask = source.mask;
+  const StatusOr<Photograph> photograph = LoadPhotograph(spec);
+  if (!photograph.ok()) return photograph.status();
+  for (const std::string& warning : photograph->warnings) {
+    warnings->Add(source.file, warning);
+  }
+  PhotographedView out;
+  out.name = source.name;
+  out.file = source.file;
+  out.camera = source.camera;
+  out.radiance = KnownRadiance(*photograph);
+  out.mask = photograph->mask;
+  if (source.calibrated == nullptr) return out;
+  const StatusOr<Camera> camera =
+      CameraOf(*source.calibrated, out.radiance.width, out.radiance.height);
+  if (!camera.ok()) {
+    return InvalidInput(source.file, camera.status().message());
+  }
+  out.camera = *camera;
+  return out;
+}
+
+}  // namespace
+
+StatusOr<std::vector<PhotographedView>> LoadPhotographedViews(
+    const Problem& problem, std::vector<std::string>* warnings) {
+  const ViewsSpec& views = problem.views;
+  std::vector<CalibratedView> calibrated;
+  if (views.list.empty()) {
+    StatusOr<std::vector<CalibratedView>> read =
+        views.transforms.empty() ? ReadColmap(views.colmap)
+                                 : ReadTransforms(views.transforms);
+    if (!read.ok()) return read.status();
+    calibrated = *std::move(read);
+  }
+  SharedWarnings shared;
+  std::vector<PhotographedView> out;
+  for (const ViewSource& source : views.list.empty()
+                                      ? CalibratedSources(views, calibrated)
+                                      : ListedSources(views)) {
+    StatusOr<PhotographedView> view = LoadView(problem, source, &shared);
+    if (!view.ok()) return view.status();
+    out.push_back(*std::move(view));
+  }
+  shared.AppendTo(warnings);
+  return out;
+}
+
+}  // namespace ibrdf
