@@ -17,11 +17,22 @@ constexpr int64_t kMostTexels = 1000;
 // Of what candidates see the place in the picture matters alone, not pixels.
 constexpr int kShortSide = 16;
 
-// Numbers of texels, evenly spread over the list.
-std::vector<int64_t> SpreadTexels(int64_t count) {
+// Numbers of texels at equal steps of area: a texel's share of them is that of
+// its area, so that the poles of a sphere, with many small texels, weigh no
+// more than the rest.
+std::vector<int64_t> SpreadTexels(const std::vector<SurfaceTexel>& texels) {
+  const auto count = static_cast<int64_t>(texels.size());
   const int64_t kept = std::min(count, kMostTexels);
+  double area = 0.0;
+  for (const SurfaceTexel& texel : texels) area += texel.area;
   std::vector<int64_t> out;
-  for (int64_t i = 0; i < kept; ++i) out.push_back(i * count / kept);
+  double passed = texels[0].area;
+  for (int64_t i = 0, at = 0; i < kept; ++i) {
+    const double step =
+        area * (static_cast<double>(i) + 0.5) / static_cast<double>(kept);
+    while (passed < step && at + 1 < count) passed += texels[++at].area;
+    out.push_back(at);
+  }
   return out;
 }
 
@@ -90,8 +101,7 @@ StatusOr<TexelSamples> AllViews(const UncertaintyInputs& inputs,
   StatusOr<CandidateViews> views =
       ViewsOf(candidates, static_cast<double>(first.width) / first.height);
   if (!views.ok()) return views.status();
-  const std::vector<int64_t> kept =
-      SpreadTexels(static_cast<int64_t>(inputs.surface.atlas.texels.size()));
+  const std::vector<int64_t> kept = SpreadTexels(inputs.surface.atlas.texels);
   SurfaceAtlas atlas;
   atlas.width = inputs.surface.atlas.width;
   atlas.height = inputs.surface.atlas.height;

@@ -18,7 +18,7 @@ struct NextViews {
   // added: of the spectrum evaluator, whatever the map's is.
   std::vector<double> expected_entropy;
   std::vector<int> farthest;  // as many by farthest-point sampling
-  int texels = 0;             // that were asked, evenly spread over the atlas
+  int texels = 0;             // that were asked, evenly spread over the area
 };
 
 struct NextViewOptions {
