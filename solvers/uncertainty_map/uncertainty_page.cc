@@ -28,7 +28,8 @@ constexpr char kEntropyNote[] =
 constexpr char kParameterNote[] =
     "The most probable values, of the green channel; 0 where no view sees the "
     "texel. They are no estimate to rely on where the entropy is high. Width "
-    "alpha is the square of roughness. A perfect mirror has gloss 1.";
+    "alpha is the square of roughness, one of a few values of a grid. A "
+    "perfect mirror has gloss 1.";
 constexpr char kViewNote[] =
     "Photographs, each with its own exposure, and the entropy of the texels "
     "that they show.";
