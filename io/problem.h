@@ -66,7 +66,7 @@ struct ViewSpec {
   std::string name;  // ViewNameFault; unlike the others'
   Camera camera;
   // Of kTextures: as ImageSpec's; mask empty: none.
-  std::string file, mask;
+  std::string file = {}, mask = {};
 };
 
 // Several views: at most one of the three is set.

@@ -657,7 +657,8 @@ TEST(ProblemText, ViewsAreAListOrAFile) {
     std::string text, error;
   } cases[] = {
       {least + "views: []", "views: expected a list of 1 to 10000 views"},
-      {least + "views: 3", "views: expected a map of transforms, colmap, images or masks"},
+      {least + "views: 3",
+       "views: expected a map of transforms, colmap, images or masks"},
       {least + "views: {}", "views: expected a list, or one of transforms"},
       {least + "views: {transforms: a.json, colmap: b}",
        "views: expected a list, or one of transforms"},
