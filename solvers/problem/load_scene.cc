@@ -90,6 +90,17 @@ Status SetTexture(const Problem& problem, const MeshNotes& notes,
   }
   if (mesh->texture.empty()) {
     AddCharts(mesh);
+    // The gaps between charts are a texel of such a picture (AddCharts).
+    constexpr int kApart = 256;
+    const TextureSpec& size = problem.texture;
+    if (problem.kind == ProblemKind::kTextures &&
+        std::min(size.width, size.height) < kApart) {
+      warnings->push_back(
+          file + ": a texture of " + SizeName(size.width, size.height) +
+          " texels is too coarse to keep its charts apart: texels at their "
+          "borders are of two places; say texture.width and height of " +
+          std::to_string(kApart) + " or more");
+    }
     return OkStatus();
   }
   const std::string fault = TextureFault(*mesh);

@@ -19,6 +19,8 @@
 #include "ibrdf/solvers/uncertainty_map/surface_pictures.h"
 #include "ibrdf/solvers/uncertainty_map/write_uncertainty.h"
 #include "tests/support/markup.h"
+#include "tests/support/mesh_files.h"
+#include "tests/support/shapes.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -277,6 +279,48 @@ TEST_F(MapUncertaintyTest, ViewsOfAFileNameTheirImages) {
     EXPECT_NEAR(listed.texels.maps.entropy[i], read.texels.maps.entropy[i],
                 1e-6);
   }
+}
+
+// A mesh without texture coordinates gets charts, between which the picture
+// shows no surface.
+TEST_F(MapUncertaintyTest, MeshesHaveChartsAndPixelsShowTheirTexels) {
+  const TriangleMesh torus = TorusMesh(48, 24, 0.7, 0.3);
+  MeshSpec mesh;
+  for (size_t i = 0; i < torus.vertices.size(); ++i) {
+    mesh.vertices.push_back(torus.vertices[i].cast<double>());
+    mesh.normals.push_back(torus.normals[i].cast<double>());
+  }
+  mesh.triangles = torus.triangles;
+  WriteBytes(dir_->File("torus.obj"), ObjBytes(mesh));
+  const UncertaintyResult result =
+      Map({0, 3}, {},
+          {"geometry={mesh: torus.obj}", "texture={width: 256, height: 256}"});
+  const SurfaceAtlas& atlas = result.inputs.surface.atlas;
+  const TexelRows texture = RowsOfTexture(atlas);
+  const Mask covered = texture.Covered();
+  EXPECT_EQ(atlas.texels.size(), covered.CountInside());
+  EXPECT_LT(covered.CountInside(), covered.inside.size());
+  EXPECT_GT(result.texels.CountObserved(), 0);
+  const Camera& camera = result.inputs.views[1].camera;
+  const TexelRows rows =
+      RowsOfView(result.inputs.surface.scene, texture, camera, 64, 64, 0);
+  int met = 0;
+  for (int i = 0; i < 64 * 64; ++i) {
+    if (rows.row[i] < 0) continue;
+    ++met;
+    const auto at =
+        ProjectPoint(camera, atlas.texels[rows.row[i]].position, 64, 64);
+    ASSERT_TRUE(at);
+    // A texel is narrower than 0.1, two pixels and a half.
+    EXPECT_NEAR(i % 64 + 0.5, at->x, 2.5);
+    EXPECT_NEAR(i / 64 + 0.5, at->y, 2.5);
+  }
+  EXPECT_GT(met, 500);
+  EXPECT_TRUE(result.inputs.warnings.empty());
+  const UncertaintyResult coarse =
+      Map({0, 3}, {}, {"geometry={mesh: torus.obj}"});
+  ASSERT_EQ(1u, coarse.inputs.warnings.size());
+  EXPECT_NE(std::string::npos, coarse.inputs.warnings[0].find("too coarse"));
 }
 
 TEST_F(MapUncertaintyTest, BadInputIsOneLine) {
