@@ -1,6 +1,7 @@
 // Every key of a problem file, once: the parser takes names, ranges and words
 // from here, result.json its words, and docs/problem_file.md is rendered from
-// here (io/problem_reference.h).
+// here (io/problem_reference.h). The keys of a section are in a file of their
+// own, problem_*_keys.cc.
 #pragma once
 #include <string>
 #include <vector>
