@@ -50,7 +50,8 @@ class GltfDocument {
 
  private:
   Status CheckExtensions() const;
-  // Of a buffer view: its bytes and the distance of rows, 0 where unsaid.
+  // The bytes of a buffer view. `stride` is the distance of its rows, 0 where
+  // the file does not say it.
   StatusOr<std::string_view> View(size_t view, size_t* stride) const;
 
   std::string path_;

@@ -25,8 +25,8 @@ enum class PhotoContent {
 };
 
 struct PhotoOptions {
-  // Of OpenEXR: a layer or part by its name, as "ViewLayer.Combined" or, where
-  // that names one alone, "Combined". Empty: the rule of photo_exr.h.
+  // `layer` names a layer or part of an OpenEXR file, as "ViewLayer.Combined"
+  // or, where that names one alone, "Combined". Empty: the rule of photo_exr.h.
   std::string layer;
   PhotoContent content = PhotoContent::kColour;
   ImageLimits limits;
@@ -99,7 +99,7 @@ struct Photo {
   int orientation = 1;              // of EXIF, 1 to 8; it has been undone
   std::string layer;                // of OpenEXR: the one read; may be empty
   std::vector<std::string> layers;  // of OpenEXR: all that may be asked for
-  // Of OpenEXR, as environment maps have them: the standard attribute `envmap`,
+  // Environment maps of OpenEXR have these: the standard attribute `envmap`,
   // and the text of the attribute `ibrdf:frame`; empty where there is none.
   std::optional<ExrEnvmap> envmap;
   std::string map_frame;

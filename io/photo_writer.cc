@@ -20,7 +20,7 @@ void CheckCodes(const CodeImage& codes) {
   for (const uint16_t code : codes.rgb) CHECK_EQ(0, code >> codes.bits);
 }
 
-// Of `bits` to `to` bits: the code's own bits again and again.
+// A code of `bits` bits as one of `to` bits: its own bits again and again.
 uint32_t Repeated(uint32_t code, int bits, int to) {
   uint32_t out = 0;
   for (int shift = to - bits; shift > -bits; shift -= bits) {

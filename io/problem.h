@@ -65,7 +65,7 @@ struct ImageSpec {
 struct ViewSpec {
   std::string name;  // ViewNameFault; unlike the others'
   Camera camera;
-  // Of kTextures: as ImageSpec's; mask empty: none.
+  // kTextures has these, as ImageSpec has them. An empty mask is none.
   std::string file = {}, mask = {};
 };
 
@@ -74,8 +74,9 @@ struct ViewsSpec {
   std::vector<ViewSpec> list;
   std::string transforms;  // .json
   std::string colmap;      // a folder
-  // Of kTextures: folders of the images that such a file names, and of their
-  // masks. Empty: the file's folder, or the model's; none.
+  // kTextures has these: the folder of the images that such a file names
+  // (empty: the file's folder, or the model's), and that of their masks (empty:
+  // none).
   std::string images, masks;
 
   bool given() const {
@@ -104,7 +105,7 @@ struct PixelCircle {
 };
 
 struct GeometrySpec {
-  // Of a sphere without an outline: the unit sphere at the origin, or what the
+  // A sphere without an outline is the unit sphere at the origin, or what the
   // mask shows (sphere_outline.h).
   GeometryKind kind = GeometryKind::kSphere;
   // The sphere's, before an orthographic camera.
@@ -196,7 +197,8 @@ struct IlluminationSpec {
   // Known illumination: at most one is set.
   std::string known_file;  // floats of any format of photo_file.h
   std::optional<SkyOptions> sky;
-  // Of the file. Unset: what the file says, else camera (io/map_file.h).
+  // The frame of the file. Unset: what the file says, else camera
+  // (io/map_file.h).
   std::optional<MapFrame> frame;
   MapFrame output_frame = MapFrame::kCamera;  // of the maps that are written
   // Radiance that every pixel has beside the known light's, >= 0; unset: found
