@@ -65,8 +65,9 @@ struct ImageSpec {
 struct ViewSpec {
   std::string name;  // ViewNameFault; unlike the others'
   Camera camera;
-  // kTextures has these, as ImageSpec has them. An empty mask is none.
-  std::string file = {}, mask = {};
+  // The photograph and its mask, as ImageSpec has them, and the view's
+  // reflectance.labels. Empty: none, as of a view that is to be rendered.
+  std::string file = {}, mask = {}, labels = {};
 };
 
 // Several views: at most one of the three is set.
@@ -315,6 +316,9 @@ struct Problem {
   Camera camera;               // the view's, where `views` lists one
   bool camera_placed = false;  // from, to or a pose was given
   ViewsSpec views;
+  // Whether views stand in the place of image and camera: not where there is
+  // one of a list.
+  bool SeveralViews() const { return views.given() && views.list.size() != 1; }
   GeometrySpec geometry;
   ReflectanceSpec reflectance;
   IlluminationSpec illumination;

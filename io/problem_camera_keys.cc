@@ -61,10 +61,9 @@ Keys CameraKeys() {
 Keys ViewKeys() {
   return {
       Row("views",
-          "Several cameras in place of `camera`: a list, or a file of another "
-          "program. All are rendered in one run.")
+          "Several views in place of `image` and `camera`: a list, or a file "
+          "of another program.")
           .ListOrMap()
-          .UsedBy(kUsedByRender | kUsedByTextures)
           .Notes({"Each item of a list has a `name` and a `camera` with the "
                   "keys above: `views: [{name: left, camera: {...}}]`.",
                   "Results of a view have its name. Those of files are named "
@@ -73,34 +72,36 @@ Keys ViewKeys() {
                   "and mesh share one frame.",
                   "The focal length of a file is scaled to the size of "
                   "`image`, which has its proportions.",
-                  "With `problem: textures` each item has a `file` as well, "
-                  "and may have a `mask`, as `image` has them: `{name: left, "
-                  "file: left.exr, mask: left.png, camera: {...}}`.",
-                  "A solve takes a list of one view, which is its camera."}),
+                  "In a solve and with `problem: textures` each item has a "
+                  "`file` as well, and may have a `mask`, as `image` has "
+                  "them: `{name: left, file: left.exr, mask: left.png, "
+                  "camera: {...}}`. `image` then holds what they share: the "
+                  "curve and the exposure.",
+                  "Views of labelled materials each have `labels`, in place "
+                  "of `reflectance.labels`.",
+                  "A solve explains all views by one reflectance and one "
+                  "light. They need a mesh or a sphere.",
+                  "A render makes all views in one run."}),
       Row("views.transforms",
           "transforms.json of NeRF, Stanford-ORB or instant-ngp: poses in "
           "OpenGL's frame, of cameras without distortion.")
-          .Path(".json")
-          .UsedBy(kUsedByRender | kUsedByTextures),
+          .Path(".json"),
       Row("views.colmap",
           "Folder of a model of COLMAP, text or binary, with PINHOLE or "
           "SIMPLE_PINHOLE cameras.")
-          .Path("a folder")
-          .UsedBy(kUsedByRender | kUsedByTextures),
+          .Path("a folder"),
       Row("views.images",
           "Folder of the images that the file or model names. A name without "
           "extension is that of a PNG.")
           .Path("a folder")
           .Without("the file's folder, or `colmap`")
-          .Needs("problem: textures")
-          .UsedBy(kUsedByTextures),
+          .UsedBy(kPhotographs),
       Row("views.masks",
           "Folder of the views' masks, NAME.png each. Transparent pixels of an "
           "image are outside without a mask, too.")
           .Path("a folder")
           .Without("none")
-          .Needs("problem: textures")
-          .UsedBy(kUsedByTextures)};
+          .UsedBy(kPhotographs)};
 }
 
 }  // namespace problem_keys

@@ -38,10 +38,9 @@ void ReadLens(ProblemReader* reader, Camera* camera) {
 
 // Reads one view of a list.
 void ReadView(const ProblemReader& root, const std::string& shown,
-              const ConfigNode& node, ProblemKind kind,
-              std::vector<ViewSpec>* views) {
+              const ConfigNode& node, std::vector<ViewSpec>* views) {
   ConfigReader reader =
-      root.Other(shown, node, {"name", "camera", "file", "mask"});
+      root.Other(shown, node, {"name", "camera", "file", "mask", "labels"});
   ViewSpec view;
   reader.Text("name", &view.name);
   if (!reader.Has("name")) reader.FailExpected("name", "the view's name");
@@ -55,14 +54,16 @@ void ReadView(const ProblemReader& root, const std::string& shown,
              &view.camera);
   reader.Path("file", &view.file);
   reader.Path("mask", &view.mask);
-  for (const char* key : {"file", "mask"}) {
-    if (kind == ProblemKind::kTextures || !reader.Has(key)) continue;
-    reader.Fail(key, "expected with problem: textures only");
+  reader.Path("labels", &view.labels);
+  for (const char* key : {"mask", "labels"}) {
+    if (reader.Has(key) && view.file.empty()) {
+      reader.Fail(key, "expected beside the view's file");
+    }
   }
   views->push_back(view);
 }
 
-void ReadViewList(const ConfigNode& node, ProblemKind kind, ProblemReader* root,
+void ReadViewList(const ConfigNode& node, ProblemReader* root,
                   ViewsSpec* views) {
   if (node.items.empty() || node.items.size() > kMaxViews) {
     root->FailExpected(
@@ -70,16 +71,13 @@ void ReadViewList(const ConfigNode& node, ProblemKind kind, ProblemReader* root,
     return;
   }
   for (size_t i = 0; i < node.items.size(); ++i) {
-    ReadView(*root, "views[" + std::to_string(i) + "]", node.items[i], kind,
+    ReadView(*root, "views[" + std::to_string(i) + "]", node.items[i],
              &views->list);
   }
 }
 
 // The views of another program's file or model.
-void ReadViewFiles(ProblemReader reader, ProblemKind kind, ViewsSpec* views) {
-  for (const char* key : {"images", "masks"}) {
-    reader.CheckNeeds(key, kind == ProblemKind::kTextures);
-  }
+void ReadViewFiles(ProblemReader reader, ViewsSpec* views) {
   reader.Read("transforms", &views->transforms);
   reader.Read("colmap", &views->colmap);
   reader.Read("images", &views->images);
@@ -110,16 +108,16 @@ void ReadCamera(ProblemReader reader, Camera* camera) {
   }
 }
 
-void ReadViews(ProblemReader* root, ProblemKind kind, ViewsSpec* views) {
+void ReadViews(ProblemReader* root, ViewsSpec* views) {
   const ConfigNode* node = root->Find("views");
   if (node == nullptr) return;
   if (root->Has("camera")) {
     root->Fail("views", "expected without camera");
   }
   if (node->kind == Kind::kList) {
-    ReadViewList(*node, kind, root, views);
+    ReadViewList(*node, root, views);
   } else {
-    ReadViewFiles(root->Below("views"), kind, views);
+    ReadViewFiles(root->Below("views"), views);
   }
 }
 

@@ -21,14 +21,52 @@ Status CheckNotTextures(const Problem& problem) {
                     "textures are ibrdf_uncertainty's alone");
 }
 
+// Several views have each its photograph, and `image` what they share.
+Status CheckViewImages(const Problem& problem) {
+  const ImageSpec& image = problem.image;
+  if (!image.file.empty() || !image.mask.empty() || image.width > 0 ||
+      !image.brackets.empty()) {
+    return KeyFailure(
+        problem, "image",
+        "expected no file, mask, size or brackets beside views: each "
+        "view has its file");
+  }
+  for (size_t i = 0; i < problem.views.list.size(); ++i) {
+    if (!problem.views.list[i].file.empty()) continue;
+    return KeyFailure(problem, "views[" + std::to_string(i) + "].file",
+                      "expected the view's image, found nothing");
+  }
+  return OkStatus();
+}
+
+// Labelled materials have labels, of all views where there are several.
+Status CheckLabels(const Problem& problem) {
+  if (problem.reflectance.variation != ReflectanceVariation::kLabels) {
+    return OkStatus();
+  }
+  if (!problem.SeveralViews()) {
+    if (!problem.reflectance.labels.empty()) return OkStatus();
+    return KeyFailure(
+        problem, "reflectance.labels",
+        "expected this key with variation: labels, found nothing");
+  }
+  if (!problem.reflectance.labels.empty() || problem.views.list.empty()) {
+    return KeyFailure(problem, "reflectance.labels",
+                      "expected labels of each view in a list of views");
+  }
+  for (size_t i = 0; i < problem.views.list.size(); ++i) {
+    if (!problem.views.list[i].labels.empty()) continue;
+    return KeyFailure(problem, "views[" + std::to_string(i) + "].labels",
+                      "expected labels as of the other views, found nothing");
+  }
+  return OkStatus();
+}
+
 Status CheckSolvableImage(const Problem& problem) {
+  if (problem.SeveralViews()) return CheckViewImages(problem);
   if (problem.image.file.empty()) {
     return KeyFailure(problem, "image.file",
                       "expected the image to be explained");
-  }
-  if (problem.views.given() && problem.views.list.size() != 1) {
-    return KeyFailure(problem, "views",
-                      "expected one view: a solve of several is not there yet");
   }
   if (problem.image.brackets.size() != problem.image.bracket_exposures.size()) {
     return KeyFailure(
@@ -76,37 +114,13 @@ Status CheckSolvableReflectance(const Problem& problem) {
   return OkStatus();
 }
 
-Status CheckTextureImages(const Problem& problem) {
-  const ImageSpec& image = problem.image;
-  if (!image.file.empty() || !image.mask.empty() || image.width > 0 ||
-      !image.brackets.empty()) {
-    return KeyFailure(
-        problem, "image",
-        "expected no file, mask, size or brackets beside views: each "
-        "view has its file");
-  }
-  if (image.response >= ResponseChoice::kUnknown) {
-    return KeyFailure(problem, "image.response", "expected a known curve");
-  }
-  for (size_t i = 0; i < problem.views.list.size(); ++i) {
-    if (!problem.views.list[i].file.empty()) continue;
-    return KeyFailure(problem, "views[" + std::to_string(i) + "].file",
-                      "expected the view's image, found nothing");
-  }
-  return OkStatus();
-}
 
 }  // namespace
 
 Status CheckSolvable(const Problem& problem) {
   IBRDF_RETURN_IF_ERROR(CheckNotTextures(problem));
   IBRDF_RETURN_IF_ERROR(CheckSolvableImage(problem));
-  if (problem.reflectance.variation == ReflectanceVariation::kLabels &&
-      problem.reflectance.labels.empty()) {
-    return KeyFailure(
-        problem, "reflectance.labels",
-        "expected this key with variation: labels, found nothing");
-  }
+  IBRDF_RETURN_IF_ERROR(CheckLabels(problem));
   for (const Effect approximation : {Effect::kHarmonics, Effect::kGaussians}) {
     if (problem.effects.Lists(approximation)) {
       return KeyFailure(
@@ -136,7 +150,10 @@ Status CheckTextures(const Problem& problem) {
     return KeyFailure(problem, "views",
                       "expected with problem: textures, found nothing");
   }
-  IBRDF_RETURN_IF_ERROR(CheckTextureImages(problem));
+  IBRDF_RETURN_IF_ERROR(CheckViewImages(problem));
+  if (problem.image.response >= ResponseChoice::kUnknown) {
+    return KeyFailure(problem, "image.response", "expected a known curve");
+  }
   if (problem.geometry.HasNormalMap() || problem.geometry.outline.has_value()) {
     return KeyFailure(problem, "geometry",
                       "expected a mesh, or sphere: {}, with problem: textures");
@@ -157,6 +174,11 @@ Status CheckRenderable(const Problem& problem) {
   if (problem.image.width <= 0 || problem.image.height <= 0) {
     return KeyFailure(problem, "image",
                       "expected width and height of the image to render");
+  }
+  for (const ViewSpec& view : problem.views.list) {
+    if (view.file.empty()) continue;
+    return KeyFailure(problem, "views",
+                      "expected no files of views in a render");
   }
   if (!problem.reflectance.known()) {
     return KeyFailure(problem, "reflectance.known",

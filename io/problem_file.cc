@@ -12,22 +12,56 @@ namespace {
 
 constexpr size_t kMaxFileBytes = size_t{1} << 20;
 
+// One view of a list is the problem's image and camera.
+void TakeOneView(ProblemReader* root, Problem* problem) {
+  if (problem->views.list.size() != 1) return;
+  const ViewSpec& view = problem->views.list[0];
+  problem->camera = view.camera;
+  if (view.file.empty() || problem->kind == ProblemKind::kTextures) return;
+  ImageSpec* const image = &problem->image;
+  if (!image->file.empty() || !image->mask.empty() || image->width > 0) {
+    root->Fail("image",
+               "expected no file, mask or size beside the view's own file");
+    return;
+  }
+  image->file = view.file;
+  image->mask = view.mask;
+}
+
+// Labels of views are those of the reflectance, and ask for it.
+void TakeLabelsOfViews(const ViewsSpec& views, ProblemReader reader,
+                       ReflectanceSpec* reflectance) {
+  for (const ViewSpec& view : views.list) {
+    if (view.labels.empty()) continue;
+    if (!reflectance->labels.empty()) {
+      reader.Fail("labels", "expected without labels of the views");
+    } else if (reflectance->known()) {
+      reader.Fail("known", "expected without labels of the views");
+    } else if (reflectance->variation != ReflectanceVariation::kAuto &&
+               reflectance->variation != ReflectanceVariation::kLabels) {
+      reader.Fail("variation", "expected labels with labels of the views");
+    }
+    reflectance->variation = ReflectanceVariation::kLabels;
+    if (views.list.size() == 1) reflectance->labels = view.labels;
+    return;
+  }
+}
+
 // The context keeps the first error, so the order of the sections is that of
 // the messages.
 void ReadKeys(ProblemReader root, Problem* problem) {
   root.Read("problem", &problem->kind);
+  // CheckTextures says what textures need in the image's place.
+  const bool views =
+      root.Has("views") || problem->kind == ProblemKind::kTextures;
   for (const char* key : {"image", "geometry"}) {
-    // CheckTextures says what textures need in the image's place.
-    const bool needed =
-        problem->kind != ProblemKind::kTextures || std::string(key) != "image";
-    if (!needed || root.Has(key)) continue;
+    if (root.Has(key) || (views && std::string(key) == "image")) continue;
     root.Fail(key, "expected this key, found nothing");
   }
-  ReadImageSpec(root.Below("image"), problem->kind, &problem->image);
+  ReadImageSpec(root.Below("image"), views, &problem->image);
   ReadCamera(root.Below("camera"), &problem->camera);
-  ReadViews(&root, problem->kind, &problem->views);
-  const std::vector<ViewSpec>& list = problem->views.list;
-  if (list.size() == 1) problem->camera = list[0].camera;
+  ReadViews(&root, &problem->views);
+  TakeOneView(&root, problem);
   ReadGeometry(root.Below("geometry"),
                problem->camera.type == CameraType::kPerspective, problem->views,
                &problem->geometry);
@@ -40,6 +74,8 @@ void ReadKeys(ProblemReader root, Problem* problem) {
   ReadLikelihood(root.Below("likelihood"), &problem->likelihood);
   ReadEffects(&root, &problem->effects);
   ReadSolver(root.Below("solver"), problem->kind, &problem->solver);
+  TakeLabelsOfViews(problem->views, root.Below("reflectance"),
+                    &problem->reflectance);
   SettleVariation(problem->solver, root.Below("reflectance"),
                   &problem->reflectance);
   SettlePrior(problem->solver, &problem->illumination);

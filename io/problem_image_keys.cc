@@ -15,8 +15,8 @@ Keys ImageFileKeys() {
           .Without("needed")
           .Notes({"A solve needs `file`. A render needs `width` and `height`. "
                   "One problem cannot have both.",
-                  "With `problem: textures` it has neither: each of `views` "
-                  "has its file and mask, and the curve is that of all.",
+                  "With photographs of several `views` it has neither: each "
+                  "view has its file and mask, and the curve is that of all.",
                   "An image has at most " + std::to_string(kMaxImagePixels) +
                       " pixels."}),
       Row("image.file",

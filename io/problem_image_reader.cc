@@ -7,8 +7,7 @@
 
 namespace ibrdf {
 
-// The views of textures have the files.
-void ReadImageSpec(ProblemReader reader, ProblemKind kind, ImageSpec* image) {
+void ReadImageSpec(ProblemReader reader, bool views, ImageSpec* image) {
   reader.Read("file", &image->file);
   reader.Read("mask", &image->mask);
   reader.Read("layer", &image->layer);
@@ -22,7 +21,7 @@ void ReadImageSpec(ProblemReader reader, ProblemKind kind, ImageSpec* image) {
   reader.Read("width", &image->width);
   reader.Read("height", &image->height);
   const bool sized = reader.Has("width") || reader.Has("height");
-  if (kind == ProblemKind::kTextures && !reader.Has("file") && !sized) return;
+  if (views && !reader.Has("file") && !sized) return;
   if (reader.Has("file") == sized) {
     reader.Fail(reader.Has("file")
                     ? "expected either file or width and height, found both"

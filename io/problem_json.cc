@@ -84,6 +84,7 @@ json ViewsJson(const ViewsSpec& views) {
                    {"camera", CameraJson(view.camera, /*placed=*/true)}});
     if (!view.file.empty()) out.back()["file"] = view.file;
     if (!view.mask.empty()) out.back()["mask"] = view.mask;
+    if (!view.labels.empty()) out.back()["labels"] = view.labels;
   }
   return out;
 }

@@ -44,6 +44,7 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
     const std::string key = "views[" + std::to_string(i) + "].";
     files.push_back({key + "file", list[i].file});
     files.push_back({key + "mask", list[i].mask});
+    files.push_back({key + "labels", list[i].labels});
   }
   files.erase(std::remove_if(files.begin(), files.end(),
                              [](const NamedFile& f) { return f.path.empty(); }),

@@ -8,10 +8,11 @@
 namespace ibrdf {
 
 // With kTextures the views have the files, so the image may have none.
-void ReadImageSpec(ProblemReader reader, ProblemKind kind, ImageSpec* image);
+// views: whether others stand beside it, which may have the files.
+void ReadImageSpec(ProblemReader reader, bool views, ImageSpec* image);
 
 void ReadCamera(ProblemReader reader, Camera* camera);
-void ReadViews(ProblemReader* root, ProblemKind kind, ViewsSpec* views);
+void ReadViews(ProblemReader* root, ViewsSpec* views);
 
 // `perspective`: the camera is.
 void ReadGeometry(ProblemReader reader, bool perspective,

@@ -114,7 +114,7 @@ bool DependsOnNormal(const Problem& problem, bool visibility) {
   const bool allowed = effects.mode == EffectsMode::kAuto ||
                        effects.mode == EffectsMode::kAll ||
                        effects.Lists(Effect::kReflectanceMap);
-  return allowed && !visibility &&
+  return allowed && !visibility && !problem.SeveralViews() &&
          problem.camera.type == CameraType::kOrthographic;
 }
 

@@ -60,8 +60,9 @@ bool BinsBlur(const SolveSetup& setup, const SolveContext& context,
       JointMethod::kTrustRegion) {
     return false;
   }
+  const int bins_across = setup.MapBins(kMapBins);
   ObservationPair pair =
-      MakePair(setup.pixels, setup.problem->image.width, kMapBins);
+      MakePair(setup.pixels, setup.problem->image.width, bins_across);
   if (pair.bins.observed.num_valid == 0) return false;
   const Iterate& iterate = estimate.iterate;
   const auto radiance = [&](const Observation& observation) {
@@ -72,7 +73,7 @@ bool BinsBlur(const SolveSetup& setup, const SolveContext& context,
     return on.objective->radiance();
   };
   const double error = BinningError(pair.pixels, radiance(pair.pixels),
-                                    radiance(pair.bins), kMapBins);
+                                    radiance(pair.bins), bins_across);
   return error > kBlurredShare * Evaluate("map", setup, context, iterate,
                                           estimate.pixels.get())
                                      .misfit;
@@ -89,7 +90,7 @@ Status IterateMap(const SolveSetup& setup, JointMethod method, double share,
       options, setup, estimate->pixels.get(), context, &estimate->iterate));
   if (!BinsBlur(setup, *context, *estimate)) return OkStatus();
   *estimate->pixels =
-      ObservedPixels(setup, MeansByNormal(setup.pixels, kFineMapBins));
+      ObservedPixels(setup, MeansByNormal(setup.pixels, setup.MapBins(kFineMapBins)));
   options.stage = "fine map";
   return RunOuterIterations(options, setup, estimate->pixels.get(), context,
                             &estimate->iterate);

@@ -8,6 +8,7 @@
 
 #include "ibrdf/base/median.h"
 #include "ibrdf/light/log_map.h"
+#include "ibrdf/solvers/estimation/view_bins.h"
 #include "ibrdf/solvers/problem/quadrature_level.h"
 #include "ibrdf/transport/transport.h"
 
@@ -106,6 +107,8 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
     resolution->visibility = problem.transport.visibility;
     resolution->quadrature =
         AtLevel(resolution->quadrature, problem.solver.quadrature);
+    resolution->bins.bins_across = BinsAcrossView(
+        resolution->bins.bins_across, problem.sheet.views.size());
   }
   o.should_stop = context->StopAfter(share);
   LimitIterations(problem.solver.max_iterations, &o);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/solvers/estimation/view_bins.h"
 #include "ibrdf/solvers/priors/embedding_prior.h"
 #include "ibrdf/transport/bright_texels.h"
 
@@ -77,6 +78,10 @@ void SetUnknownLobes(const InverseProblem& problem, SolveSetup* setup) {
 
 }  // namespace
 
+int SolveSetup::MapBins(int of_one) const {
+  return BinsAcrossView(of_one, problem->sheet.views.size());
+}
+
 bool SolveSetup::joint_maximum() const {
   return lobes_unknown() && light_unknown() &&
          problem->solver.estimator == SolverEstimator::kMaximum;
@@ -132,7 +137,8 @@ StatusOr<SolveSetup> SetUp(const InverseProblem& problem) {
   } else {
     setup.binned = problem.transport.visibility != nullptr
                        ? Thin(setup.pixels, problem.image.width)
-                       : MeansByNormal(setup.pixels, kMapBins);
+                       : MeansByNormal(setup.pixels,
+                                       setup.MapBins(kMapBins));
   }
   if (!problem.known_brdf.has_value()) SetUnknownLobes(problem, &setup);
   return setup;

@@ -49,6 +49,8 @@ struct SolveSetup {
 
   bool lobes_unknown() const { return lobes != nullptr; }
   bool light_unknown() const { return !problem->known_map.has_value(); }
+  // Bins across the normals of each view, where one photograph has `of_one`.
+  int MapBins(int of_one) const;
   // Both at once, as published (Chen et al. 2020, Eq. 8).
   bool joint_maximum() const;
   // BRDFs of the points, by material: the known or estimated ones, or those of

@@ -39,7 +39,7 @@ BinMeans MeanByNormal(const std::vector<ShadingPoint>& points,
   CHECK_EQ(observed.radiance.size(), 3 * points.size());
   CHECK_GT(bins_across, 0);
   const double side = 2.0 / bins_across;
-  std::map<std::array<int, 6>, Sums> bins;
+  std::map<std::array<int, 7>, Sums> bins;
   for (size_t i = 0; i < points.size(); ++i) {
     const std::optional<Eigen::Vector2d> in_view =
         NormalInView(points[i], min_cosine);
@@ -49,9 +49,10 @@ BinMeans MeanByNormal(const std::vector<ShadingPoint>& points,
     };
     const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
     const Eigen::Vector3d wo = points[i].wo.cast<double>().normalized();
-    Sums& sums = bins[{points[i].material, Bin(wo.x(), kViewBin),
-                       Bin(wo.y(), kViewBin), Bin(wo.z(), kViewBin),
-                       Bin(in_view->y(), side), Bin(in_view->x(), side)}];
+    Sums& sums = bins[{points[i].material, points[i].view,
+                       Bin(wo.x(), kViewBin), Bin(wo.y(), kViewBin),
+                       Bin(wo.z(), kViewBin), Bin(in_view->y(), side),
+                       Bin(in_view->x(), side)}];
     if (sums.first == nullptr) sums.first = &points[i];
     sums.normal += n;
     sums.wo += wo;

@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -53,14 +54,14 @@ NormalBins BinByNormal(const std::vector<ShadingPoint>& points,
     return std::clamp(static_cast<int>((0.5 * x + 0.5) * options.bins_across),
                       0, options.bins_across - 1);
   };
-  std::map<int, std::vector<size_t>> members;
+  std::map<std::array<int, 4>, std::vector<size_t>> members;
   for (size_t i = 0; i < points.size(); ++i) {
     const std::optional<Eigen::Vector2d> normal =
         NormalInView(points[i], options.min_cosine);
     if (!observed.valid[i] || !normal.has_value()) continue;
-    const int row =
-        points[i].material * options.bins_across + bin_of(normal->y());
-    members[row * options.bins_across + bin_of(normal->x())].push_back(i);
+    members[{points[i].material, points[i].view, bin_of(normal->y()),
+             bin_of(normal->x())}]
+        .push_back(i);
   }
   NormalBins bins;
   bins.first.push_back(0);

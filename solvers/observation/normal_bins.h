@@ -1,4 +1,5 @@
-// A photograph in few numbers: pixels of like normals together.
+// Photographs in few numbers: pixels of like normals together, each view's by
+// themselves, as like normals of two views reflect other light.
 #pragma once
 #include <Eigen/Core>
 #include <optional>
@@ -10,9 +11,9 @@
 namespace ibrdf {
 
 struct NormalBins {
-  // Up to some pixels of each bin, all of one material, bin by bin; bin i has
-  // [first[i], first[i + 1]). Bins of a material come one after the other, by
-  // ShadingPoint::material.
+  // Up to some pixels of each bin, all of one material and view, bin by bin;
+  // bin i has [first[i], first[i + 1]). Bins of a material come one after the
+  // other, by ShadingPoint::material.
   std::vector<ShadingPoint> points;
   std::vector<int> first;
   // Log of the mean radiance of a bin's points [3 * bins], by channel.
@@ -25,7 +26,7 @@ struct NormalBins {
 };
 
 struct NormalBinOptions {
-  int bins_across = 16;    // of the disc of visible normals
+  int bins_across = 16;    // of the disc of a view's visible normals
   int points_per_bin = 4;  // at most
   // Pixels seen at a smaller cosine are left out: at the limb a pixel's centre
   // stands badly for its area.

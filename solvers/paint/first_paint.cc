@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -114,7 +115,7 @@ double DeviationAtLikeNormals(const std::vector<ShadingPoint>& points,
                               const Observations& observed,
                               const UnpaintedRadiance& unpainted,
                               const std::vector<double>& log_albedo) {
-  std::map<std::pair<int, int>, std::vector<double>> bins;
+  std::map<std::array<int, 3>, std::vector<double>> bins;  // of each view
   for (size_t i = 0; i < points.size(); ++i) {
     const auto normal = NormalInView(points[i], kLeastCosine);
     if (!observed.valid[i] || !normal) continue;
@@ -125,7 +126,7 @@ double DeviationAtLikeNormals(const std::vector<ShadingPoint>& points,
     }
     const Eigen::Vector2i bin =
         (*normal * (0.5 * kBinsAcross)).array().floor().cast<int>();
-    bins[{bin.x(), bin.y()}].push_back(left / 3.0);
+    bins[{points[i].view, bin.x(), bin.y()}].push_back(left / 3.0);
   }
   std::vector<double> deviations;
   for (const auto& [bin, left] : bins) {

@@ -63,8 +63,8 @@ double Beyond(double far, double near) {
   return std::sqrt(std::max(far * far - near * near, 0.0));
 }
 
-// Samples by cell of the disc of normals, in image order within each; cells are
-// consecutive.
+// Samples by view and cell of the disc of normals, in image order within each;
+// cells are consecutive.
 std::vector<std::pair<int, size_t>> SortIntoCells(
     const std::vector<NormalSample>& samples) {
   const int across = static_cast<int>(2.0 / kCellWidth) + 1;
@@ -75,7 +75,8 @@ std::vector<std::pair<int, size_t>> SortIntoCells(
   cells.reserve(samples.size());
   for (size_t i = 0; i < samples.size(); ++i) {
     const Eigen::Vector2d& n = samples[i].normal;
-    cells.emplace_back(index(n.y()) * across + index(n.x()), i);
+    const int row = samples[i].view * across + index(n.y());
+    cells.emplace_back(row * across + index(n.x()), i);
   }
   std::sort(cells.begin(), cells.end());
   return cells;
@@ -107,7 +108,7 @@ ColourSpread SpreadOfColours(const std::vector<NormalSample>& samples) {
   ColourSpread spread;
   if (samples.empty()) return spread;
   spread.own = MedianColour(samples);
-  const double size = std::sqrt(static_cast<double>(samples.size()));
+  const double size = ObjectSize(samples);
   const double far_from = std::max(kOtherPlace * size, kLeastFar);
   const double near_to = std::max(kNear * size, kLeastNear);
   MeanDifference far(spread.own), near(spread.own);

@@ -72,7 +72,7 @@ double SharpColourSteps(const std::vector<NormalSample>& samples,
   // A line's extents down and across; blocks of two meet each part of it once
   // more than kSpan.
   return std::hypot(static_cast<double>(across), static_cast<double>(down)) /
-         ((kSpan + 1) * std::sqrt(static_cast<double>(samples.size())));
+         ((kSpan + 1) * CountViews(samples) * ObjectSize(samples));
 }
 
 }  // namespace ibrdf

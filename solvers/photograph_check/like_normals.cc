@@ -16,8 +16,12 @@ constexpr double kSameNormals = 1e-5;
 
 class Cells {
  public:
-  Cells(size_t samples, std::ptrdiff_t most, LikeNormalsSpread* spread)
-      : samples_(static_cast<double>(samples)), most_(most), spread_(spread) {}
+  Cells(const std::vector<NormalSample>& samples, std::ptrdiff_t most,
+        LikeNormalsSpread* spread)
+      : samples_(static_cast<double>(samples.size())),
+        size_(ObjectSize(samples)),
+        most_(most),
+        spread_(spread) {}
 
   // Halves by the median of the wider axis until a cell is small enough.
   void Divide(Iterator begin, Iterator end) {
@@ -58,7 +62,7 @@ class Cells {
       low = low.cwiseMin(s->position);
       high = high.cwiseMax(s->position);
     }
-    return (high - low).norm() >= kOtherPlace * std::sqrt(samples_);
+    return (high - low).norm() >= kOtherPlace * size_;
   }
 
   void AddCell(Iterator begin, Iterator end) {
@@ -103,7 +107,7 @@ class Cells {
     }
   }
 
-  double samples_;
+  double samples_, size_;
   std::ptrdiff_t most_;  // samples of a cell
   LikeNormalsSpread* spread_;
   double sum_radiance_ = 0.0, sum_colour_ = 0.0;
@@ -115,8 +119,15 @@ LikeNormalsSpread SpreadInCells(std::vector<NormalSample> samples,
   spread.colour_of_point.assign(points,
                                 std::numeric_limits<float>::quiet_NaN());
   if (samples.empty()) return spread;
-  Cells cells(samples.size(), most, &spread);
-  cells.Divide(samples.begin(), samples.end());
+  Cells cells(samples, most, &spread);
+  // Like normals of two views do not reflect like light.
+  for (Iterator begin = samples.begin(); begin != samples.end();) {
+    const Iterator end = std::stable_partition(
+        begin, samples.end(),
+        [view = begin->view](const NormalSample& s) { return s.view == view; });
+    cells.Divide(begin, end);
+    begin = end;
+  }
   cells.Finish();
   return spread;
 }

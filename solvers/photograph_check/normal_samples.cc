@@ -1,5 +1,8 @@
 #include "ibrdf/solvers/photograph_check/normal_samples.h"
 
+#include <cmath>
+#include <set>
+
 #include "ibrdf/solvers/photograph_check/pixel_counts.h"
 #include "ibrdf/transport/quadrature.h"
 
@@ -35,9 +38,21 @@ std::vector<NormalSample> SampleNormals(
         Eigen::Map<const Eigen::Array3f>(rgb).cast<double>().log();
     sample.position = {pixel % radiance.width, pixel / radiance.width};
     sample.point = i;
+    sample.view = points[i].view;
     samples.push_back(sample);
   }
   return samples;
+}
+
+int CountViews(const std::vector<NormalSample>& samples) {
+  std::set<int> views;
+  for (const NormalSample& sample : samples) views.insert(sample.view);
+  return static_cast<int>(views.size());
+}
+
+double ObjectSize(const std::vector<NormalSample>& samples) {
+  if (samples.empty()) return 0.0;
+  return std::sqrt(static_cast<double>(samples.size()) / CountViews(samples));
 }
 
 }  // namespace ibrdf

@@ -16,6 +16,7 @@ struct NormalSample {
   Eigen::Array3d log_radiance;  // natural
   Eigen::Vector2d position;     // of the pixel, column and row
   size_t point = 0;             // its place in the list of points
+  int view = 0;                 // ShadingPoint::view
 
   // log R/G and log B/G.
   Eigen::Vector2d LogColour() const {
@@ -29,5 +30,11 @@ struct NormalSample {
 // normals.
 std::vector<NormalSample> SampleNormals(
     const Image& radiance, const std::vector<ShadingPoint>& points);
+
+int CountViews(const std::vector<NormalSample>& samples);
+
+// The object's size in an image, pixels: the square root of its samples, or of
+// a view's in the mean of several.
+double ObjectSize(const std::vector<NormalSample>& samples);
 
 }  // namespace ibrdf

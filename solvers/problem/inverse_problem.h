@@ -17,13 +17,15 @@
 #include "ibrdf/solvers/problem/load_labels.h"
 #include "ibrdf/solvers/problem/load_object.h"
 #include "ibrdf/solvers/problem/unknown_curve.h"
+#include "ibrdf/solvers/problem/view_sheet.h"
 #include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 
 struct InverseProblem {
   ProblemKind kind = ProblemKind::kJoint;
-  Image image;  // observed radiance
+  Image image;  // observed radiance; of several views, the sheet's
+  ViewSheet sheet;
   // Where the file bounds radiance alone, as whole numbers do: the ends. An
   // image's value is then in its interval, or its one end.
   std::optional<RadianceBounds> bounds;

@@ -1,5 +1,6 @@
 #include "ibrdf/solvers/problem/load_object.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -7,16 +8,24 @@
 #include "ibrdf/solvers/photograph_check/check_words.h"
 #include "ibrdf/solvers/problem/load_photograph.h"
 #include "ibrdf/solvers/problem/load_scene.h"
+#include "ibrdf/solvers/problem/load_sheet.h"
 #include "ibrdf/solvers/problem/silhouette.h"
 #include "ibrdf/solvers/problem/sphere_outline.h"
 
 namespace ibrdf {
 namespace {
 
+// The object's pixels, and where they are to the mask.
+struct SeenObject {
+  std::vector<ShadingPoint> points;
+  Silhouette silhouette;
+  bool has_mask = false;
+};
+
 std::shared_ptr<const ObjectLook> Look(const Problem& problem,
                                        const Photograph& observed,
                                        const PhotographedObject& object,
-                                       Silhouette silhouette) {
+                                       bool has_mask, Silhouette silhouette) {
   ObjectLook look;
   look.radiance = KnownRadiance(observed);
   const LookInput input{look.radiance,
@@ -27,9 +36,8 @@ std::shared_ptr<const ObjectLook> Look(const Problem& problem,
                         observed.curve,
                         problem.image.exposure,
                         observed.missing,
-                        problem.image.mask.empty()
-                            ? std::nullopt
-                            : std::optional<double>(silhouette.overlap)};
+                        has_mask ? std::optional<double>(silhouette.overlap)
+                                 : std::nullopt};
   look.check = CheckPhotograph(input);
   look.mask = observed.mask;
   look.silhouette = std::move(silhouette.object);
@@ -43,6 +51,7 @@ StatusOr<Problem> WithSphereOutline(const Problem& problem, const Mask& mask,
   Problem placed = problem;
   if (problem.geometry.kind != GeometryKind::kSphere ||
       problem.geometry.outline.has_value() ||
+      problem.SeveralViews() ||
       problem.camera.type != CameraType::kOrthographic) {
     return placed;
   }
@@ -82,46 +91,136 @@ Status TakeLabels(const Problem& problem, const Image& radiance,
   return OkStatus();
 }
 
-}  // namespace
-
-StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
-                                                    int num_threads) {
-  IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
-  StatusOr<Photograph> observed = LoadPhotograph(problem.image);
-  if (!observed.ok()) return observed.status();
-  const int width = observed->radiance.width;
-  const int height = observed->radiance.height;
-  PhotographedObject object;
-  object.warnings = std::move(observed->warnings);
-  const StatusOr<Problem> placed =
-      WithSphereOutline(problem, observed->mask, &object.warnings);
-  if (!placed.ok()) return placed.status();
-  StatusOr<Scene> scene = LoadScene(*placed, width, height, &object.warnings);
-  if (!scene.ok()) return scene.status();
-  object.scene = *std::move(scene);
-  StatusOr<std::vector<ShadingPoint>> points =
-      FindShadingPoints(object.scene, problem.camera, width, height,
-                        observed->mask, 1, num_threads);
+// What one photograph of this size shows of the object.
+StatusOr<SeenObject> SeeObject(const Problem& problem, const Scene& scene,
+                               int width, int height, const Mask& mask,
+                               int num_threads,
+                               std::vector<std::string>* warnings) {
+  SeenObject seen;
+  StatusOr<std::vector<ShadingPoint>> points = FindShadingPoints(
+      scene, problem.camera, width, height, mask, 1, num_threads);
   if (!points.ok()) {
     return InvalidInput(problem.path, points.status().message() +
                                           "; check the camera and geometry" +
                                           FitAdvice(problem));
   }
-  object.points = *std::move(points);
-  Silhouette silhouette =
-      FindSilhouette(object.scene, problem.camera, width, height,
-                     observed->mask, object.points, num_threads);
-  IBRDF_RETURN_IF_ERROR(CheckSilhouette(problem, silhouette, &object.warnings));
-  IBRDF_RETURN_IF_ERROR(TakeLabels(problem, observed->radiance, &object));
-  object.look = Look(problem, *observed, object, std::move(silhouette));
+  seen.points = *std::move(points);
+  seen.has_mask = !problem.image.mask.empty();
+  seen.silhouette = FindSilhouette(scene, problem.camera, width, height, mask,
+                                   seen.points, num_threads);
+  IBRDF_RETURN_IF_ERROR(CheckSilhouette(problem, seen.silhouette, warnings));
+  return seen;
+}
+
+// One view's problem, of all that the view alone decides.
+Problem OfView(const Problem& problem, const PhotographSheet& sheet, size_t v) {
+  Problem one = problem;
+  one.camera = sheet.sheet.views[v].camera;
+  one.image.file = sheet.files[v];
+  one.image.mask = sheet.mask_files[v];
+  return one;
+}
+
+// What all views show, as points of the sheet. Views that see nothing are told
+// of; at least one sees the object. The overlap is the worst view's.
+StatusOr<SeenObject> SeeOnSheet(const Problem& problem, const Scene& scene,
+                                const PhotographSheet& photographs,
+                                int num_threads,
+                                std::vector<std::string>* warnings) {
+  const ViewSheet& sheet = photographs.sheet;
+  SeenObject all;
+  all.silhouette.object = Mask(sheet.width, sheet.height, 0);
+  std::string blind;
+  for (size_t v = 0; v < sheet.views.size(); ++v) {
+    const SheetView& place = sheet.views[v];
+    StatusOr<SeenObject> seen =
+        SeeObject(OfView(problem, photographs, v), scene, place.width,
+                  place.height, CutOut(photographs.photograph.mask, place),
+                  num_threads, warnings);
+    if (!seen.ok()) {
+      blind = seen.status().message();
+      warnings->push_back(photographs.files[v] + ": view " + place.name +
+                          " takes no part: " + blind);
+      continue;
+    }
+    MoveToSheet(sheet, static_cast<int>(v), &seen->points);
+    all.points.insert(all.points.end(), seen->points.begin(),
+                      seen->points.end());
+    Place(seen->silhouette.object, place, &all.silhouette.object);
+    all.silhouette.covered += seen->silhouette.covered;
+    all.silhouette.of_mask += seen->silhouette.of_mask;
+    all.silhouette.overlap =
+        std::min(all.silhouette.overlap, seen->silhouette.overlap);
+    all.has_mask |= seen->has_mask;
+  }
+  if (all.points.empty()) {
+    return InvalidInput(problem.path + ": views",
+                        "no view sees the object: " + blind);
+  }
+  for (size_t i = 0; i < all.points.size(); ++i) {
+    all.points[i].index = static_cast<int>(i);
+  }
+  return all;
+}
+
+// One photograph, or the sheet of several.
+StatusOr<PhotographSheet> LoadPhotographs(const Problem& problem) {
+  if (problem.SeveralViews()) return LoadPhotographSheet(problem);
+  StatusOr<Photograph> photograph = LoadPhotograph(problem.image);
+  if (!photograph.ok()) return photograph.status();
+  PhotographSheet one;
+  one.photograph = *std::move(photograph);
+  return one;
+}
+
+// The geometry, and what the photographs show of it.
+StatusOr<SeenObject> LoadAndSeeObject(const Problem& problem,
+                                      const PhotographSheet& photographs,
+                                      int num_threads,
+                                      PhotographedObject* object) {
+  const Photograph& observed = photographs.photograph;
+  const int width = observed.radiance.width;
+  const int height = observed.radiance.height;
+  const StatusOr<Problem> placed =
+      WithSphereOutline(problem, observed.mask, &object->warnings);
+  if (!placed.ok()) return placed.status();
+  StatusOr<Scene> scene = LoadScene(*placed, width, height, &object->warnings);
+  if (!scene.ok()) return scene.status();
+  object->scene = *std::move(scene);
+  if (!photographs.sheet.empty()) {
+    return SeeOnSheet(problem, object->scene, photographs, num_threads,
+                      &object->warnings);
+  }
+  return SeeObject(problem, object->scene, width, height, observed.mask,
+                   num_threads, &object->warnings);
+}
+
+}  // namespace
+
+StatusOr<PhotographedObject> LoadPhotographedObject(const Problem& problem,
+                                                    int num_threads) {
+  IBRDF_RETURN_IF_ERROR(CheckSolvable(problem));
+  StatusOr<PhotographSheet> photographs = LoadPhotographs(problem);
+  if (!photographs.ok()) return photographs.status();
+  Photograph& observed = photographs->photograph;
+  PhotographedObject object;
+  object.warnings = std::move(observed.warnings);
+  StatusOr<SeenObject> seen =
+      LoadAndSeeObject(problem, *photographs, num_threads, &object);
+  if (!seen.ok()) return seen.status();
+  object.sheet = std::move(photographs->sheet);
+  object.points = std::move(seen->points);
+  IBRDF_RETURN_IF_ERROR(TakeLabels(problem, observed.radiance, &object));
+  object.look = Look(problem, observed, object, seen->has_mask,
+                     std::move(seen->silhouette));
   for (std::string& warning : CheckWarnings(
-           object.look->check, problem.image.file, problem.geometry.file,
+           object.look->check, PhotographsName(problem), problem.geometry.file,
            SoughtIn(ChosenVariation(problem, object.look->check)))) {
     object.warnings.push_back(std::move(warning));
   }
-  object.radiance = std::move(observed->radiance);
-  object.bounds = std::move(observed->bounds);
-  object.unknown_curve = std::move(observed->unknown_curve);
+  object.radiance = std::move(observed.radiance);
+  object.bounds = std::move(observed.bounds);
+  object.unknown_curve = std::move(observed.unknown_curve);
   return object;
 }
 

@@ -14,6 +14,7 @@
 #include "ibrdf/solvers/photograph_check/photograph_check.h"
 #include "ibrdf/solvers/problem/load_labels.h"
 #include "ibrdf/solvers/problem/unknown_curve.h"
+#include "ibrdf/solvers/problem/view_sheet.h"
 
 namespace ibrdf {
 
@@ -29,7 +30,9 @@ struct ObjectLook {
 };
 
 struct PhotographedObject {
-  // Observed, with its bounds and what is to be found of it (Photograph).
+  // Observed, with its bounds and what is to be found of it (Photograph). All
+  // images are the sheet's where there are several views.
+  ViewSheet sheet;
   Image radiance;
   std::optional<RadianceBounds> bounds;
   std::optional<UnknownCurve> unknown_curve;

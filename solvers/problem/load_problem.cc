@@ -224,6 +224,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
       CheckMapSize(problem, inverse.transport.quadrature.far_width));
   inverse.warnings = std::move(object.warnings);
   inverse.image = std::move(object.radiance);
+  inverse.sheet = std::move(object.sheet);
   inverse.bounds = std::move(object.bounds);
   inverse.unknown_curve = std::move(object.unknown_curve);
   inverse.points = std::move(object.points);

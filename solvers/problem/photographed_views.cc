@@ -82,26 +82,23 @@ std::vector<ViewSource> CalibratedSources(
   return out;
 }
 
-StatusOr<PhotographedView> LoadView(const Problem& problem,
-                                    const ViewSource& source,
-                                    SharedWarnings* warnings) {
+StatusOr<ViewPhotograph> ReadView(const Problem& problem,
+                                  const ViewSource& source,
+                                  SharedWarnings* warnings) {
   ImageSpec spec = problem.image;
   spec.file = source.file;
   spec.mask = source.mask;
-  const StatusOr<Photograph> photograph = LoadPhotograph(spec);
+  StatusOr<Photograph> photograph = LoadPhotograph(spec);
   if (!photograph.ok()) return photograph.status();
   for (const std::string& warning : photograph->warnings) {
     warnings->Add(source.file, warning);
   }
-  PhotographedView out;
-  out.name = source.name;
-  out.file = source.file;
-  out.camera = source.camera;
-  out.radiance = KnownRadiance(*photograph);
-  out.mask = photograph->mask;
+  ViewPhotograph out{source.name, source.file, source.mask, source.camera,
+                     *std::move(photograph)};
   if (source.calibrated == nullptr) return out;
+  const Image& radiance = out.photograph.radiance;
   const StatusOr<Camera> camera =
-      CameraOf(*source.calibrated, out.radiance.width, out.radiance.height);
+      CameraOf(*source.calibrated, radiance.width, radiance.height);
   if (!camera.ok()) {
     return InvalidInput(source.file, camera.status().message());
   }
@@ -111,8 +108,9 @@ StatusOr<PhotographedView> LoadView(const Problem& problem,
 
 }  // namespace
 
-StatusOr<std::vector<PhotographedView>> LoadPhotographedViews(
-    const Problem& problem, std::vector<std::string>* warnings) {
+Status ReadViewPhotographs(const Problem& problem,
+                           const std::function<Status(ViewPhotograph)>& take,
+                           std::vector<std::string>* warnings) {
   const ViewsSpec& views = problem.views;
   std::vector<CalibratedView> calibrated;
   if (views.list.empty()) {
@@ -123,15 +121,29 @@ StatusOr<std::vector<PhotographedView>> LoadPhotographedViews(
     calibrated = *std::move(read);
   }
   SharedWarnings shared;
-  std::vector<PhotographedView> out;
   for (const ViewSource& source : views.list.empty()
                                       ? CalibratedSources(views, calibrated)
                                       : ListedSources(views)) {
-    StatusOr<PhotographedView> view = LoadView(problem, source, &shared);
+    StatusOr<ViewPhotograph> view = ReadView(problem, source, &shared);
     if (!view.ok()) return view.status();
-    out.push_back(*std::move(view));
+    IBRDF_RETURN_IF_ERROR(take(*std::move(view)));
   }
   shared.AppendTo(warnings);
+  return OkStatus();
+}
+
+StatusOr<std::vector<PhotographedView>> LoadPhotographedViews(
+    const Problem& problem, std::vector<std::string>* warnings) {
+  std::vector<PhotographedView> out;
+  IBRDF_RETURN_IF_ERROR(ReadViewPhotographs(
+      problem,
+      [&](ViewPhotograph view) {
+        out.push_back({view.name, view.file, view.camera,
+                       KnownRadiance(view.photograph),
+                       std::move(view.photograph.mask)});
+        return OkStatus();
+      },
+      warnings));
   return out;
 }
 

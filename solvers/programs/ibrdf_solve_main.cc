@@ -105,7 +105,7 @@ Status WriteBefore(const AskedProblem& asked, const PhotographedObject& object,
   std::vector<std::string> paths = CheckPaths(folder);
   if (!flags.check) {
     const std::vector<std::string> results =
-        ResultPaths(asked.problem, folder, object.materials);
+        ResultPaths(asked.problem, object, folder);
     paths.insert(paths.end(), results.begin(), results.end());
   }
   IBRDF_RETURN_IF_ERROR(CheckNothingReplaced(asked.problem, paths));

@@ -7,6 +7,7 @@
 #include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/report/report_limits.h"
+#include "ibrdf/solvers/report/view_results.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
@@ -44,6 +45,20 @@ std::string MisfitWarning(const SolvedProblem& solved) {
          (IsOutOfTime(solved) ? "If more time does not help, check" : "Check") +
          " the shape, the mask, the camera, and that the image is linear "
          "radiance.";
+}
+
+// One view that the others contradict.
+std::string ViewWarning(const SolvedProblem& solved) {
+  const std::vector<ViewMisfit> odd =
+      OddViews(MisfitOfViews(solved.inverse, solved.solution));
+  if (odd.empty()) return "";
+  std::string names;
+  for (const ViewMisfit& view : odd) {
+    names += (names.empty() ? "" : ", ") + view.name + " (misfit " +
+             Format("%.2g", view.misfit) + ")";
+  }
+  return "The other views contradict " + names +
+         ": check its camera and its exposure.";
 }
 
 // Pixels that the known light reaches and that cannot be used.
@@ -175,7 +190,8 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
                   solved.truth.warnings.end());
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
-        MisfitWarning(solved), PixelWarning(solved), UnlitWarning(solved),
+        MisfitWarning(solved), ViewWarning(solved), PixelWarning(solved),
+        UnlitWarning(solved),
         StrayLightWarning(solved), PaintWarning(solved),
         FewPixelsWarning(solved), CurveWarning(solved.solution.curves),
         UncertainWarning(solved.solution),

@@ -15,6 +15,7 @@
 #include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/report/verdict.h"
+#include "ibrdf/solvers/report/view_results.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
@@ -230,6 +231,18 @@ ReflectanceVariation VariationOf(const Solution& solution) {
                               : ReflectanceVariation::kNone;
 }
 
+// How well each of several views is explained.
+Json ViewsJson(const SolvedProblem& solved) {
+  Json views = Json::array();
+  for (const ViewMisfit& view :
+       MisfitOfViews(solved.inverse, solved.solution)) {
+    views.push_back({{"name", view.name},
+                     {"pixels_used", view.pixels},
+                     {"misfit", Finite(view.misfit)}});
+  }
+  return views;
+}
+
 std::string Text(const Json& document) {
   // Paths need not be UTF-8.
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -261,6 +274,7 @@ std::string ResultJson(const SolvedProblem& solved,
                {"seed", inverse.seed},
                {"pixels_used", solution.pixels_used},
                {"pixels_of_object", inverse.points.size()},
+               {"views", ViewsJson(solved)},
                {"variation", ReflectanceVariationName(VariationOf(solution))},
                {"dark_pixels", DarkPixelsJson(solved)},
                {"likelihood",

@@ -11,6 +11,7 @@
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/drawing/crop.h"
 #include "ibrdf/solvers/drawing/tone_map.h"
+#include "ibrdf/solvers/problem/load_sheet.h"
 #include "ibrdf/solvers/report/brdf_sphere.h"
 #include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/preview.h"
@@ -435,7 +436,8 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
     return std::filesystem::path(path).filename().string();
   };
   input.title =
-      name_of(solved.problem.path) + ": " + name_of(solved.problem.image.file);
+      name_of(solved.problem.path) + ": " +
+      name_of(PhotographsName(solved.problem));
   input.input = solved.inverse.image;
   input.mask = ObjectMask(solved.inverse);
   input.render = solved.solution.render;
@@ -446,7 +448,10 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   input.illumination = solved.solution.map;
   input.illumination_known = solved.inverse.known_map.has_value();
   input.reference_illumination = solved.truth.illumination;
-  input.middle_of_map = MiddleOfMapPicture(solved.problem.camera);
+  // Of several views each looks another way.
+  if (solved.inverse.sheet.empty()) {
+    input.middle_of_map = MiddleOfMapPicture(solved.problem.camera);
+  }
   input.brdf = solved.solution.brdf;
   input.reference_brdf = solved.truth.brdf;
   input.alternatives = DrawnAlternatives(solved);

@@ -9,6 +9,7 @@
 #include "ibrdf/solvers/drawing/map_picture.h"
 #include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/problem/load_scene.h"
+#include "ibrdf/solvers/problem/load_sheet.h"
 #include "ibrdf/solvers/report/check_json.h"
 #include "ibrdf/solvers/report/check_picture.h"
 
@@ -47,7 +48,7 @@ Status WriteCheck(const Problem& problem, const PhotographedObject& object,
                   const std::string& folder) {
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(
       folder + "/check.json", CheckJson(object.look->check, object.warnings)));
-  CheckPictureInput input{"Check of " + problem.image.file, object.radiance,
+  CheckPictureInput input{"Check of " + PhotographsName(problem), object.radiance,
                           object.points, *object.look, Image()};
   const std::string light_path = folder + "/check_light.png";
   if (!problem.illumination.known()) {

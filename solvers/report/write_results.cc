@@ -13,6 +13,7 @@
 #include "ibrdf/solvers/report/result_images.h"
 #include "ibrdf/solvers/report/result_json.h"
 #include "ibrdf/solvers/report/result_preview.h"
+#include "ibrdf/solvers/report/view_results.h"
 
 namespace ibrdf {
 namespace {
@@ -102,9 +103,9 @@ double PredictWriteSeconds(const InverseProblem& inverse) {
   return kWriteSeconds + kWriteSecondsPerMegapixel * megapixels;
 }
 
-std::vector<std::string> ResultPaths(
-    const Problem& problem, const std::string& folder,
-    const std::vector<MaterialLabel>& materials) {
+std::vector<std::string> ResultPaths(const Problem& problem,
+                                     const PhotographedObject& object,
+                                     const std::string& folder) {
   std::vector<std::string> paths = {
       "result.json",  "report.html", "illumination.exr", "render.exr",
       "residual.exr", "input.png",   "render.png",       "residual.png",
@@ -120,13 +121,15 @@ std::vector<std::string> ResultPaths(
     paths.insert(paths.end(),
                  {"albedo.exr", "gloss.exr", "albedo.png", "gloss.png"});
   }
-  for (const MaterialLabel& label : materials) {
+  for (const MaterialLabel& label : object.materials) {
     for (const char* end : {".binary", ".json"}) {
       paths.push_back(MaterialFile(label) + end);
     }
   }
-  if (!materials.empty()) paths.emplace_back("labels.png");
+  if (!object.materials.empty()) paths.emplace_back("labels.png");
   for (std::string& path : paths) path.insert(0, folder + "/");
+  const std::vector<std::string> of_views = ViewPaths(object.sheet, folder);
+  paths.insert(paths.end(), of_views.begin(), of_views.end());
   return paths;
 }
 
@@ -140,6 +143,7 @@ Status WriteResults(const SolvedProblem& solved, const std::string& folder) {
   const StatusOr<ResultPanels> panels = MakeResultPanels(preview);
   if (!panels.ok()) return panels.status();
   IBRDF_RETURN_IF_ERROR(WriteResultPreviews(*panels, preview, folder));
+  IBRDF_RETURN_IF_ERROR(WriteViews(solved, folder));
   const MaterialSummary material =
       SummariseMaterial(solved.inverse, solved.solution);
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(folder + "/result.json",

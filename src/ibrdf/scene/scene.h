@@ -28,6 +28,8 @@ struct ShadingPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   // Which of the object's materials it is of, >= 0.
   int material = 0;
+  // Which of several views sees it, >= 0.
+  int view = 0;
   // Texture coordinates (SurfaceHit).
   Eigen::Vector2f texture = Eigen::Vector2f::Zero();
 };
