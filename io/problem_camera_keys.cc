@@ -73,10 +73,10 @@ Keys ViewKeys() {
                   "The focal length of a file is scaled to the size of "
                   "`image`, which has its proportions.",
                   "In a solve and with `problem: textures` each item has a "
-                  "`file` as well, and may have a `mask`, as `image` has "
-                  "them: `{name: left, file: left.exr, mask: left.png, "
-                  "camera: {...}}`. `image` then holds what they share: the "
-                  "curve and the exposure.",
+                  "`file` as well, and may have a `mask`: `{name: left, file: "
+                  "left.exr, mask: left.png, camera: {...}}`.",
+                  "`image` then holds what the photographs share: the curve "
+                  "and the exposure.",
                   "Views of labelled materials each have `labels`, in place "
                   "of `reflectance.labels`.",
                   "A solve explains all views by one reflectance and one "

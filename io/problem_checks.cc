@@ -114,7 +114,6 @@ Status CheckSolvableReflectance(const Problem& problem) {
   return OkStatus();
 }
 
-
 }  // namespace
 
 Status CheckSolvable(const Problem& problem) {

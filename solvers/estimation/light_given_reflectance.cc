@@ -89,8 +89,8 @@ Status IterateMap(const SolveSetup& setup, JointMethod method, double share,
   IBRDF_RETURN_IF_ERROR(RunOuterIterations(
       options, setup, estimate->pixels.get(), context, &estimate->iterate));
   if (!BinsBlur(setup, *context, *estimate)) return OkStatus();
-  *estimate->pixels =
-      ObservedPixels(setup, MeansByNormal(setup.pixels, setup.MapBins(kFineMapBins)));
+  *estimate->pixels = ObservedPixels(
+      setup, MeansByNormal(setup.pixels, setup.MapBins(kFineMapBins)));
   options.stage = "fine map";
   return RunOuterIterations(options, setup, estimate->pixels.get(), context,
                             &estimate->iterate);

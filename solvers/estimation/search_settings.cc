@@ -107,8 +107,10 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
     resolution->visibility = problem.transport.visibility;
     resolution->quadrature =
         AtLevel(resolution->quadrature, problem.solver.quadrature);
-    resolution->bins.bins_across = BinsAcrossView(
-        resolution->bins.bins_across, problem.sheet.views.size());
+    const int of_one = resolution->bins.bins_across;
+    resolution->bins.most_bins = of_one * of_one;
+    resolution->bins.bins_across = BinsAcrossView(resolution->bins.bins_across,
+                                                  problem.sheet.views.size());
   }
   o.should_stop = context->StopAfter(share);
   LimitIterations(problem.solver.max_iterations, &o);

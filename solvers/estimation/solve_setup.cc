@@ -137,8 +137,7 @@ StatusOr<SolveSetup> SetUp(const InverseProblem& problem) {
   } else {
     setup.binned = problem.transport.visibility != nullptr
                        ? Thin(setup.pixels, problem.image.width)
-                       : MeansByNormal(setup.pixels,
-                                       setup.MapBins(kMapBins));
+                       : MeansByNormal(setup.pixels, setup.MapBins(kMapBins));
   }
   if (!problem.known_brdf.has_value()) SetUnknownLobes(problem, &setup);
   return setup;

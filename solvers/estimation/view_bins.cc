@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace ibrdf {
+namespace {
+
+constexpr int kFewest = 4;
+
+}  // namespace
 
 int BinsAcrossView(int of_one, size_t num_views) {
   if (num_views < 2) return of_one;
-  static const double power =
-      getenv("VIEW_POWER") ? atof(getenv("VIEW_POWER")) : 0.5;
-  const double share = std::pow(static_cast<double>(num_views), -power);
-  return std::max(4, static_cast<int>(std::lround(of_one * share)));
+  return std::max(kFewest,
+                  static_cast<int>(std::lround(
+                      of_one / std::sqrt(static_cast<double>(num_views)))));
 }
 
 }  // namespace ibrdf

@@ -49,10 +49,10 @@ BinMeans MeanByNormal(const std::vector<ShadingPoint>& points,
     };
     const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
     const Eigen::Vector3d wo = points[i].wo.cast<double>().normalized();
-    Sums& sums = bins[{points[i].material, points[i].view,
-                       Bin(wo.x(), kViewBin), Bin(wo.y(), kViewBin),
-                       Bin(wo.z(), kViewBin), Bin(in_view->y(), side),
-                       Bin(in_view->x(), side)}];
+    Sums& sums =
+        bins[{points[i].material, points[i].view, Bin(wo.x(), kViewBin),
+              Bin(wo.y(), kViewBin), Bin(wo.z(), kViewBin),
+              Bin(in_view->y(), side), Bin(in_view->x(), side)}];
     if (sums.first == nullptr) sums.first = &points[i];
     sums.normal += n;
     sums.wo += wo;

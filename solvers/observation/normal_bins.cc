@@ -33,6 +33,20 @@ std::vector<double> ByChannel(const std::vector<Eigen::Array3d>& bins) {
   return values;
 }
 
+// At most so many of a list, evenly spread.
+class Thinning {
+ public:
+  Thinning(size_t count, int most)
+      : count_(count), most_(most > 0 ? static_cast<size_t>(most) : count) {}
+
+  bool Keeps(size_t i) const {
+    return count_ <= most_ || i * most_ / count_ != (i + 1) * most_ / count_;
+  }
+
+ private:
+  size_t count_, most_;
+};
+
 }  // namespace
 
 std::optional<Eigen::Vector2d> NormalInView(const ShadingPoint& point,
@@ -66,7 +80,10 @@ NormalBins BinByNormal(const std::vector<ShadingPoint>& points,
   NormalBins bins;
   bins.first.push_back(0);
   std::vector<Eigen::Array3d> means, lows, highs;
+  const Thinning thinning(members.size(), options.most_bins);
+  size_t rank = 0;
   for (const auto& [bin, all] : members) {
+    if (!thinning.Keeps(rank++)) continue;
     const size_t count =
         std::min(static_cast<size_t>(options.points_per_bin), all.size());
     std::vector<size_t> kept;

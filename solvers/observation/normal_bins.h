@@ -31,6 +31,8 @@ struct NormalBinOptions {
   // Pixels seen at a smaller cosine are left out: at the limb a pixel's centre
   // stands badly for its area.
   double min_cosine = 0.2;
+  // Of all views together; more are thinned evenly. 0: no limit.
+  int most_bins = 0;
 };
 
 // The components, right and up, of a point's normal in its own view, up kept

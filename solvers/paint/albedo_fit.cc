@@ -258,6 +258,12 @@ std::vector<Eigen::Array2d> FittedChroma(
 
 }  // namespace
 
+AlbedoFitOptions InViews(AlbedoFitOptions options,
+                         const std::vector<ShadingPoint>& points) {
+  options.reach /= std::sqrt(static_cast<double>(NumViews(points)));
+  return options;
+}
+
 std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
                               const Observations& observed,
                               const std::vector<NeighbourPair>& neighbours,

@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/costs/observations.h"
 #include "ibrdf/solvers/paint/neighbours.h"
 #include "ibrdf/solvers/priors/albedo_prior.h"
@@ -30,6 +31,10 @@ struct AlbedoFitOptions {
   // may leave the albedo of its colour.
   double reach = 0.15;
 };
+
+// The options where the object's size is that of one of the points' views.
+AlbedoFitOptions InViews(AlbedoFitOptions options,
+                         const std::vector<ShadingPoint>& points);
 
 // Log albedo a [points * 3], I = e^a matte + gloss. Chroma is the image's, or
 // what steps in it. Luminance has two cues. Points of like colour have like

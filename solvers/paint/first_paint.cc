@@ -147,7 +147,7 @@ std::vector<double> PaintOf(const std::vector<ShadingPoint>& points,
                             const AlbedoFitOptions& options) {
   std::vector<double> log_albedo =
       FitAlbedo(unpainted, WithoutHighlights(points, observed, unpainted.matte),
-                neighbours, options);
+                neighbours, InViews(options, points));
   Eigen::Map<Eigen::Matrix3Xd> a(log_albedo.data(), 3,
                                  static_cast<Eigen::Index>(points.size()));
   const Eigen::Vector3d mean = a.rowwise().mean();

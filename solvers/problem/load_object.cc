@@ -28,16 +28,16 @@ std::shared_ptr<const ObjectLook> Look(const Problem& problem,
                                        bool has_mask, Silhouette silhouette) {
   ObjectLook look;
   look.radiance = KnownRadiance(observed);
-  const LookInput input{look.radiance,
-                        observed.mask,
-                        object.points,
-                        object.scene.normal_map(),
-                        observed.codes,
-                        observed.curve,
-                        problem.image.exposure,
-                        observed.missing,
-                        has_mask ? std::optional<double>(silhouette.overlap)
-                                 : std::nullopt};
+  const LookInput input{
+      look.radiance,
+      observed.mask,
+      object.points,
+      object.scene.normal_map(),
+      observed.codes,
+      observed.curve,
+      problem.image.exposure,
+      observed.missing,
+      has_mask ? std::optional<double>(silhouette.overlap) : std::nullopt};
   look.check = CheckPhotograph(input);
   look.mask = observed.mask;
   look.silhouette = std::move(silhouette.object);
@@ -50,8 +50,7 @@ StatusOr<Problem> WithSphereOutline(const Problem& problem, const Mask& mask,
                                     std::vector<std::string>* warnings) {
   Problem placed = problem;
   if (problem.geometry.kind != GeometryKind::kSphere ||
-      problem.geometry.outline.has_value() ||
-      problem.SeveralViews() ||
+      problem.geometry.outline.has_value() || problem.SeveralViews() ||
       problem.camera.type != CameraType::kOrthographic) {
     return placed;
   }
@@ -77,12 +76,24 @@ MaterialsSought SoughtIn(ReflectanceVariation variation) {
   return MaterialsSought::kOne;
 }
 
+StatusOr<MaterialLabels> LoadLabelsOf(const Problem& problem,
+                                      const Image& radiance,
+                                      PhotographedObject* object) {
+  if (object->sheet.empty()) {
+    return LoadLabels(problem.reflectance.labels, radiance, &object->points);
+  }
+  const StatusOr<Image> labels = LoadLabelSheet(problem, object->sheet);
+  if (!labels.ok()) return labels.status();
+  return LabelPoints(problem.path, *labels, radiance, &object->points);
+}
+
 // Sets the points' materials; those of labels that are left out go.
 Status TakeLabels(const Problem& problem, const Image& radiance,
                   PhotographedObject* object) {
-  if (problem.reflectance.labels.empty()) return OkStatus();
-  StatusOr<MaterialLabels> labels =
-      LoadLabels(problem.reflectance.labels, radiance, &object->points);
+  if (problem.reflectance.variation != ReflectanceVariation::kLabels) {
+    return OkStatus();
+  }
+  StatusOr<MaterialLabels> labels = LoadLabelsOf(problem, radiance, object);
   if (!labels.ok()) return labels.status();
   object->materials = std::move(labels->labels);
   for (std::string& warning : labels->warnings) {
@@ -133,10 +144,9 @@ StatusOr<SeenObject> SeeOnSheet(const Problem& problem, const Scene& scene,
   std::string blind;
   for (size_t v = 0; v < sheet.views.size(); ++v) {
     const SheetView& place = sheet.views[v];
-    StatusOr<SeenObject> seen =
-        SeeObject(OfView(problem, photographs, v), scene, place.width,
-                  place.height, CutOut(photographs.photograph.mask, place),
-                  num_threads, warnings);
+    StatusOr<SeenObject> seen = SeeObject(
+        OfView(problem, photographs, v), scene, place.width, place.height,
+        CutOut(photographs.photograph.mask, place), num_threads, warnings);
     if (!seen.ok()) {
       blind = seen.status().message();
       warnings->push_back(photographs.files[v] + ": view " + place.name +

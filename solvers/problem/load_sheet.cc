@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ibrdf/io/image_limits.h"
+#include "ibrdf/io/photo_file.h"
 #include "ibrdf/solvers/problem/photographed_views.h"
 
 namespace ibrdf {
@@ -76,14 +77,13 @@ StatusOr<PhotographSheet> LoadPhotographSheet(const Problem& problem) {
   std::vector<SheetView> placed;
   for (const ViewPhotograph& view : views) {
     const Image& radiance = view.photograph.radiance;
-    placed.push_back({view.name, view.camera, 0, 0, radiance.width,
-                      radiance.height});
+    placed.push_back(
+        {view.name, view.camera, 0, 0, radiance.width, radiance.height});
   }
   PhotographSheet out;
   out.sheet = LayOut(std::move(placed));
-  IBRDF_RETURN_IF_ERROR(CheckImageSize(
-      problem.path + ": views (all together)", out.sheet.width,
-      out.sheet.height));
+  IBRDF_RETURN_IF_ERROR(CheckImageSize(problem.path + ": views (all together)",
+                                       out.sheet.width, out.sheet.height));
   out.photograph = EmptySheet(views, out.sheet);
   for (size_t v = 0; v < views.size(); ++v) {
     const SheetView& place = out.sheet.views[v];
@@ -96,6 +96,25 @@ StatusOr<PhotographSheet> LoadPhotographSheet(const Problem& problem) {
   }
   out.photograph.warnings = std::move(warnings);
   return out;
+}
+
+StatusOr<Image> LoadLabelSheet(const Problem& problem, const ViewSheet& sheet) {
+  Image labels(sheet.width, sheet.height);
+  for (size_t v = 0; v < sheet.views.size(); ++v) {
+    const SheetView& view = sheet.views[v];
+    const std::string& file = problem.views.list[v].labels;
+    const StatusOr<Photo> photo = ReadPhoto(file);
+    if (!photo.ok()) return photo.status();
+    const Image& image = photo->image;
+    if (image.width != view.width || image.height != view.height) {
+      return InvalidInput(file + ": labels of view " + view.name,
+                          "expected the image's size " +
+                              SizeName(view.width, view.height) + ", found " +
+                              SizeName(image.width, image.height));
+    }
+    Place(image, view, &labels);
+  }
+  return labels;
 }
 
 std::string PhotographsName(const Problem& problem) {

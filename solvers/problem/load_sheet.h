@@ -24,6 +24,9 @@ struct PhotographSheet {
 // that is to be found, are of different depths.
 StatusOr<PhotographSheet> LoadPhotographSheet(const Problem& problem);
 
+// The labels of a problem whose list of views has them, in their places.
+StatusOr<Image> LoadLabelSheet(const Problem& problem, const ViewSheet& sheet);
+
 // Where the photographs come from, for messages: the file of one, or who lists
 // several.
 std::string PhotographsName(const Problem& problem);

@@ -29,8 +29,8 @@ struct ViewSheet {
   bool empty() const { return views.empty(); }
 };
 
-// Views of these sizes, each given with its name and camera, in rows of as many:
-// some pixels apart, so that no two of different views are neighbours.
+// Views of these sizes, each given with its name and camera, in rows of as
+// many: some pixels apart, so that no two of different views are neighbours.
 ViewSheet LayOut(std::vector<SheetView> views);
 
 // Copies a photograph [H, W, 3] to its place.

@@ -191,8 +191,7 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
         MisfitWarning(solved), ViewWarning(solved), PixelWarning(solved),
-        UnlitWarning(solved),
-        StrayLightWarning(solved), PaintWarning(solved),
+        UnlitWarning(solved), StrayLightWarning(solved), PaintWarning(solved),
         FewPixelsWarning(solved), CurveWarning(solved.solution.curves),
         UncertainWarning(solved.solution),
         RivalWarning(solved.solution.alternatives)}) {

@@ -11,7 +11,6 @@
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/drawing/crop.h"
 #include "ibrdf/solvers/drawing/tone_map.h"
-#include "ibrdf/solvers/problem/load_sheet.h"
 #include "ibrdf/solvers/report/brdf_sphere.h"
 #include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/preview.h"
@@ -437,7 +436,9 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   };
   input.title =
       name_of(solved.problem.path) + ": " +
-      name_of(PhotographsName(solved.problem));
+      (solved.inverse.sheet.empty()
+           ? name_of(solved.problem.image.file)
+           : std::to_string(solved.inverse.sheet.views.size()) + " views");
   input.input = solved.inverse.image;
   input.mask = ObjectMask(solved.inverse);
   input.render = solved.solution.render;

@@ -48,8 +48,9 @@ Status WriteCheck(const Problem& problem, const PhotographedObject& object,
                   const std::string& folder) {
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(
       folder + "/check.json", CheckJson(object.look->check, object.warnings)));
-  CheckPictureInput input{"Check of " + PhotographsName(problem), object.radiance,
-                          object.points, *object.look, Image()};
+  CheckPictureInput input{"Check of " + PhotographsName(problem),
+                          object.radiance, object.points, *object.look,
+                          Image()};
   const std::string light_path = folder + "/check_light.png";
   if (!problem.illumination.known()) {
     // One of an earlier solve would speak of another light.

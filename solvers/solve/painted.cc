@@ -33,8 +33,9 @@ StatusOr<Solution> TakeTurn(const SolveSetup& setup,
                             UnpaintedRadiance* unpainted,
                             SolveContext* context) {
   const std::vector<ShadingPoint>& points = setup.pixels.points;
-  const std::vector<double> log_albedo = FitAlbedo(
-      *unpainted, setup.pixels.observed, paint.neighbours, paint.options);
+  const std::vector<double> log_albedo =
+      FitAlbedo(*unpainted, setup.pixels.observed, paint.neighbours,
+                InViews(paint.options, points));
   const std::vector<double> gain = PaintGain(*unpainted, log_albedo);
   const InverseProblem without = WithoutPaint(*setup.problem, gain, points);
   const StatusOr<SolveSetup> of_light = SetUp(without);

@@ -61,8 +61,9 @@ class Turn {
     for (size_t i = 0; i < with_ambient.gloss.size(); ++i) {
       with_ambient.gloss[i] += solution.ambient[i % 3];
     }
-    const std::vector<double> log_albedo = FitAlbedo(
-        with_ambient, setup_.pixels.observed, neighbours_, UnderKnownLight());
+    const std::vector<double> log_albedo =
+        FitAlbedo(with_ambient, setup_.pixels.observed, neighbours_,
+                  InViews(UnderKnownLight(), setup_.pixels.points));
     gain_ = PaintGain(with_ambient, log_albedo);
     ScalePixels(gain_, setup_.pixels.points, &solution.render);
     SetPaint(setup_, reflectance, unpainted, log_albedo, &solution);

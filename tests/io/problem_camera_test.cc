@@ -35,7 +35,7 @@ std::vector<Refusal> ViewRefusals() {
        "views.transform: unknown key; the nearest known one is "
        "views.transforms"},
       {least + "views: [3]",
-       "views[0]: expected a map of name, camera, file or mask"},
+       "views[0]: expected a map of name, camera, file, mask or labels"},
       {least + "views: [{camera: {}}]", "views[0].name: expected the view's"},
       {least + "views: [{name: a/b}]",
        "views[0].name: expected a name that a file may have"},
@@ -43,11 +43,11 @@ std::vector<Refusal> ViewRefusals() {
        "views[1].name: expected a name that no other view has"},
       {least + "views: [{name: a, files: b}]", "views[0].files: unknown key"},
       {least + "views: [{name: a, file: b}]",
-       "views[0].file: expected with problem: textures only"},
+       "image: expected no file, mask or size beside the view's own file"},
       {least + "views: [{name: a, mask: b}]",
-       "views[0].mask: expected with problem: textures only"},
-      {least + "views: {colmap: c, images: d}",
-       "views.images: expected with problem: textures only"},
+       "views[0].mask: expected beside the view's file"},
+      {least + "views: [{name: a, labels: b}]",
+       "views[0].labels: expected beside the view's file"},
       {least + "views: [{name: a, camera: {fov_degrees: 3}}]",
        "views[0].camera.fov_degrees: expected with camera.type: perspective"},
       {least + "views: [{name: a, camera: {type: perspective, to: [0, 0, 4]}}]",
@@ -136,7 +136,7 @@ TEST(ProblemText, ViewsAreAListOrAFile) {
   }
 }
 
-TEST(ProblemText, SolvesTakeOneView) {
+TEST(ProblemText, SolvesTakeViewsInPlaceOfTheImage) {
   const std::string least = "image: {file: a}\ngeometry: {mesh: m.obj}\n";
   const Problem one =
       ParseProblem("p.yaml",
@@ -147,14 +147,45 @@ TEST(ProblemText, SolvesTakeOneView) {
           .value();
   EXPECT_TRUE(CheckSolvable(one).ok());
   EXPECT_EQ(20.0, one.camera.fov_degrees);
+  const auto check = [](const std::string& text) {
+    return CheckSolvable(
+        ParseProblem("p.yaml", "geometry: {mesh: m.obj}\n" + text, {}).value());
+  };
   for (const std::string views :
-       {"[{name: a}, {name: b}]", "{colmap: c}", "{transforms: t.json}"}) {
-    EXPECT_EQ(
-        "p.yaml: views: expected one view: a solve of several is not "
-        "there yet",
-        CheckSolvable(
-            ParseProblem("p.yaml", least + "views: " + views, {}).value())
-            .message());
+       {"[{name: a, file: a.exr}, {name: b, file: b.png, mask: m.png}]",
+        "[{name: a, file: a.exr}]", "{colmap: c, images: d, masks: m}",
+        "{transforms: t.json}"}) {
+    EXPECT_TRUE(check("views: " + views).ok()) << views;
+  }
+  const struct {
+    std::string text, error;
+  } refused[] = {
+      {"views: [{name: a}, {name: b}]", "views[0].file: expected the view's"},
+      {"views: [{name: a, file: f}, {name: b}]",
+       "views[1].file: expected the view's image, found nothing"},
+      {"image: {file: a}\nviews: {colmap: c}", "image: expected no file"},
+      {"image: {width: 4, height: 4}\nviews: {colmap: c}",
+       "image: expected no file"},
+      {"views: [{name: a, file: f, labels: l}, {name: b, file: f}]",
+       "views[1].labels: expected labels as of the other views"},
+      {"reflectance: {labels: l}\nviews: {colmap: c}",
+       "reflectance.labels: expected labels of each view"},
+      {"reflectance: {labels: l}\nviews: [{name: a, file: f}, {name: b, file: "
+       "f}]",
+       "reflectance.labels: expected labels of each view"}};
+  for (const auto& c : refused) {
+    EXPECT_EQ(0u, check(c.text).message().find("p.yaml: " + c.error))
+        << check(c.text).message();
+  }
+  for (const std::string reflectance :
+       {"{labels: l}", "{known: {lambertian: 0.5}}", "{variation: albedo}"}) {
+    EXPECT_FALSE(
+        ParseProblem("p.yaml",
+                     "geometry: {mesh: m.obj}\nreflectance: " + reflectance +
+                         "\nviews: [{name: a, file: f, labels: l}]",
+                     {})
+            .ok())
+        << reflectance;
   }
 }
 

@@ -64,6 +64,10 @@ Setting SettingOf(const ProblemKey& key) {
   if (map == "geometry.frame") {
     return setting.With("geometry", "{normals: n.exr}");
   }
+  // They are of what such a file names.
+  if (key.path == "views.images" || key.path == "views.masks") {
+    return {"geometry: {mesh: m.obj}\nviews: {transforms: t.json}\n", {}};
+  }
   // Paint lies over a material.
   if (map == "reflectance.known" && key.used_by == kUsedByRender) {
     setting = setting.With(map, "{lambertian: 0.5}");

@@ -45,7 +45,7 @@ TEST(ProblemText, TexturesNeedViewsASurfaceAndLight) {
   const struct {
     std::string override_text, error;
   } cases[] = {
-      {"problem=joint", "image: expected this key"},
+      {"problem=joint", "problem: expected textures, found joint"},
       {"views=null", "views: expected with problem: textures"},
       {"views=[{name: a}]", "views[0].file: expected the view's image"},
       {"image.file=a.exr", "image: expected no file"},

@@ -104,6 +104,16 @@ TEST(MeanByNormal, InvalidAndGrazingPointsAreLeftOut) {
                   .points.empty());
 }
 
+TEST(MeanByNormal, ViewsStayApart) {
+  ShadingPoint a = PointAt(0.3, 0.4), b = a;
+  b.view = 1;
+  const std::vector<double> radiance = {1, 2, 3, 4, 5, 6};
+  const BinMeans means =
+      MeanByNormal({a, b}, MakeObservations(radiance), 4, kMinCosine);
+  ASSERT_EQ(2u, means.points.size());
+  EXPECT_NEAR(4.0, means.observed.radiance[3], 1e-12);
+}
+
 TEST(MeanByNormal, ViewsFromOtherDirectionsStayApart) {
   ShadingPoint a = PointAt(0.3, 0.4), b = a;
   const std::vector<double> radiance = {1, 2, 3, 4, 5, 6};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "tests/support/solver_testing.h"
 
@@ -65,6 +66,56 @@ TEST(NormalBins, MaterialsDoNotShareBins) {
                 1e-12);
   }
   EXPECT_EQ(1, last);
+}
+
+// Like normals of two views reflect other light: each view has its own bins,
+// as if it were alone.
+TEST(NormalBins, ViewsHaveBinsOfTheirOwn) {
+  const std::vector<ShadingPoint> one = SpherePoints(32);
+  std::vector<ShadingPoint> both = one;
+  for (ShadingPoint point : one) {
+    point.view = 1;
+    both.push_back(point);
+  }
+  std::vector<double> radiance;
+  for (size_t i = 0; i < both.size(); ++i) {
+    const double value = i < one.size() ? 2.0 : 50.0;
+    radiance.insert(radiance.end(), 3, value);
+  }
+  const NormalBinOptions options = {8, 4, 0.2};
+  const NormalBins bins =
+      BinByNormal(both, MakeObservations(radiance), options);
+  const NormalBins alone = BinByNormal(
+      one, MakeObservations(std::vector<double>(3 * one.size(), 2.0)), options);
+  ASSERT_EQ(2 * alone.num_bins(), bins.num_bins());
+  for (int i = 0; i < bins.num_bins(); ++i) {
+    const int view = bins.points[bins.first[i]].view;
+    for (int k = bins.first[i]; k < bins.first[i + 1]; ++k) {
+      EXPECT_EQ(view, bins.points[k].view);
+    }
+    EXPECT_NEAR(view == 0 ? 2.0 : 50.0, std::exp(bins.log_radiance[i]), 1e-12);
+  }
+}
+
+TEST(NormalBins, MoreBinsThanMayBeAreThinnedOverAllViews) {
+  const std::vector<ShadingPoint> one = SpherePoints(32);
+  std::vector<ShadingPoint> all;
+  for (int view = 0; view < 7; ++view) {
+    for (ShadingPoint point : one) {
+      point.view = view;
+      all.push_back(point);
+    }
+  }
+  const Observations observed =
+      MakeObservations(std::vector<double>(3 * all.size(), 2.0));
+  const int unlimited = BinByNormal(all, observed, {8, 4, 0.2, 0}).num_bins();
+  for (const int most : {1, 50, unlimited - 1, unlimited, 10 * unlimited}) {
+    const NormalBins bins = BinByNormal(all, observed, {8, 4, 0.2, most});
+    EXPECT_EQ(std::min(most, unlimited), bins.num_bins());
+    std::set<int> views;
+    for (const ShadingPoint& point : bins.points) views.insert(point.view);
+    EXPECT_EQ(std::min<size_t>(7, most), views.size());
+  }
 }
 
 }  // namespace

@@ -475,7 +475,8 @@ TEST_F(SolveProblemTest, ResultsDoNotReplaceWhatTheProblemNames) {
   const auto check = [&](const std::vector<std::string>& overrides) {
     const Problem problem =
         ReadProblem(dir_.File("joint.yaml"), overrides).value();
-    return CheckNothingReplaced(problem, ResultPaths(problem, PhotographedObject(), out));
+    return CheckNothingReplaced(
+        problem, ResultPaths(problem, PhotographedObject(), out));
   };
   const struct {
     std::string key, file;
