@@ -78,8 +78,8 @@ TEST_P(HardCases, Holds) {
   const YAML::Node c = YAML::LoadFile(std::string(IBRDF_HARD_CASES_DIR) + "/" +
                                       GetParam() + ".yaml");
   // A misspelt key would leave something untested.
-  const std::set<std::string> known = {"why",     "inputs", "problem",
-                                       "options", "again",  "holds"};
+  const std::set<std::string> known = {"why",   "inputs", "problem", "options",
+                                       "again", "holds",  "plain"};
   for (const auto& entry : c) {
     ASSERT_EQ(1u, known.count(entry.first.as<std::string>())) << entry.first;
   }
@@ -95,8 +95,12 @@ TEST_P(HardCases, Holds) {
                                            : YAML::Dump(c["problem"]) + "\n");
   const auto solve = [&](const YAML::Node& options, const std::string& out) {
     std::vector<std::string> arguments = {
-        IBRDF_SOLVE, "--problem",   dir.File("problem.yaml"),
-        "--out",     dir.File(out), "--quiet"};
+        c["plain"] ? IBRDF_PLAIN_SOLVE : IBRDF_SOLVE,
+        "--problem",
+        dir.File("problem.yaml"),
+        "--out",
+        dir.File(out),
+        "--quiet"};
     bool threads = false;
     for (const YAML::Node& option : options) {
       arguments.push_back(option.as<std::string>());
