@@ -8,6 +8,7 @@
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/geometry/camera.h"
+#include "ibrdf/geometry/up_axis.h"
 #include "ibrdf/image/response_curve.h"
 #include "ibrdf/light/map_frame.h"
 #include "ibrdf/light/procedural_sky.h"
@@ -115,6 +116,10 @@ struct GeometrySpec {
   std::string file;
   MeshFit fit = MeshFit::kUnitSphere;
   bool fit_stated = false;  // fit is the user's word
+  // Of the files' world. The cameras of a problem that was read are turned to
+  // the library's already; meshes and other programs' views are turned when
+  // they are read.
+  UpAxis up = UpAxis::kY;
   NormalFrame frame = kOpenGlFrame;
   NormalEncoding encoding = NormalEncoding::kAuto;
   // The file's values times this are depth, which grows away from the camera;

@@ -28,6 +28,13 @@ void TakeOneView(ProblemReader* root, Problem* problem) {
   image->mask = view.mask;
 }
 
+void TurnCameras(const Eigen::Matrix3d& rotation, Problem* problem) {
+  problem->camera = Turned(problem->camera, rotation);
+  for (ViewSpec& view : problem->views.list) {
+    view.camera = Turned(view.camera, rotation);
+  }
+}
+
 // Labels of views are those of the reflectance, and ask for it.
 void TakeLabelsOfViews(const ViewsSpec& views, ProblemReader reader,
                        ReflectanceSpec* reflectance) {
@@ -69,6 +76,7 @@ void ReadKeys(ProblemReader root, Problem* problem) {
                            root.Below("camera").Has("from") ||
                            root.Below("camera").Has("to");
   CheckCameraStays(root.Below("camera"), problem->geometry);
+  TurnCameras(YUpFrom(problem->geometry.up), problem);
   ReadReflectance(root.Below("reflectance"), &problem->reflectance);
   ReadIllumination(root.Below("illumination"), &problem->illumination);
   ReadLikelihood(root.Below("likelihood"), &problem->likelihood);

@@ -111,7 +111,14 @@ Keys FitKeys() {
                         "Its bounding box is centred at the origin, and its "
                         "farthest vertex is scaled to distance 1."},
                        {"none", "Its vertices stay as they are."}})
-              .Needs("geometry.mesh")};
+              .Needs("geometry.mesh"),
+          Row("geometry.up",
+              "The axis of the world of mesh, cameras and views that points "
+              "up. The light is told above from below by it.")
+              .Choice("y", {{"y", "As in files of OBJ, GLB and OpenGL."},
+                            {"z",
+                             "As in Blender and its scripts for NeRF: X, Y and "
+                             "Z become x, -z and y."}})};
 }
 
 }  // namespace

@@ -123,6 +123,12 @@ void ReadGeometry(ProblemReader reader, bool perspective,
   reader.Read("fit", &geometry->fit);
   geometry->fit_stated = reader.Has("fit");
   CheckOneView(&reader, views, *geometry);
+  reader.Read("up", &geometry->up);
+  if (geometry->up != UpAxis::kY && geometry->HasNormalMap()) {
+    reader.Fail("up",
+                "expected y with a map of normals or depth, which is in the "
+                "camera's frame");
+  }
   ReadFrame(&reader, &geometry->frame);
   reader.Read("encoding", &geometry->encoding);
 }

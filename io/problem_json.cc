@@ -46,7 +46,9 @@ json ImageJson(const ImageSpec& image) {
   return out;
 }
 
-json CameraJson(const Camera& camera, bool placed) {
+// A camera as the file has it, before it was turned.
+json CameraJson(const Camera& turned, UpAxis up, bool placed) {
+  const Camera camera = Turned(turned, YUpFrom(up).transpose());
   json out = {{"type", WordOf("camera.type", camera.type)}};
   if (placed && camera.world_from_camera) {
     for (int row = 0; row < 4; ++row) {
@@ -71,7 +73,7 @@ json CameraJson(const Camera& camera, bool placed) {
   return out;
 }
 
-json ViewsJson(const ViewsSpec& views) {
+json ViewsJson(const ViewsSpec& views, UpAxis up) {
   json out;
   if (!views.transforms.empty()) out["transforms"] = views.transforms;
   if (!views.colmap.empty()) out["colmap"] = views.colmap;
@@ -81,7 +83,7 @@ json ViewsJson(const ViewsSpec& views) {
   out = json::array();
   for (const ViewSpec& view : views.list) {
     out.push_back({{"name", view.name},
-                   {"camera", CameraJson(view.camera, /*placed=*/true)}});
+                   {"camera", CameraJson(view.camera, up, /*placed=*/true)}});
     if (!view.file.empty()) out.back()["file"] = view.file;
     if (!view.mask.empty()) out.back()["mask"] = view.mask;
     if (!view.labels.empty()) out.back()["labels"] = view.labels;
@@ -97,7 +99,7 @@ json FrameOfNormalsJson(const NormalFrame& frame) {
           {"z", WordOf("geometry.frame.z", frame[2])}};
 }
 
-json GeometryJson(const GeometrySpec& geometry) {
+json ShapeJson(const GeometrySpec& geometry) {
   switch (geometry.kind) {
     case GeometryKind::kSphere:
       if (!geometry.outline.has_value()) break;
@@ -116,6 +118,12 @@ json GeometryJson(const GeometrySpec& geometry) {
               {"depth_scale", AutoOr(geometry.depth_scale)}};
   }
   return {{"sphere", json::object()}};
+}
+
+json GeometryJson(const GeometrySpec& geometry) {
+  json out = ShapeJson(geometry);
+  out["up"] = WordOf("geometry.up", geometry.up);
+  return out;
 }
 
 json AnalyticJson(const CookTorrance& f) {
@@ -247,7 +255,7 @@ json TexturesJson(const Problem& problem) {
   return {
       {"problem", WordOf("problem", problem.kind)},
       {"image", ImageJson(problem.image)},
-      {"views", ViewsJson(problem.views)},
+      {"views", ViewsJson(problem.views, problem.geometry.up)},
       {"geometry", GeometryJson(problem.geometry)},
       {"illumination",
        IlluminationJson(problem.illumination, /*rendered=*/true)},
@@ -283,11 +291,11 @@ nlohmann::json ProblemToJson(const Problem& problem) {
       {"illumination", IlluminationJson(problem.illumination, rendered)},
       {"effects", EffectsJson(problem.effects)}};
   if (problem.views.given()) {
-    out["views"] = ViewsJson(problem.views);
+    out["views"] = ViewsJson(problem.views, problem.geometry.up);
   } else {
     // Maps of normals and depth are in the camera's frame.
-    out["camera"] =
-        CameraJson(problem.camera, !problem.geometry.HasNormalMap());
+    out["camera"] = CameraJson(problem.camera, problem.geometry.up,
+                               !problem.geometry.HasNormalMap());
   }
   if (rendered) {
     out["quality"] = WordOf("quality", problem.quality);

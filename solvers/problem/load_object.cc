@@ -1,6 +1,7 @@
 #include "ibrdf/solvers/problem/load_object.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -132,6 +133,27 @@ Problem OfView(const Problem& problem, const PhotographSheet& sheet, size_t v) {
   return one;
 }
 
+// Photographers hold cameras upright: where the upper sides of all point along
+// z, so does the world's up axis, most probably.
+void WarnOfUpAxis(const Problem& problem, const ViewSheet& sheet,
+                  std::vector<std::string>* warnings) {
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  for (const SheetView& view : sheet.views) {
+    up += AxesOf(view.camera).world_from_camera.col(1);
+  }
+  up /= static_cast<double>(sheet.views.size());
+  constexpr double kClear = 0.3;
+  if (problem.geometry.up != UpAxis::kY || up.z() < kClear ||
+      up.z() < 2.0 * std::abs(up.y())) {
+    return;
+  }
+  warnings->push_back(
+      PhotographsName(problem) +
+      ": the cameras' upper sides point along z, and y is taken for up, which "
+      "the estimate of the light depends on: in a world of Blender's say "
+      "geometry.up: z");
+}
+
 // What all views show, as points of the sheet. Views that see nothing are told
 // of; at least one sees the object. The overlap is the worst view's.
 StatusOr<SeenObject> SeeOnSheet(const Problem& problem, const Scene& scene,
@@ -139,6 +161,7 @@ StatusOr<SeenObject> SeeOnSheet(const Problem& problem, const Scene& scene,
                                 int num_threads,
                                 std::vector<std::string>* warnings) {
   const ViewSheet& sheet = photographs.sheet;
+  WarnOfUpAxis(problem, sheet, warnings);
   SeenObject all;
   all.silhouette.object = Mask(sheet.width, sheet.height, 0);
   std::string blind;

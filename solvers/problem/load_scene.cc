@@ -115,6 +115,11 @@ struct PlacedMesh {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
 };
 
+void Turn(const Eigen::Matrix3f& rotation, TriangleMesh* mesh) {
+  for (Eigen::Vector3f& vertex : mesh->vertices) vertex = rotation * vertex;
+  for (Eigen::Vector3f& normal : mesh->normals) normal = rotation * normal;
+}
+
 StatusOr<PlacedMesh> LoadMesh(const Problem& problem,
                               std::vector<std::string>* warnings) {
   const GeometrySpec& geometry = problem.geometry;
@@ -122,6 +127,11 @@ StatusOr<PlacedMesh> LoadMesh(const Problem& problem,
   StatusOr<TriangleMesh> mesh = ReadMesh(geometry.file, &notes);
   if (!mesh.ok()) return mesh.status();
   *warnings = notes.warnings;
+  if (geometry.up != UpAxis::kY) {
+    const Eigen::Matrix3d rotation = YUpFrom(geometry.up);
+    Turn(rotation.cast<float>(), &*mesh);
+    notes.origin = rotation * notes.origin;
+  }
   IBRDF_RETURN_IF_ERROR(SetTexture(problem, notes, &*mesh, warnings));
   PlacedMesh placed;
   if (geometry.fit == MeshFit::kNone) {

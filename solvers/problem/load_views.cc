@@ -23,7 +23,7 @@ StatusOr<std::vector<ViewSpec>> LoadViews(const Problem& problem, int width,
     }
     ViewSpec spec;
     spec.name = view.name;
-    spec.camera = *camera;
+    spec.camera = Turned(*camera, YUpFrom(problem.geometry.up));
     out.push_back(std::move(spec));
   }
   return out;

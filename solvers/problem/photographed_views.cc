@@ -102,7 +102,7 @@ StatusOr<ViewPhotograph> ReadView(const Problem& problem,
   if (!camera.ok()) {
     return InvalidInput(source.file, camera.status().message());
   }
-  out.camera = *camera;
+  out.camera = Turned(*camera, YUpFrom(problem.geometry.up));
   return out;
 }
 

@@ -110,7 +110,7 @@ std::vector<CalibratedView> SphereCandidates(int count,
 }  // namespace
 
 StatusOr<std::vector<CalibratedView>> LoadCandidates(
-    const std::string& text, const UncertaintyInputs& inputs) {
+    const std::string& text, const UncertaintyInputs& inputs, UpAxis up) {
   const std::string sphere = "sphere:";
   const std::string range = " from 1 to " + std::to_string(kMostCandidates);
   if (text.rfind(sphere, 0) == 0) {
@@ -132,6 +132,10 @@ StatusOr<std::vector<CalibratedView>> LoadCandidates(
   if (views.ok() && views->size() > kMostCandidates) {
     return InvalidInput(kOption, "expected cameras" + range + ", found " +
                                      std::to_string(views->size()));
+  }
+  if (!views.ok()) return views.status();
+  for (CalibratedView& view : *views) {
+    view.world_from_camera = Turned(view.world_from_camera, YUpFrom(up));
   }
   return views;
 }

@@ -15,9 +15,11 @@ inline constexpr int kMostCandidates = 1000;
 // "sphere:N": N pinholes about the surface, on a Fibonacci sphere, that look at
 // its middle from the mean distance of the photographs', with the first one's
 // lens and size; where none is a pinhole, far enough to see all of it. Else a
-// file of transforms, or a folder of COLMAP's model. 1 to kMostCandidates.
+// file of transforms, or a folder of COLMAP's model, of the world that `up` is
+// of. 1 to kMostCandidates.
 StatusOr<std::vector<CalibratedView>> LoadCandidates(
-    const std::string& text, const UncertaintyInputs& inputs);
+    const std::string& text, const UncertaintyInputs& inputs,
+    UpAxis up = UpAxis::kY);
 
 // The candidate's camera before an image of its own proportions or, where it
 // has none, of `aspect` = width / height.

@@ -62,7 +62,7 @@ StatusOr<UncertaintyResult> MapUncertainty(const Problem& problem,
   std::vector<CalibratedView> candidates;
   if (options.add > 0) {
     StatusOr<std::vector<CalibratedView>> loaded =
-        LoadCandidates(options.candidates, *inputs);
+        LoadCandidates(options.candidates, *inputs, problem.geometry.up);
     if (!loaded.ok()) return loaded.status();
     candidates = *std::move(loaded);
   }

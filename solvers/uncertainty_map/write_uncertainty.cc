@@ -99,9 +99,15 @@ StatusOr<std::vector<TexelRows>> WriteViews(const UncertaintyResult& result,
   return shown;
 }
 
-Status WriteNextViews(const NextViews& next, const std::string& out_dir) {
+// In the world of the problem's files.
+Status WriteNextViews(const NextViews& next, UpAxis up,
+                      const std::string& out_dir) {
   std::vector<CalibratedView> chosen;
-  for (const int i : next.chosen) chosen.push_back(next.candidates[i]);
+  for (const int i : next.chosen) {
+    chosen.push_back(next.candidates[i]);
+    Eigen::Matrix4d& pose = chosen.back().world_from_camera;
+    pose = Turned(pose, YUpFrom(up).transpose());
+  }
   return WriteFileAtomically(InFolder(out_dir, kNextViewsFile),
                              TransformsText(chosen));
 }
@@ -120,7 +126,8 @@ Status WriteUncertainty(const Problem& problem,
   if (!views.ok()) return views.status();
   RemoveEarlier(problem, out_dir, {kNextViewsFile});
   if (result->next) {
-    IBRDF_RETURN_IF_ERROR(WriteNextViews(*result->next, out_dir));
+    IBRDF_RETURN_IF_ERROR(
+        WriteNextViews(*result->next, problem.geometry.up, out_dir));
   }
   result->stages.push_back({"pictures", watch.Seconds()});
   IBRDF_RETURN_IF_ERROR(

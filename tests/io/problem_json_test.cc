@@ -31,6 +31,24 @@ TEST_F(ProblemFile, JsonHasTheKeysOfTheFileAndReadsBack) {
   EXPECT_EQ(json, ProblemToJson(*again));
 }
 
+// Cameras are told as the file has them, though they were turned.
+TEST_F(ProblemFile, JsonHasCamerasOfAZUpWorldAsTheyWere) {
+  const StatusOr<Problem> read = Read(
+      "image: {file: a}\ngeometry: {mesh: m.obj, up: z, fit: none}\n"
+      "camera: {type: perspective, from: [1, -4, 2], to: [0, 0, 1], up: [0, 0, "
+      "1]}\n");
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_EQ(Eigen::Vector3d(1, 2, 4), read->camera.from);
+  EXPECT_EQ(Eigen::Vector3d(0, 1, 0), read->camera.up);
+  const nlohmann::json json = ProblemToJson(*read);
+  EXPECT_EQ("z", json["geometry"]["up"]);
+  EXPECT_EQ(nlohmann::json({1.0, -4.0, 2.0}), json["camera"]["from"]);
+  EXPECT_EQ(nlohmann::json({0.0, 0.0, 1.0}), json["camera"]["up"]);
+  const StatusOr<Problem> again = Read(json.dump(2));
+  ASSERT_TRUE(again.ok()) << again.status().message();
+  EXPECT_EQ(json, ProblemToJson(*again));
+}
+
 TEST_F(ProblemFile, JsonOfABuiltInSceneReadsBack) {
   const StatusOr<Problem> read = Read(
       "image: {width: 8, height: 8}\ngeometry: {sphere: {}}\n"

@@ -166,6 +166,34 @@ TEST_F(LoadViewsTest, CodesBeforeFloatsHaveTheirOwnBounds) {
   }
 }
 
+// A view from the front in Blender's world, where the camera's up is z, is that
+// of ours; what the other tells of it is a warning.
+TEST_F(LoadViewsTest, TheUpAxisMayBeZ) {
+  const std::string blender = "[[1,0,0,0],[0,0,-1,-4],[0,1,0,0],[0,0,0,1]]";
+  const std::string second = View("b", "file: b.exr", blender);
+  const auto turned = Load(View("a", "file: a.exr", blender) + second,
+                           {"geometry={sphere: {}, up: z}"});
+  ASSERT_TRUE(turned.ok()) << turned.status().message();
+  EXPECT_TRUE(turned->warnings.empty());
+  const auto plain =
+      Load(View("a", "file: a.exr", kFront) + View("b", "file: b.exr", kFront));
+  ASSERT_TRUE(plain.ok()) << plain.status().message();
+  ASSERT_EQ(plain->points.size(), turned->points.size());
+  for (size_t i = 0; i < plain->points.size(); ++i) {
+    EXPECT_EQ(plain->points[i].pixel, turned->points[i].pixel);
+    EXPECT_LT((plain->points[i].normal - turned->points[i].normal).norm(),
+              1e-6f);
+    EXPECT_LT((plain->points[i].wo - turned->points[i].wo).norm(), 1e-6f);
+  }
+  const auto untold = Load(View("a", "file: a.exr", blender) + second);
+  ASSERT_TRUE(untold.ok());
+  bool told = false;
+  for (const std::string& warning : untold->warnings) {
+    told |= warning.find("geometry.up: z") != std::string::npos;
+  }
+  EXPECT_TRUE(told);
+}
+
 TEST_F(LoadViewsTest, LabelsAreOfEachView) {
   WriteCodes("one.png", 12, 10, 10);
   WriteCodes("two.png", 8, 14, 20);
