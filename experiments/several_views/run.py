@@ -78,10 +78,12 @@ def solve(args, folder, material, light, model, count):
                   "illumination": str(args.maps / f"{light}.hdr")},
     })
     start = time.time()
-    subprocess.run([args.bin / "ibrdf_solve", "--problem",
-                    folder / f"joint{count}.yaml", "--out", out, "--quiet",
-                    "--threads", str(args.threads)],
-                   check=True, stderr=subprocess.DEVNULL)
+    done = subprocess.run(
+        [args.bin / "ibrdf_solve", "--problem", folder / f"joint{count}.yaml",
+         "--out", out, "--quiet", "--threads", str(args.threads)],
+        stderr=subprocess.PIPE, text=True)
+    if done.returncode not in (0, 3):
+        raise SystemExit(f"{out}: {done.stderr}")
     metrics = json.loads((out / "result.json").read_text())["metrics"]
     row = {"material": material, "map": light, "views": count}
     row.update({key: metrics.get(key) for key in COLUMNS[3:]})
