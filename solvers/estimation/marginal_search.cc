@@ -76,6 +76,7 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
   out.initial_lobes = ToVector(initial->parameters);
   gauge.Fix(out.initial_lobes.data());
   out.covariance = found->covariance;
+  out.ranking = RankMaterials(found->candidates);
   for (const MaterialCandidate& candidate : found->candidates) {
     if (std::isfinite(candidate.cost)) out.candidates.push_back(candidate);
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ibrdf/light/log_map.h"
+#include "ibrdf/solvers/estimation/material_ranking.h"
 #include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/estimation/solve_context.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
@@ -62,6 +63,7 @@ struct ReflectanceEstimate {
   std::vector<double> initial_lobes;
   Eigen::MatrixXd covariance;                 // of the lobes; empty: not known
   std::vector<MaterialCandidate> candidates;  // by cost
+  MaterialRanking ranking;  // of the light unknown; else empty
   LightPosterior light;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ibrdf/solvers/costs/log_radiance_cost.h"
+#include "ibrdf/solvers/estimation/known_light_covariance.h"
 #include "ibrdf/solvers/estimation/known_light_search.h"
 #include "ibrdf/solvers/estimation/outer_iterations.h"
 #include "ibrdf/solvers/joint/reflectance_solver.h"
@@ -112,6 +113,12 @@ Estimate Search::Run(const Estimate* earlier) {
   estimate.iterate.state = best.state;
   estimate.iterate.scale = scale_;
   estimate.iterate.ambient = best.ambient;
+  if (context_->IterationsLeft() && !context_->StopAfter(1.0)()) {
+    estimate.reflectance.covariance = KnownLightCovariance(
+        transport_, *setup_.lobes, setup_.materials, setup_.known_map,
+        pixels_->observed(), LikelihoodOf(setup_, scale_, best.ambient),
+        best.state.lobes);
+  }
   estimate.pixels = std::move(pixels_);
   return estimate;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/response_curve.h"
+#include "ibrdf/solvers/estimation/material_ranking.h"
+#include "ibrdf/solvers/priors/determined_directions.h"
 
 namespace ibrdf {
 
@@ -56,6 +59,9 @@ struct MaterialSolution {
   double spread = std::numeric_limits<double>::quiet_NaN();
   // Joint problems: other optima, with labels of all materials at once.
   std::vector<Alternative> alternatives;
+  MaterialRanking ranking;  // joint problems of one material; else empty
+  // Set with lobe_covariance, of one material.
+  std::optional<DeterminedDirections> determined;
   MerlTable brdf;     // empty if known
   std::string start;  // in words: the reflectance that the best began with
 };

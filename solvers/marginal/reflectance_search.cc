@@ -274,6 +274,9 @@ class Search {
       }
     }
     RankAll(*level_at_(options_.screen), &rankings);
+    for (MaterialCandidate& material : materials_) {
+      material.screen_cost = material.first_cost;
+    }
     for (Ranking& ranking : rankings) {
       ranking.resize(std::min<size_t>(ranking.size(), options_.kept));
     }

@@ -4,6 +4,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -85,6 +86,8 @@ struct MaterialCandidate {
   std::vector<double> parameters;  // at the optimum
   // Mean log radiance of the light there, by channel; 0: not refined.
   Eigen::Array3d light_level = Eigen::Array3d::Zero();
+  // At the first resolution, as the material is; infinite: none.
+  double screen_cost = std::numeric_limits<double>::infinity();
 };
 
 struct ReflectanceSearchResult {

@@ -71,12 +71,29 @@ std::string LobesInWords(const std::vector<LobeSummary>& lobes) {
                  ? "Each colour is given with one standard deviation of its "
                    "logarithm. The last column is the root mean square of the "
                    "standard deviations of a code's entries. Both come from "
-                   "Laplace's approximation at this optimum, with the light "
+                   "Laplace's approximation at this optimum; an unknown light "
+                   "is "
                    "integrated out. Correlations are in result.json "
                    "(posterior.covariance). The approximation does not see "
                    "other local optima."
                  : "No covariance was computed for this problem: how well "
                    "these numbers are known is not stated.") +
+         "\n";
+}
+
+// "The image determines n of m directions", and how far.
+std::string DeterminedInWords(const Solution& solution) {
+  if (!solution.determined) return "";
+  const DeterminedDirections& found = *solution.determined;
+  return HtmlElement(
+             "p",
+             "The image determines " + std::to_string(found.num_determined()) +
+                 " of " + std::to_string(found.variance_left.size()) +
+                 " directions of codes and colours: along these less than a "
+                 "tenth of the prior's variance is left. Together it holds " +
+                 Format("%.1f", found.degrees_of_freedom()) +
+                 " degrees of freedom. The rest is what the prior says "
+                 "(posterior.directions in result.json).") +
          "\n";
 }
 
@@ -139,7 +156,7 @@ std::string PosteriorSection(const InverseProblem& inverse,
   return "<section>\n" +
          HtmlElement("h2", "How well the reflectance is known") + "\n" +
          LobesInWords(SummariseLobes(inverse, solution)) +
-         ExpectedErrorInWords(solution.spread) +
+         DeterminedInWords(solution) + ExpectedErrorInWords(solution.spread) +
          AlternativesInWords(solution.alternatives) + "</section>\n";
 }
 

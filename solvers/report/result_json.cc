@@ -185,6 +185,30 @@ double CovarianceCondition(const Solution& solution) {
   return condition;
 }
 
+// What the image adds to the prior; the ranked materials.
+void AddInformation(const Solution& solution, Json* out) {
+  if (const auto& determined = solution.determined) {
+    (*out)["directions"] = {
+        {"of", determined->variance_left.size()},
+        {"determined", determined->num_determined()},
+        {"degrees_of_freedom", determined->degrees_of_freedom()},
+        {"nats", determined->information()},
+        {"variance_left", determined->variance_left}};
+  }
+  if (solution.ranking.materials.empty()) return;
+  constexpr size_t kShown = 5;
+  Json most = Json::array();
+  for (const MaterialWeight& m : solution.ranking.materials) {
+    if (most.size() == kShown) break;
+    most.push_back({{"name", m.name}, {"weight", m.weight}});
+  }
+  (*out)["ranking"] = {
+      {"materials", solution.ranking.materials.size()},
+      {"entropy_nats", solution.ranking.entropy},
+      {"effective_number", solution.ranking.effective_number()},
+      {"most_probable", most}};
+}
+
 // How well the reflectance is known.
 Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
   Json out = Json::object();
@@ -193,6 +217,7 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
     out["covariance"] = solution.lobe_covariance;
     out["condition_number"] = Finite(CovarianceCondition(solution));
   }
+  AddInformation(solution, &out);
   if (std::isfinite(solution.spread)) {
     out["brdf_spread"] = solution.spread;
     const ErrorToExpect error = ExpectError(solution.spread);

@@ -75,6 +75,7 @@ void TurnDown(Estimate* estimate) {
   estimate->reflectance.covariance.resize(0, 0);
   estimate->reflectance.light.log_std = Image();
   estimate->reflectance.candidates.clear();
+  estimate->reflectance.ranking = MaterialRanking();
 }
 
 Image RenderOf(const View& view, const SolveSetup& setup) {
@@ -144,7 +145,11 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
                              covariance.data() + covariance.size());
   const LobeDistance distance(FlowLobes::Factory(
       *problem.model, setup.lobes->layout(), problem.num_threads));
-  if (covariance.size() > 0) {
+  out.determined =
+      FindDeterminedDirections(setup.materials, out.lobe_covariance);
+  out.ranking = reflectance.ranking;
+  // How spreads stand to errors was measured where the light is unknown.
+  if (covariance.size() > 0 && setup.light_unknown()) {
     out.spread = ReflectanceSpread(distance, lobes, out.lobe_covariance,
                                    kSpreadSamples, problem.seed);
   }
