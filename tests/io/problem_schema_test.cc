@@ -61,6 +61,9 @@ Setting SettingOf(const ProblemKey& key) {
   if (map == "geometry.sphere") {  // neither goes without the other
     return setting.With("geometry.sphere", "{centre: [1, 2], radius: 3}");
   }
+  if (key.path == "geometry.up") {  // of any shape with a place
+    return setting.With("geometry", "{sphere: {}}");
+  }
   if (map == "geometry.frame") {
     return setting.With("geometry", "{normals: n.exr}");
   }
