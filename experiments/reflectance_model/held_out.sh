@@ -8,6 +8,10 @@
 # that train (100). SEED: of the folds' order, of what is dropped below 100 %
 # and of the training (1). SCORE_TABLES: tables that each fit is scored on too.
 # OUT receives results.csv (the model column says the share) and the models.
+# MORE_DATA=DIR trains on all tables of another folder too, whose bins beyond
+# VOID_BEYOND degrees (80) are void. FOLDS="0 1" makes these folds alone,
+# METHODS=flow,flow_lambertian fits with a Lambertian lobe too, and SKIP_LOBES=1
+# leaves the prior of joint estimates out of the models.
 set -euo pipefail
 
 tables="$1" out="$2" share="${3:-100}" seed="${4:-1}" score="${5:-}"
@@ -30,7 +34,11 @@ mapfile -t all < <(find -L "${tables}" -name '*.binary' -printf '%f\n' |
 mapfile -t hard_here < <(printf '%s\n' "${all[@]}" | grep -xE "${hard}")
 mapfile -t names < <(printf '%s\n' "${all[@]}" | grep -vxE "${hard}" |
   shuffled "fold ${seed}")
-for fold in 0 1 2 3 4 5 6 7 8 9; do
+more=()
+if [ -n "${MORE_DATA:-}" ]; then
+  more=(--more-data "${MORE_DATA}" --void-beyond "${VOID_BEYOND:-80}")
+fi
+for fold in ${FOLDS:-0 1 2 3 4 5 6 7 8 9}; do
   held=() others=()
   for i in "${!names[@]}"; do
     if [ $((i % 10)) -eq "${fold}" ]; then
@@ -47,13 +55,13 @@ for fold in 0 1 2 3 4 5 6 7 8 9; do
   model="${out}/fold${fold}/trained-on-${share}.ibrdf"
   mkdir -p "${out}/fold${fold}"
   if [ ! -e "${model}" ]; then
-    "${bin}/ibrdf_train" --data "${tables}" --out "${model}" \
+    "${bin}/ibrdf_train" --data "${tables}" "${more[@]}" --out "${model}" \
       --leave-out "${leave_out}" --steps "${steps}" --seed "${seed}" \
-      --threads "${threads}" > "${model%.ibrdf}.log" 2>&1
+      --threads "${threads}" ${SKIP_LOBES:+--skip-lobes} > "${model%.ibrdf}.log" 2>&1
   fi
   materials=$(IFS=,; echo "${held[*]}")
   "${bin}/ibrdf_bench" merl-fit --data "${tables}" --out "${out}" \
-    --model "${model}" --methods flow --lobes "${lobes}" \
+    --model "${model}" --methods "${METHODS:-flow}" --lobes "${lobes}" \
     --materials "${materials}" --threads "${threads}" --seed "${seed}" \
     ${score:+--score-data "${score}"} --quiet
   echo "fold ${fold}, trained on ${keep} materials: done"

@@ -59,7 +59,7 @@ TableFitOptions OptionsOf(uint64_t seed) {
 
 }  // namespace
 
-TableFitters BaselineFitters() {
+TableFitters BaselineFitters(const std::vector<int>& dsbrdf_lobes) {
   TableFitters fitters;
   const auto add = [&](const std::string& method, const std::string& lobes,
                        bool depends_on_phi_d, FitFunction fit) {
@@ -81,7 +81,7 @@ TableFitters BaselineFitters() {
   add("disney", "1", true, [](const MerlTable& table, uint64_t seed) {
     return FunctionOf(FitDisney(table, OptionsOf(seed)));
   });
-  for (const int lobes : {3, 5}) {
+  for (const int lobes : dsbrdf_lobes) {
     add("dsbrdf", std::to_string(lobes), false,
         [lobes](const MerlTable& table, uint64_t) {
           DsbrdfFitOptions options;

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "ibrdf/brdf/void_bins.h"
 #include "ibrdf/io/atomic_file.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/metrics/brdf_metrics.h"
@@ -21,6 +22,8 @@ namespace fs = std::filesystem;
 // The last table that was read: cases of a material follow each other.
 class TableReader {
  public:
+  explicit TableReader(double void_beyond) : void_beyond_(void_beyond) {}
+
   // Null after an error, then in `status`.
   const MerlTable* Read(const std::string& path, Status* status) {
     if (path == path_) return &table_;
@@ -32,10 +35,12 @@ class TableReader {
     }
     path_ = path;
     table_ = *std::move(table);
+    VoidBeyond(void_beyond_, &table_);
     return &table_;
   }
 
  private:
+  const double void_beyond_;
   std::string path_;
   MerlTable table_;
 };
@@ -221,7 +226,7 @@ Status RunMerlFitSweep(const MerlFitSweepOptions& options) {
   const StatusOr<std::vector<ResultsRow>> present =
       ReadResults(results, MerlFitColumns());
   if (!present.ok()) return present.status();
-  TableReader tables, score_tables;
+  TableReader tables(options.void_beyond), score_tables(options.void_beyond);
   for (size_t i = 0; i < cases->size(); ++i) {
     const MerlFitCase& c = (*cases)[i];
     const bool done =

@@ -16,6 +16,9 @@ namespace ibrdf {
 struct MerlFitSweepOptions {
   std::string data;        // folder of MERL .binary tables: fitted and scored
   std::string score_data;  // another of the same names: scored only; or empty
+  // Bins further from the normal, degrees in (0, 90], are neither fitted nor
+  // scored. Rows that are present keep theirs, as those of another score_data.
+  double void_beyond = 90.0;
   std::string out;
   std::vector<std::string> materials;  // empty: all of `data`, sorted
   std::vector<std::string> methods;    // empty: all fitters

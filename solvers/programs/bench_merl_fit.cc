@@ -27,6 +27,7 @@ struct NeuralFitFlags {
 struct MerlFitFlags {
   MerlFitSweepOptions options;
   NeuralFitFlags neural;
+  std::vector<int> dsbrdf_lobes = {3, 5};
   OnlyFlag only;
   bool dry_run = false;
 
@@ -54,7 +55,7 @@ Status AddFlowFitters(const NeuralFitFlags& flags, TableFitters* fitters) {
 // All methods, in the order of the results. A model that cannot be read is an
 // error only where a method needs it.
 Status ListFitters(const MerlFitFlags& flags, TableFitters* fitters) {
-  *fitters = BaselineFitters();
+  *fitters = BaselineFitters(flags.dsbrdf_lobes);
   fitters->push_back(FreeFlowFitter(flags.neural.free));
   const std::vector<std::string>& methods = flags.options.methods;
   const bool wanted =
@@ -112,6 +113,11 @@ void AddTableFlags(CLI::App* fit, MerlFitSweepOptions* options) {
   fit->add_option("--methods", options->methods,
                   "comma-separated, of: " + MethodNames() + "default: all")
       ->delimiter(',');
+  fit->add_option("--void-beyond", options->void_beyond,
+                  "bins with a direction further from the normal than this, "
+                  "degrees, are neither fitted nor scored")
+      ->check(CLI::Range(1.0, 90.0))
+      ->capture_default_str();
 }
 
 void AddNeuralFitFlags(CLI::App* fit, NeuralFitFlags* flags) {
@@ -151,6 +157,11 @@ void AddMerlFitExperiment(CLI::App* app, BenchSession* session) {
       session, [flags, session] { return RunMerlFit(*session, flags.get()); });
   AddTableFlags(fit, &flags->options);
   AddNeuralFitFlags(fit, &flags->neural);
+  fit->add_option("--dsbrdf-lobes", flags->dsbrdf_lobes,
+                  "of the method dsbrdf: comma-separated numbers of lobes")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
   fit->add_option("--score-data", flags->options.score_data,
                   "another folder of tables of the same names: each fit is "
                   "scored on these too, without scaling");

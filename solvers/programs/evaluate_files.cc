@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ibrdf/brdf/void_bins.h"
 #include "ibrdf/io/albedo_file.h"
 #include "ibrdf/io/image_file.h"
 #include "ibrdf/io/map_file.h"
@@ -62,11 +63,13 @@ StatusOr<Metrics> CompareMasked(
 }  // namespace
 
 StatusOr<NamedMetrics> EvaluateBrdfFiles(const std::string& estimate,
-                                         const std::string& reference) {
+                                         const std::string& reference,
+                                         double void_beyond) {
   const StatusOr<MerlTable> a = ReadMerl(estimate);
   if (!a.ok()) return a.status();
-  const StatusOr<MerlTable> b = ReadMerl(reference);
+  StatusOr<MerlTable> b = ReadMerl(reference);
   if (!b.ok()) return b.status();
+  VoidBeyond(void_beyond, &*b);
   const StatusOr<BrdfMetrics> metrics = CompareBrdfs(*a, *b);
   if (!metrics.ok()) {
     return NameFile(metrics.status(),

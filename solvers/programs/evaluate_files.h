@@ -17,8 +17,11 @@ using NamedMetrics = std::vector<std::pair<std::string, double>>;
 // of a failure starts with the path of the file at fault.
 
 // MERL tables: brdf_log_rmse, brdf_log_rmse_aligned, brdf_log_rmse_below80.
+// Bins with a direction further from the normal than `void_beyond`, degrees in
+// (0, 90], play no part.
 StatusOr<NamedMetrics> EvaluateBrdfFiles(const std::string& estimate,
-                                         const std::string& reference);
+                                         const std::string& reference,
+                                         double void_beyond = 90.0);
 
 // A file of a map and its frame; unset: as ReadStoredMap finds it.
 struct MapToCompare {

@@ -29,6 +29,7 @@ Json ToJson(const NamedMetrics& metrics) {
 struct Arguments {
   std::string estimate, reference, mask;
   std::string frame_a = "auto", frame_b = "auto";
+  double void_beyond = 90.0;
   std::string map, frame = "auto", picture;
 };
 
@@ -128,12 +129,17 @@ int Main(int argc, char** argv) {
   app.fallthrough();
 
   Arguments arguments;
-  const CLI::App* brdf = AddComparison(
+  CLI::App* brdf = AddComparison(
       &app, "brdf",
       "log-RMSE in raw MERL units over bins where B's red is > 0: as is, "
       "after the best scale per channel (aligned), and with both "
       "directions within 80 degrees of the normal (below80)",
       "MERL .binary table", &arguments);
+  brdf->add_option("--void-beyond", arguments.void_beyond,
+                   "bins with a direction further from the normal than this, "
+                   "degrees, play no part")
+      ->check(CLI::Range(1.0, 90.0))
+      ->capture_default_str();
   const CLI::App* illumination = AddIllumination(&app, &arguments);
   CLI::App* image = AddComparison(
       &app, "image",
@@ -156,8 +162,8 @@ int Main(int argc, char** argv) {
   return RunProgram(&app, argc, argv, [&]() -> Status {
     if (frame->parsed()) return DrawFrame(arguments);
     if (brdf->parsed()) {
-      return PrintMetrics(
-          EvaluateBrdfFiles(arguments.estimate, arguments.reference));
+      return PrintMetrics(EvaluateBrdfFiles(
+          arguments.estimate, arguments.reference, arguments.void_beyond));
     }
     if (albedo->parsed()) {
       return PrintMetrics(EvaluateAlbedoFiles(

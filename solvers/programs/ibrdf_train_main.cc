@@ -13,6 +13,16 @@ namespace {
 void AddDataFlags(CLI::App* app, TrainFlags* flags) {
   CLI::Option* data =
       app->add_option("--data", flags->data, "folder of MERL .binary files");
+  CLI::Option* more =
+      app->add_option("--more-data", flags->more_data,
+                      "another folder of MERL .binary files to train on")
+          ->needs(data);
+  app->add_option("--void-beyond", flags->void_beyond,
+                  "bins of --more-data with a direction further from the "
+                  "normal than this, degrees, count as not measured")
+      ->needs(more)
+      ->check(CLI::Range(1.0, 90.0))
+      ->capture_default_str();
   app->add_option("--out", flags->out, "model file to write")->required();
   CLI::Option* refit = app->add_option(
       "--refit", flags->refit,
@@ -36,6 +46,10 @@ void AddDataFlags(CLI::App* app, TrainFlags* flags) {
   app->add_flag("--lambertian", flags->lambertian,
                 "fits the materials with a Lambertian lobe beside the flow's; "
                 "estimates with the model then have one too");
+  app->add_flag("--skip-lobes", flags->skip_lobes,
+                "does not fit the lobes of materials, which fits to tables "
+                "(merl-fit) do without; --refit fits them later")
+      ->excludes(refit);
   app->add_flag("--fresh", flags->fresh, "ignore an existing checkpoint");
 }
 

@@ -64,8 +64,12 @@ struct TrainingTables {
 };
 
 StatusOr<TrainingTables> ReadTables(const TrainFlags& flags, uint64_t seed) {
+  std::vector<TableFolder> folders = {{flags.data}};
+  if (!flags.more_data.empty()) {
+    folders.push_back({flags.more_data, flags.void_beyond});
+  }
   StatusOr<TrainingData> all = ReadTrainingData(
-      flags.data, SplitByComma(flags.leave_out), flags.columns, seed);
+      folders, SplitByComma(flags.leave_out), flags.columns, seed);
   if (!all.ok()) return all.status();
   TrainingTables tables;
   tables.measured = all->names.size();
@@ -173,7 +177,9 @@ Status TrainModel(const TrainFlags& flags, const CommonFlags& common) {
   KeepMeasured(tables->measured, &*model);
   model->note =
       Note(flags, options, PrintScores(*model, tables->held_out, common));
-  IBRDF_RETURN_IF_ERROR(FitLobes(flags, common, &*model));
+  if (!flags.skip_lobes) {
+    IBRDF_RETURN_IF_ERROR(FitLobes(flags, common, &*model));
+  }
   IBRDF_RETURN_IF_ERROR(WriteModel(*model, flags.out));
   std::remove(options.checkpoint.c_str());
   return OkStatus();

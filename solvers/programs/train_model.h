@@ -10,7 +10,10 @@
 namespace ibrdf {
 
 struct TrainFlags {
-  std::string data;   // folder of tables
+  std::string data;       // folder of tables
+  std::string more_data;  // another; or empty
+  // Of `more_data`: bins further from the normal are void, degrees.
+  double void_beyond = 90.0;
   std::string refit;  // a model, in place of `data`
   std::string out;
   std::string leave_out;  // comma-separated
@@ -21,6 +24,8 @@ struct TrainFlags {
   int analytic = 48;
   // Whether estimates with the model have a Lambertian lobe beside the flow's.
   bool lambertian = false;
+  // Whether the lobes of materials are left to a later --refit.
+  bool skip_lobes = false;
   bool fresh = false;  // ignore an existing checkpoint
   std::string flow = "triangular";
   std::vector<int> bins = {32, 16, 16};

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "ibrdf/brdf/brdf_grid.h"
+#include "ibrdf/brdf/void_bins.h"
 #include "ibrdf/io/merl.h"
 
 namespace ibrdf {
@@ -21,6 +22,46 @@ int CountAboveHorizon(int theta_d, int phi_d) {
     ++count;
   }
   return count;
+}
+
+struct TableFile {
+  const TableFolder* folder;
+  std::string name;  // without extension
+};
+
+// In the order of folders, then of names.
+StatusOr<std::vector<TableFile>> ListTableFiles(
+    const std::vector<TableFolder>& folders,
+    const std::vector<std::string>& leave_out) {
+  std::vector<TableFile> files;
+  const auto find = [&files](const std::string& name) {
+    return std::find_if(files.begin(), files.end(),
+                        [&](const TableFile& f) { return f.name == name; });
+  };
+  std::string paths;
+  for (const TableFolder& folder : folders) {
+    paths += (paths.empty() ? "" : ", ") + folder.path;
+    const StatusOr<std::vector<std::string>> names = ListTables(folder.path);
+    if (!names.ok()) return names.status();
+    for (const std::string& name : *names) {
+      if (find(name) != files.end()) {
+        return InvalidInput(folder.path, "has a material '" + name +
+                                             "' as another folder has");
+      }
+      files.push_back({&folder, name});
+    }
+  }
+  for (const std::string& name : leave_out) {
+    const auto found = find(name);
+    if (found == files.end()) {
+      return InvalidInput(paths, "has no material '" + name + "' to leave out");
+    }
+    files.erase(found);
+  }
+  if (files.empty()) {
+    return InvalidInput(paths, "expected MERL .binary files, found none");
+  }
+  return files;
 }
 
 }  // namespace
@@ -125,30 +166,22 @@ StatusOr<std::vector<std::string>> ListTables(const std::string& folder) {
 }
 
 StatusOr<TrainingData> ReadTrainingData(
-    const std::string& folder, const std::vector<std::string>& leave_out,
-    int num_columns, uint64_t seed) {
-  StatusOr<std::vector<std::string>> names = ListTables(folder);
-  if (!names.ok()) return names.status();
-  for (const std::string& name : leave_out) {
-    const auto found = std::find(names->begin(), names->end(), name);
-    if (found == names->end()) {
-      return InvalidInput(folder,
-                          "has no material '" + name + "' to leave out");
-    }
-    names->erase(found);
-  }
-  if (names->empty()) {
-    return InvalidInput(folder, "expected MERL .binary files, found none");
-  }
+    const std::vector<TableFolder>& folders,
+    const std::vector<std::string>& leave_out, int num_columns, uint64_t seed) {
+  const StatusOr<std::vector<TableFile>> files =
+      ListTableFiles(folders, leave_out);
+  if (!files.ok()) return files.status();
   const std::vector<int> columns = DrawColumns(num_columns, seed);
   TrainingData data = ColumnsOfTable(columns);
-  data.log_raw.reserve(names->size() * 3 * columns.size() * kMerlThetaH);
-  for (const std::string& name : *names) {
+  data.log_raw.reserve(files->size() * 3 * columns.size() * kMerlThetaH);
+  for (const TableFile& file : *files) {
     const std::string path =
-        (std::filesystem::path(folder) / (name + ".binary")).string();
-    const StatusOr<MerlTable> table = ReadMerl(path);
+        (std::filesystem::path(file.folder->path) / (file.name + ".binary"))
+            .string();
+    StatusOr<MerlTable> table = ReadMerl(path);
     if (!table.ok()) return table.status();
-    AddTable(*table, columns, name, &data);
+    VoidBeyond(file.folder->trusted_to, &*table);
+    AddTable(*table, columns, file.name, &data);
     LOG_EVERY_N(INFO, 10) << "read " << path;
   }
   return data;

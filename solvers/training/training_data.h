@@ -54,10 +54,17 @@ void AddTable(const MerlTable& table, const std::vector<int>& columns,
 // there is none.
 StatusOr<std::vector<std::string>> ListTables(const std::string& folder);
 
-// Reads the tables of `folder` but those in `leave_out` (one that is not there
-// is an error).
+struct TableFolder {
+  std::string path;
+  // Bins further from the normal than this, degrees in (0, 90], are not to be
+  // trusted and count as not measured.
+  double trusted_to = 90.0;
+};
+
+// Reads the tables of these folders but those in `leave_out`. One that is in
+// none of them is an error, and so is a name that two of them have.
 StatusOr<TrainingData> ReadTrainingData(
-    const std::string& folder, const std::vector<std::string>& leave_out,
-    int num_columns, uint64_t seed);
+    const std::vector<TableFolder>& folders,
+    const std::vector<std::string>& leave_out, int num_columns, uint64_t seed);
 
 }  // namespace ibrdf

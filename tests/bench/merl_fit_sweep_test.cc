@@ -9,6 +9,7 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
 #include "ibrdf/brdf/sample_merl.h"
+#include "ibrdf/brdf/void_bins.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/solvers/bench/baseline_fitters.h"
 #include "ibrdf/solvers/bench/merl_fit_summary.h"
@@ -128,6 +129,29 @@ TEST_F(MerlFitSweepTest, WritesRowsAndResumes) {
   EXPECT_EQ(2, far_->calls);
 }
 
+// A table that is bright beyond 80 degrees alone scores as the dark rest of it.
+TEST_F(MerlFitSweepTest, BinsThatAreVoidedAreNeitherFittedNorScored) {
+  MerlTable table = Constant(0.5);
+  MerlTable trusted = table;
+  VoidBeyond(80.0, &trusted);
+  for (size_t i = 0; i < table.raw.size(); ++i) {
+    if (trusted.raw[i] < 0.0 && table.raw[i] > 0.0) table.raw[i] *= 50.0;
+  }
+  ASSERT_NE(trusted.raw, Constant(0.5).raw);
+  ASSERT_TRUE(WriteMerl(table, dir_.File("data/clay.binary")).ok());
+  options_.materials = {"clay"};
+  options_.methods = {"lambertian"};
+  options_.fitters = BaselineFitters();
+  ASSERT_TRUE(RunMerlFitSweep(options_).ok());
+  EXPECT_LT(0.5, std::stod(Cell(Rows()[0], "brdf_log_rmse")));
+  options_.out = dir_.File("trusted");
+  options_.void_beyond = 80.0;
+  options_.score_data = dir_.File("other");
+  ASSERT_TRUE(RunMerlFitSweep(options_).ok());
+  EXPECT_NEAR(0.0, std::stod(Cell(Rows()[0], "brdf_log_rmse")), 1e-9);
+  EXPECT_NEAR(1.0, std::stod(Cell(Rows()[0], "score_data_log_rmse")), 1e-5);
+}
+
 TEST_F(MerlFitSweepTest, FailuresGoToStatusAndInterruptsEndTheSweep) {
   options_.materials = {"clay"};
   far_->failure = InvalidInput("table", "expected something else");
@@ -180,6 +204,11 @@ TEST(BaselineFitters, AreListedByNameAndScoreWhatTheyShould) {
     EXPECT_NEAR(table.Raw(1, bin), fit.table.Raw(1, bin),
                 1e-9 * table.Raw(1, bin));
   }
+  std::vector<std::string> dsbrdf;
+  for (const auto& fitter : BaselineFitters({2})) {
+    if (fitter->method() == "dsbrdf") dsbrdf.push_back(fitter->lobes());
+  }
+  EXPECT_EQ(std::vector<std::string>{"2"}, dsbrdf);
   EXPECT_EQ(
       (std::set<std::string>{"bivariate", "bivariate_arithmetic", "lambertian",
                              "cook_torrance", "disney", "dsbrdf"}),

@@ -37,6 +37,26 @@ TEST(EvaluateFiles, Brdf) {
             Names(m));
   EXPECT_NEAR(std::log(2.0), m[0].second, kFloorTolerance);
   EXPECT_NEAR(0.0, m[1].second, kFloorTolerance);
+  // Grazing bins that are e times as bright count no more.
+  for (int h = 0; h < kMerlThetaH; ++h) {
+    for (int d = 0; d < kMerlThetaD; ++d) {
+      for (int p = 0; p < kMerlPhiD; ++p) {
+        const size_t bin = MerlTable::Bin(h, d, p);
+        const bool far = MerlBinLowestCosine(h, d, p) < std::cos(1.2);
+        for (size_t c = 0; c < 3; ++c) {
+          table.raw[c * kMerlBins + bin] = far ? 2.0 * std::exp(1.0) : 2.0;
+        }
+      }
+    }
+  }
+  ASSERT_TRUE(WriteMerl(table, dir.File("a")).ok());
+  const auto error = [&](double void_beyond) {
+    return EvaluateBrdfFiles(dir.File("a"), dir.File("b"), void_beyond)
+        .value()[0]
+        .second;
+  };
+  EXPECT_LT(1.0, error(90.0));
+  EXPECT_NEAR(std::log(2.0), error(68.7), kFloorTolerance);  // 1.2 is 68.75
   for (size_t k = 0; k < size_t{kMerlBins}; ++k) table.raw[k] = -1.0;  // red
   ASSERT_TRUE(WriteMerl(table, dir.File("b")).ok());
   EXPECT_EQ(dir.File("b") + ": red: expected a bin with a positive value",

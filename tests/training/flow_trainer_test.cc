@@ -80,7 +80,7 @@ class TrainerTest : public ::testing::Test {
                       .ok());
     }
     data_ = new TrainingData(
-        ReadTrainingData(dir_->path(), {}, kColumns, 7).value());
+        ReadTrainingData({{dir_->path()}}, {}, kColumns, 7).value());
   }
   static void TearDownTestSuite() {
     delete data_;
@@ -252,16 +252,54 @@ TEST_F(TrainerTest, SelectedDistributionsKeepTheirTables) {
 
 TEST_F(TrainerTest, LeftOutMaterialsAreNotRead) {
   const TrainingData data =
-      ReadTrainingData(dir_->path(), {"b_matte", "a_glossy"}, 10, 1).value();
+      ReadTrainingData({{dir_->path()}}, {"b_matte", "a_glossy"}, 10, 1).value();
   EXPECT_EQ(size_t{3}, data.names.size());
   EXPECT_EQ("c_red.red", data.names[0]);
+}
+
+// Of a folder that is trusted up to an angle, the bins beyond are void and the
+// others are as they were. Those of the first folder are all there.
+TEST_F(TrainerTest, FoldersAreTrustedUpToTheirAngle) {
+  const TempDir more;
+  std::filesystem::copy(dir_->File("c_red.binary"),
+                        more.File("paper.binary"));
+  const TrainingData data =
+      ReadTrainingData({{dir_->path()}, {more.path(), 80.0}}, {"b_matte"},
+                       kColumns, 7)
+          .value();
+  ASSERT_EQ(size_t{9}, data.names.size());
+  EXPECT_EQ("c_red.blue", data.names[5]);
+  EXPECT_EQ("paper.red", data.names[6]);
+  const std::vector<int> columns = DrawColumns(kColumns, 7);
+  int voided = 0, kept = 0;
+  for (int c = 0; c < kColumns; ++c) {
+    for (int i = 0; i < data.count[c]; ++i) {
+      const bool far =
+          MerlBinLowestCosine(i, columns[c] / kMerlPhiD,
+                              columns[c] % kMerlPhiD) < 0.17364817766693;
+      for (int channel = 0; channel < 3; ++channel) {
+        const float whole = data.LogRaw(3 + channel, c)[i];
+        EXPECT_NE(kNotMeasured, whole);
+        EXPECT_EQ(far ? kNotMeasured : whole, data.LogRaw(6 + channel, c)[i]);
+      }
+      ++(far ? voided : kept);
+    }
+  }
+  EXPECT_GT(voided, 1000);
+  EXPECT_GT(kept, 1000);
+  // A name that both have.
+  const Status twice =
+      ReadTrainingData({{dir_->path()}, {dir_->path(), 80.0}}, {}, 10, 1)
+          .status();
+  EXPECT_EQ(StatusCode::kInvalidInput, twice.code());
+  EXPECT_NE(std::string::npos, twice.message().find("a_glossy"));
 }
 
 TEST_F(TrainerTest, BadFoldersAreNamed) {
   const auto expect = [](const std::string& folder,
                          const std::vector<std::string>& leave_out,
                          const std::string& word) {
-    const Status s = ReadTrainingData(folder, leave_out, 10, 1).status();
+    const Status s = ReadTrainingData({{folder}}, leave_out, 10, 1).status();
     EXPECT_EQ(StatusCode::kInvalidInput, s.code());
     EXPECT_NE(std::string::npos, s.message().find(word)) << s.message();
   };
