@@ -224,7 +224,7 @@ Status WriteModel(const NeuralBrdfModel& model, const std::string& path) {
 }
 
 StatusOr<std::string> FindModel(const std::string& name) {
-  if (name != "default") return name;
+  if (name != "default" && name != "broad") return name;
   std::vector<std::string> folders;
   if (const char* folder = std::getenv("IBRDF_MODEL_DIR")) {
     folders.push_back(folder);
@@ -232,13 +232,13 @@ StatusOr<std::string> FindModel(const std::string& name) {
   folders.push_back(IBRDF_INSTALLED_MODEL_DIR);
   folders.push_back(IBRDF_SOURCE_MODEL_DIR);
   for (const std::string& folder : folders) {
-    const std::string path = folder + "/default.ibrdf";
+    const std::string path = folder + "/" + name + ".ibrdf";
     struct stat info = {};
     if (::stat(path.c_str(), &info) == 0) return path;
   }
   return InvalidInput("reflectance.model",
-                      "the default model is not installed, expected "
-                      "default.ibrdf in $IBRDF_MODEL_DIR");
+                      "the " + name + " model is not installed, expected " +
+                          name + ".ibrdf in $IBRDF_MODEL_DIR");
 }
 
 }  // namespace ibrdf

@@ -22,8 +22,9 @@ StatusOr<NeuralBrdfModel> DecodeModel(const std::string& path,
 
 Status WriteModel(const NeuralBrdfModel& model, const std::string& path);
 
-// Path of the model called `name`: "default" is looked for in $IBRDF_MODEL_DIR,
-// beside the installed library and in the source tree; anything else is a path.
+// Path of the model called `name`: "default" and "broad" are looked for in
+// $IBRDF_MODEL_DIR, beside the installed library and in the source tree;
+// anything else is a path.
 StatusOr<std::string> FindModel(const std::string& name);
 
 }  // namespace ibrdf

@@ -1,5 +1,7 @@
 #include "ibrdf/io/problem_key.h"
 
+#include <algorithm>
+
 namespace ibrdf {
 namespace {
 
@@ -22,6 +24,13 @@ std::string ProblemKey::Name() const {
 std::string ProblemKey::Parent() const {
   const size_t dot = path.rfind('.');
   return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+bool ProblemKey::IsNoFile(const std::string& text) const {
+  if (text.empty()) return false;
+  return text == default_value ||
+         std::any_of(words.begin(), words.end(),
+                     [&](const ProblemWord& w) { return w.word == text; });
 }
 
 std::string ProblemKey::OldPath() const { return JoinPath(Parent(), old_name); }

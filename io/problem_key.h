@@ -25,7 +25,7 @@ enum class ValueType {
   kChoice,        // one of `words`
   kChoiceOrMap,   // the same, or a map of the keys below this one
   kWordOrList,    // one of `words`, or a list of some of `list_words`
-  kPath,          // the name of a file, or the default's word
+  kPath,          // the name of a file, the default's word or one of `words`
   kText,          // any text that is not empty
   kMap,           // of the keys below this one
   kPathOrMap,     // the name of a file, or such a map
@@ -74,6 +74,9 @@ struct ProblemKey {
   std::vector<std::string> notes;  // rules between several keys below this one
   std::string example;  // a value for the example file; empty: the default
 
+  // Of a path: whether this text is the default's word or one of `words`, and
+  // so no file's name.
+  bool IsNoFile(const std::string& text) const;
   // The path's last word, and what precedes it: "" at the top.
   std::string Name() const;
   std::string Parent() const;

@@ -80,7 +80,13 @@ void ProblemReader::Read(const std::string& name, std::string* path) {
       << key.path;
   const bool by_default =
       !key.default_value.empty() && reader_.IsWord(name, key.default_value);
-  if (!by_default) reader_.Path(name, path);
+  if (by_default) return;
+  for (const ProblemWord& w : key.words) {
+    if (!reader_.IsWord(name, w.word)) continue;
+    *path = w.word;
+    return;
+  }
+  reader_.Path(name, path);
 }
 
 void ProblemReader::Read(const std::string& name,

@@ -151,7 +151,7 @@ std::string RangeText(const ProblemKey& key) {
     case ValueType::kWordOrList:
       return "a word or a list, below";
     case ValueType::kPath:
-      return key.files;
+      return key.files + (key.words.empty() ? "" : ", or a word, below");
     case ValueType::kText:
       return "text";
     case ValueType::kMap:

@@ -19,9 +19,12 @@ Keys UnknownReflectanceKeys() {
           "The BRDF of the object: a trained model where it is unknown, else "
           "`known`."),
       Row("reflectance.model",
-          "Trained model of unknown BRDFs, from `ibrdf_train`. `default` is "
-          "the one that comes with the programs.")
-          .Path(".ibrdf", "default")
+          "Trained model of unknown BRDFs, from `ibrdf_train`. `default` and "
+          "`broad` come with the programs.")
+          .Path(".ibrdf", "default",
+                {{"broad",
+                  "trained on two databases, with a Lambertian lobe: nearer to "
+                  "paper and felt, and no nearer to plastic and metal"}})
           .UsedBy(kUnknownReflectance),
       Row("reflectance.lobes",
           "Number of lobes of the flow. Each has a code of the embedding and "

@@ -98,7 +98,9 @@ Row& Row::WordOrList(const std::string& default_value, Words words,
   return Type(ValueType::kWordOrList, default_value);
 }
 
-Row& Row::Path(const std::string& files, const std::string& default_value) {
+Row& Row::Path(const std::string& files, const std::string& default_value,
+               Words words) {
+  key_.words = std::move(words);
   key_.files = files;
   return Type(ValueType::kPath, default_value);
 }

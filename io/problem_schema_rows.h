@@ -50,7 +50,8 @@ class Row {
   Row& OneOrPair(const Range& range);
   Row& Matrix();
   Row& WordOrList(const std::string& default_value, Words words, Words listed);
-  Row& Path(const std::string& files, const std::string& default_value = "");
+  Row& Path(const std::string& files, const std::string& default_value = "",
+            Words words = {});
   Row& Text();
   Row& PathOrMap(const std::string& files);
   Row& OptionalMap();

@@ -57,7 +57,8 @@ for fold in ${FOLDS:-0 1 2 3 4 5 6 7 8 9}; do
   if [ ! -e "${model}" ]; then
     "${bin}/ibrdf_train" --data "${tables}" "${more[@]}" --out "${model}" \
       --leave-out "${leave_out}" --steps "${steps}" --seed "${seed}" \
-      --threads "${threads}" ${SKIP_LOBES:+--skip-lobes} > "${model%.ibrdf}.log" 2>&1
+      --threads "${threads}" ${SKIP_LOBES:+--skip-lobes} \
+      > "${model%.ibrdf}.log" 2>&1
   fi
   materials=$(IFS=,; echo "${held[*]}")
   "${bin}/ibrdf_bench" merl-fit --data "${tables}" --out "${out}" \

@@ -6,8 +6,8 @@
 
 namespace ibrdf {
 
-// bivariate, bivariate_arithmetic, lambertian, cook_torrance, disney, and dsbrdf
-// with each of these numbers of lobes (three as published).
+// bivariate, bivariate_arithmetic, lambertian, cook_torrance, disney, and
+// dsbrdf with each of these numbers of lobes (three as published).
 TableFitters BaselineFitters(const std::vector<int>& dsbrdf_lobes = {3, 5});
 
 }  // namespace ibrdf

@@ -126,10 +126,7 @@ void MovePaths(const std::string& out, ConfigNode* root) {
       continue;
     }
     ConfigNode* const node = At(root, key.path, false);
-    if (node == nullptr ||
-        (!key.default_value.empty() && node->scalar == key.default_value)) {
-      continue;
-    }
+    if (node == nullptr || key.IsNoFile(node->scalar)) continue;
     MovePath(out, node);
     for (ConfigNode& item : node->items) MovePath(out, &item);
   }

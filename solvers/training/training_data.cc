@@ -45,8 +45,8 @@ StatusOr<std::vector<TableFile>> ListTableFiles(
     if (!names.ok()) return names.status();
     for (const std::string& name : *names) {
       if (find(name) != files.end()) {
-        return InvalidInput(folder.path, "has a material '" + name +
-                                             "' as another folder has");
+        return InvalidInput(
+            folder.path, "has a material '" + name + "' as another folder has");
       }
       files.push_back({&folder, name});
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -342,6 +343,17 @@ TEST_F(ModelFile, MissingFileIsNamed) {
 
 TEST(FindModel, OtherNamesArePaths) {
   EXPECT_EQ("some/where.ibrdf", FindModel("some/where.ibrdf").value());
+}
+
+TEST(FindModel, BroadHasALambertianLobe) {
+  const NeuralBrdfModel model = ReadModel(FindModel("broad").value()).value();
+  EXPECT_TRUE(model.fit_lambertian);
+  const auto trained_on = [&](const std::string& name) {
+    return std::find(model.names.begin(), model.names.end(), name) !=
+           model.names.end();
+  };
+  EXPECT_TRUE(trained_on("nickel.red"));
+  EXPECT_TRUE(trained_on("paper_white.red"));
 }
 
 TEST(FindModel, DefaultOfTheSourceTreeLoadsAndMakesSense) {

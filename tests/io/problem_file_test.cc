@@ -38,6 +38,19 @@ TEST_F(ProblemFile, LeastFileHasTheDocumentedDefaults) {
   EXPECT_FALSE(CheckRenderable(p).ok());
 }
 
+// A word that stands for a model is no file's name; a path of that name is.
+TEST_F(ProblemFile, ModelsThatComeWithTheProgramsHaveNames) {
+  const auto model = [&](const std::string& value) {
+    return Read(kLeast + ("reflectance: {model: " + value + "}\n"))
+        .value()
+        .reflectance.model;
+  };
+  EXPECT_EQ("", model("default"));
+  EXPECT_EQ("broad", model("broad"));
+  EXPECT_EQ(dir_.File("broad"), model("./broad"));
+  EXPECT_EQ(dir_.File("broad.ibrdf"), model("broad.ibrdf"));
+}
+
 TEST_F(ProblemFile, EveryKeyIsRead) {
   const StatusOr<Problem> read = Read(R"(
 problem: reflectance

@@ -252,7 +252,8 @@ TEST_F(TrainerTest, SelectedDistributionsKeepTheirTables) {
 
 TEST_F(TrainerTest, LeftOutMaterialsAreNotRead) {
   const TrainingData data =
-      ReadTrainingData({{dir_->path()}}, {"b_matte", "a_glossy"}, 10, 1).value();
+      ReadTrainingData({{dir_->path()}}, {"b_matte", "a_glossy"}, 10, 1)
+          .value();
   EXPECT_EQ(size_t{3}, data.names.size());
   EXPECT_EQ("c_red.red", data.names[0]);
 }
@@ -261,8 +262,7 @@ TEST_F(TrainerTest, LeftOutMaterialsAreNotRead) {
 // others are as they were. Those of the first folder are all there.
 TEST_F(TrainerTest, FoldersAreTrustedUpToTheirAngle) {
   const TempDir more;
-  std::filesystem::copy(dir_->File("c_red.binary"),
-                        more.File("paper.binary"));
+  std::filesystem::copy(dir_->File("c_red.binary"), more.File("paper.binary"));
   const TrainingData data =
       ReadTrainingData({{dir_->path()}, {more.path(), 80.0}}, {"b_matte"},
                        kColumns, 7)
