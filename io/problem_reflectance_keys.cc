@@ -23,8 +23,8 @@ Keys UnknownReflectanceKeys() {
           "`broad` come with the programs.")
           .Path(".ibrdf", "default",
                 {{"broad",
-                  "trained on two databases, with a Lambertian lobe: nearer to "
-                  "paper and felt, and no nearer to plastic and metal"}})
+                  "Trained on two databases, with a Lambertian lobe: nearer to "
+                  "paper and felt, no nearer to plastic and metal."}})
           .UsedBy(kUnknownReflectance),
       Row("reflectance.lobes",
           "Number of lobes of the flow. Each has a code of the embedding and "
