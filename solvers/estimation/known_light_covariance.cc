@@ -7,7 +7,6 @@
 #include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/solvers/costs/log_radiance_cost.h"
 #include "ibrdf/solvers/marginal/reflectance_search.h"
-#include "ibrdf/solvers/optim/dense_algebra.h"
 
 namespace ibrdf {
 namespace {
