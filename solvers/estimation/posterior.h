@@ -28,6 +28,8 @@ struct LightPosterior {
   // none.
   LogMap mode;
   Image log_std;
+  // The share of the prior's variance that is left, in [0, 1].
+  Image variance_left;
 };
 
 // Priors of the light, centred at a constant map.

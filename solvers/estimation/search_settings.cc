@@ -171,6 +171,8 @@ LightPosterior LightOf(const ReflectanceSearchResult& found, double level) {
   light.mode = LogMap({found.map_width, found.map_height}, std::move(mode));
   light.log_std =
       FromPlanes(found.log_radiance_std, found.map_width, found.map_height);
+  light.variance_left = FromPlanes(found.log_radiance_variance_left,
+                                   found.map_width, found.map_height);
   return light;
 }
 

@@ -79,6 +79,8 @@ struct Solution : MaterialSolution {
   // resolution of the search; empty where there was none or its end was not
   // kept.
   Image map_std;
+  // The share of the prior's variance of it that is left, in [0, 1], likewise.
+  Image map_variance_left;
   Image map;     // [H, W]; the known one if known
   Image render;  // radiance at the object's pixels, else 0
   // Where the albedo varies, has_paint(): that of what is matte, at the

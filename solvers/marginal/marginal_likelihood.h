@@ -155,6 +155,9 @@ class MarginalLikelihood {
   // The level at which constant light gives the image's mean log radiance.
   double LevelFor(const std::array<RowMatrix, 3>& matrices) const;
 
+  // Diagonal of K, [3 * texels].
+  Eigen::VectorXd PriorLightVariance(
+      const LightHyperparameters& hyperparameters) const;
   // Diagonal of the posterior covariance of l [3 * texels] at the mode.
   Eigen::VectorXd LightVariance(const std::array<RowMatrix, 3>& matrices,
                                 const DataErrors& errors,

@@ -79,6 +79,24 @@ Eigen::MatrixXd MarginalLikelihood::Information(
   return information;
 }
 
+Eigen::VectorXd MarginalLikelihood::PriorLightVariance(
+    const LightHyperparameters& hyperparameters) const {
+  const Eigen::Index t = num_texels();
+  const Light light = LightAt(hyperparameters);
+  const Eigen::ArrayXd roughness =
+      ByTexel(Roughness(map_height_, hyperparameters), map_width_);
+  // The correlation of a texel with itself.
+  const Eigen::ArrayXd correlation =
+      smooth_share_ + rough_share_ * roughness.square() +
+      horizon_.array().square() / light.amplitude;
+  Eigen::VectorXd variance(3 * t);
+  for (int c = 0; c < 3; ++c) {
+    variance.segment(c * t, t) =
+        light.amplitude * local_(c, c) * correlation + level_(c, c);
+  }
+  return variance;
+}
+
 Eigen::VectorXd MarginalLikelihood::LightVariance(
     const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, const LightMode& mode) const {
@@ -90,14 +108,8 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
   CHECK(linear != nullptr);
   RowMatrix inverse = linear->factor;
   InvertFactored(&inverse);
-  const Eigen::ArrayXd roughness =
-      ByTexel(Roughness(map_height_, hyperparameters), map_width_);
-  // The correlation of a texel with itself.
-  const Eigen::ArrayXd correlation =
-      smooth_share_ + rough_share_ * roughness.square() +
-      horizon_.array().square() / light.amplitude;
   // diag(K - K J^T A^-1 J K), row by row of J K.
-  Eigen::VectorXd variance(3 * t);
+  Eigen::VectorXd variance = PriorLightVariance(hyperparameters);
   for (int c = 0; c < 3; ++c) {
     RowMatrix JK(3 * P, t);  // cov(data, l_c)
     for (int d = 0; d < 3; ++d) {
@@ -108,9 +120,8 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
     JK.array().colwise() *= linear->row_scale.array();
     RowMatrix product;
     MultiplyInTiles(inverse, JK, num_threads_, &product);
-    variance.segment(c * t, t) =
-        light.amplitude * local_(c, c) * correlation + level_(c, c) -
-        product.cwiseProduct(JK).colwise().sum().transpose().array();
+    variance.segment(c * t, t) -=
+        product.cwiseProduct(JK).colwise().sum().transpose();
   }
   return variance.cwiseMax(0.0);
 }

@@ -359,12 +359,16 @@ class Search {
     result.directional_lights = reflectance.DirectionalLightDirections(
         best_candidate_.parameters.data());
     result.log_radiance = LogRadiance();
-    result.log_radiance_std = ToVector(
-        reflectance.likelihood()
-            .LightVariance(
-                reflectance.Matrices(best_candidate_.parameters.data()),
-                best_.errors, best_candidate_.hyperparameters, best_.mode)
-            .cwiseSqrt());
+    const MarginalLikelihood& likelihood = reflectance.likelihood();
+    const Eigen::VectorXd variance = likelihood.LightVariance(
+        reflectance.Matrices(best_candidate_.parameters.data()), best_.errors,
+        best_candidate_.hyperparameters, best_.mode);
+    result.log_radiance_std = ToVector(variance.cwiseSqrt());
+    result.log_radiance_variance_left =
+        ToVector(variance
+                     .cwiseQuotient(likelihood.PriorLightVariance(
+                         best_candidate_.hyperparameters))
+                     .cwiseMin(1.0));
     std::stable_sort(
         materials_.begin(), materials_.end(),
         [](const MaterialCandidate& a, const MaterialCandidate& b) {

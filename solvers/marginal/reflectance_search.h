@@ -106,6 +106,8 @@ struct ReflectanceSearchResult {
   // reflectance, [3][H W] of the resolution.
   int map_width = 0, map_height = 0;
   std::vector<double> log_radiance, log_radiance_std;
+  // The share of its prior variance that is left, [3][H W] in [0, 1].
+  std::vector<double> log_radiance_variance_left;
 };
 
 // kInvalidInput where no point can be used. prior: of these lobes.

@@ -195,6 +195,11 @@ void AddInformation(const Solution& solution, Json* out) {
         {"nats", determined->information()},
         {"variance_left", determined->variance_left}};
   }
+  if (!solution.map_variance_left.empty()) {
+    const DeterminedLight light = MeasureDetermined(solution.map_variance_left);
+    (*out)["light"] = {{"determined_share", light.share},
+                       {"variance_left", light.variance_left}};
+  }
   if (solution.ranking.materials.empty()) return;
   constexpr size_t kShown = 5;
   Json most = Json::array();

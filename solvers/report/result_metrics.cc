@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/priors/determined_directions.h"
 #include "ibrdf/solvers/report/result_images.h"
 
 namespace ibrdf {
@@ -28,6 +30,22 @@ StatusOr<ResultMetrics> MeasureResult(const InverseProblem& inverse,
       solution.render, NearestObserved(inverse, solution), UsedMask(inverse));
   if (image.ok()) metrics.image = *image;
   return metrics;
+}
+
+DeterminedLight MeasureDetermined(const Image& variance_left) {
+  DeterminedLight out;
+  double all = 0.0;
+  for (size_t k = 0; k < variance_left.rgb.size(); ++k) {
+    const int row = static_cast<int>(k / 3) / variance_left.width;
+    const double area =
+        TexelSolidAngle(row, variance_left.height, variance_left.width);
+    all += area;
+    out.variance_left += area * variance_left.rgb[k];
+    if (variance_left.rgb[k] < kDetermined) out.share += area;
+  }
+  out.share /= all;
+  out.variance_left /= all;
+  return out;
 }
 
 std::vector<NamedMetric> ListMetrics(const ResultMetrics& metrics) {

@@ -30,6 +30,15 @@ StatusOr<ResultMetrics> MeasureResult(const InverseProblem& inverse,
                                       const Truth& truth,
                                       const Solution& solution);
 
+// What the image tells of the light, over the sphere and all channels.
+struct DeterminedLight {
+  double share = 0.0;          // of solid angle with less than kDetermined left
+  double variance_left = 0.0;  // its mean
+};
+
+// variance_left: a map as Solution::map_variance_left, not empty.
+DeterminedLight MeasureDetermined(const Image& variance_left);
+
 struct NamedMetric {
   const char* name;  // as in result.json
   double value;      // may be infinite or NaN

@@ -32,6 +32,9 @@ std::vector<std::string> EarlierNames(const Solution& solution) {
   if (solution.map_std.rgb.empty()) {
     names.emplace_back("illumination_log_std.exr");
   }
+  if (solution.map_variance_left.rgb.empty()) {
+    names.emplace_back("illumination_variance_left.exr");
+  }
   if (!solution.has_paint()) {
     names.insert(names.end(),
                  {"albedo.exr", "gloss.exr", "albedo.png", "gloss.png"});
@@ -87,6 +90,10 @@ Status WriteRadiance(const SolvedProblem& solved, const std::string& folder) {
     IBRDF_RETURN_IF_ERROR(WriteMap(solution.map_std, frame,
                                    folder + "/illumination_log_std.exr"));
   }
+  if (!solution.map_variance_left.rgb.empty()) {
+    IBRDF_RETURN_IF_ERROR(WriteMap(solution.map_variance_left, frame,
+                                   folder + "/illumination_variance_left.exr"));
+  }
   IBRDF_RETURN_IF_ERROR(WriteExr(solution.render, folder + "/render.exr"));
   if (solution.has_paint()) {
     IBRDF_RETURN_IF_ERROR(WriteExr(solution.albedo, folder + "/albedo.exr"));
@@ -114,7 +121,8 @@ std::vector<std::string> ResultPaths(const Problem& problem,
     paths.insert(paths.end(), {"brdf.binary", "brdf.json"});
   }
   if (!problem.illumination.known()) {
-    paths.emplace_back("illumination_log_std.exr");
+    paths.insert(paths.end(), {"illumination_log_std.exr",
+                               "illumination_variance_left.exr"});
   }
   if (problem.reflectance.variation == ReflectanceVariation::kAuto ||
       problem.reflectance.variation == ReflectanceVariation::kAlbedo) {

@@ -19,12 +19,13 @@ std::vector<std::string> ResultPaths(const Problem& problem,
                                      const std::string& folder);
 
 // Writes brdf.binary, brdf.json, illumination.exr, illumination_log_std.exr
-// (where a search found it), render.exr, residual.exr, the PNG previews,
-// result.json and, last, report.html into `folder`, making it; each file whole
-// or absent. Images are the sheet's where there are several views, and each
-// view's are in views/NAME. The .exr maps are in the problem's output frame,
-// those of pictures in the frame camera. result.json and report.html of an
-// earlier run go first: where one is, all else is of its run.
+// and illumination_variance_left.exr (where a search found them), render.exr,
+// residual.exr, the PNG previews, result.json and, last, report.html into
+// `folder`, making it; each file whole or absent. Images are the sheet's where
+// there are several views, and each view's are in views/NAME. The .exr maps are
+// in the problem's output frame, those of pictures in the frame camera.
+// result.json and report.html of an earlier run go first: where one is, all
+// else is of its run.
 Status WriteResults(const SolvedProblem& solved, const std::string& folder);
 
 }  // namespace ibrdf

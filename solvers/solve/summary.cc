@@ -74,6 +74,7 @@ void TurnDown(Estimate* estimate) {
   estimate->iterate.ambient = estimate->reference.ambient;
   estimate->reflectance.covariance.resize(0, 0);
   estimate->reflectance.light.log_std = Image();
+  estimate->reflectance.light.variance_left = Image();
   estimate->reflectance.candidates.clear();
   estimate->reflectance.ranking = MaterialRanking();
 }
@@ -197,6 +198,7 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
         setup, estimate.iterate.state.lobes, estimate.reflectance);
   }
   solution.map_std = estimate.reflectance.light.log_std;
+  solution.map_variance_left = estimate.reflectance.light.variance_left;
   solution.scale = scale;
   solution.epsilon = setup.epsilon;
   solution.misfit = end.misfit;

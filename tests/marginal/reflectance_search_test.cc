@@ -156,6 +156,15 @@ TEST_F(ReflectanceSearchTest, LowersTheCostWhateverTheThreads) {
   for (const double s : one->log_radiance_std) {
     EXPECT_TRUE(std::isfinite(s) && s >= 0.0);
   }
+  // Seen texels are known better than before; none is worse.
+  ASSERT_EQ(one->log_radiance_std.size(),
+            one->log_radiance_variance_left.size());
+  double least = 1.0;
+  for (const double left : one->log_radiance_variance_left) {
+    EXPECT_TRUE(left >= 0.0 && left <= 1.0) << left;
+    least = std::min(least, left);
+  }
+  EXPECT_LT(least, 0.5);
   ASSERT_EQ(14, one->covariance.rows());
   EXPECT_LT((one->covariance - one->covariance.transpose()).norm(),
             1e-9 * one->covariance.norm());

@@ -83,5 +83,20 @@ TEST(LogResidual, IsZeroWhereAPixelTookNoPart) {
   }
 }
 
+// A row of texels counts by its solid angle.
+TEST(DeterminedLight, IsWeighedBySolidAngle) {
+  Image left(8, 4);
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      for (int c = 0; c < 3; ++c) left.At(x, y)[c] = y == 0 ? 0.05f : 0.5f;
+    }
+  }
+  // The cap above 45 degrees: (1 - cos 45) / 2 of the sphere.
+  const double cap = 0.5 * (1.0 - std::sqrt(0.5));
+  const DeterminedLight found = MeasureDetermined(left);
+  EXPECT_NEAR(cap, found.share, 1e-6);
+  EXPECT_NEAR(0.05 * cap + 0.5 * (1 - cap), found.variance_left, 1e-6);
+}
+
 }  // namespace
 }  // namespace ibrdf
