@@ -87,6 +87,13 @@ class BounceGains {
   size_t begin_ = 0;
 };
 
+// Several views together have no more bins than one could have.
+void LimitBins(size_t views, NormalBinOptions* bins) {
+  if (views < 2) return;
+  bins->most_bins = bins->bins_across * bins->bins_across;
+  bins->bins_across = BinsAcrossView(bins->bins_across, views);
+}
+
 // The first stages of a small budget of iterations are cut short alike.
 void LimitIterations(int iterations, ReflectanceSearchOptions* options) {
   if (iterations == 0) options->coarse_stages = {{1, 0}};
@@ -107,10 +114,7 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
     resolution->visibility = problem.transport.visibility;
     resolution->quadrature =
         AtLevel(resolution->quadrature, problem.solver.quadrature);
-    const int of_one = resolution->bins.bins_across;
-    resolution->bins.most_bins = of_one * of_one;
-    resolution->bins.bins_across = BinsAcrossView(resolution->bins.bins_across,
-                                                  problem.sheet.views.size());
+    LimitBins(problem.sheet.views.size(), &resolution->bins);
   }
   o.should_stop = context->StopAfter(share);
   LimitIterations(problem.solver.max_iterations, &o);
