@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "ibrdf/io/problem_file.h"
-
 namespace ibrdf {
 namespace {
 
@@ -35,8 +33,10 @@ Status PrepareFolder(const std::string& folder) {
 }
 
 Status CheckNothingReplaced(const Problem& problem,
-                            const std::vector<std::string>& paths) {
-  const std::vector<NamedFile> named = NamedFiles(problem);
+                            const std::vector<std::string>& paths,
+                            const std::vector<NamedFile>& more) {
+  std::vector<NamedFile> named = NamedFiles(problem);
+  named.insert(named.end(), more.begin(), more.end());
   for (const std::string& path : paths) {
     if (const NamedFile* const file = NamedAs(named, path)) {
       return InvalidInput(problem.path + ": " + file->key,
@@ -45,6 +45,10 @@ Status CheckNothingReplaced(const Problem& problem,
     }
   }
   return OkStatus();
+}
+
+std::string ViewFolder(const std::string& folder, const std::string& name) {
+  return (std::filesystem::path(folder) / "views" / name).string();
 }
 
 void RemoveEarlier(const Problem& problem, const std::string& folder,

@@ -84,6 +84,8 @@ struct ViewsSpec {
   bool given() const {
     return !list.empty() || !transforms.empty() || !colmap.empty();
   }
+  // One of a list is a problem's image and camera.
+  bool several() const { return given() && list.size() != 1; }
 };
 
 enum class GeometryKind { kSphere, kMesh, kNormals, kDepth };
@@ -321,9 +323,7 @@ struct Problem {
   Camera camera;               // the view's, where `views` lists one
   bool camera_placed = false;  // from, to or a pose was given
   ViewsSpec views;
-  // Whether views stand in the place of image and camera: not where there is
-  // one of a list.
-  bool SeveralViews() const { return views.given() && views.list.size() != 1; }
+  bool SeveralViews() const { return views.several(); }
   GeometrySpec geometry;
   ReflectanceSpec reflectance;
   IlluminationSpec illumination;

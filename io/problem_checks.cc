@@ -204,8 +204,7 @@ Status CheckRenderable(const Problem& problem) {
           std::string("expected no ") + EffectName(effect) + " with textures");
     }
   }
-  if (problem.reflectance.paint.has_value() && problem.views.given() &&
-      problem.views.list.size() != 1) {
+  if (problem.reflectance.paint.has_value() && problem.SeveralViews()) {
     return KeyFailure(problem, "reflectance.known.albedo",
                       "expected without several views: it is an image of one");
   }

@@ -86,7 +86,7 @@ void ReadShape(ProblemReader* reader, bool perspective,
 // Refuses the geometry of one picture where there are several views.
 void CheckOneView(ProblemReader* reader, const ViewsSpec& views,
                   const GeometrySpec& geometry) {
-  if (!views.given() || views.list.size() == 1) return;
+  if (!views.several()) return;
   if (geometry.HasNormalMap()) {
     reader->Fail("expected a sphere or a mesh with several views: a map of " +
                  std::string(geometry.kind == GeometryKind::kDepth

@@ -113,12 +113,6 @@ Estimate Search::Run(const Estimate* earlier) {
   estimate.iterate.state = best.state;
   estimate.iterate.scale = scale_;
   estimate.iterate.ambient = best.ambient;
-  if (context_->IterationsLeft() && !context_->StopAfter(1.0)()) {
-    estimate.reflectance.covariance = KnownLightCovariance(
-        transport_, *setup_.lobes, setup_.materials, setup_.known_map,
-        pixels_->observed(), LikelihoodOf(setup_, scale_, best.ambient),
-        best.state.lobes);
-  }
   estimate.pixels = std::move(pixels_);
   return estimate;
 }
@@ -267,6 +261,17 @@ double LargestExcess(const Estimate& estimate, const SolveSetup& setup,
   return largest;
 }
 
+// Of the estimate's pixels, unless the time is over.
+void SetCovariance(const SolveSetup& setup, const SolveContext& context,
+                   Estimate* estimate) {
+  if (!context.IterationsLeft() || context.StopAfter(1.0)()) return;
+  const Iterate& iterate = estimate->iterate;
+  estimate->reflectance.covariance = KnownLightCovariance(
+      estimate->pixels->TransportFrom(setup.map_size()), *setup.lobes,
+      setup.materials, setup.known_map, estimate->pixels->observed(),
+      LikelihoodOf(setup, iterate.scale, iterate.ambient), iterate.state.lobes);
+}
+
 // Whether an estimate has a peak that no pixel it was fitted to shows.
 bool HasFalsePeak(const Estimate& estimate, const Observation& highlights,
                   const SolveSetup& setup) {
@@ -288,12 +293,13 @@ Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
   // Of a lamp and nothing else every pixel shows one angle alone.
   const bool lamp = setup.problem->dark.num_unlit > 0;
   Estimate estimate = Search(setup, lamp ? both : bins, context).Run(nullptr);
-  if (lamp || !context->IterationsLeft() || context->Interrupted() ||
-      context->Remaining() < 0.0 ||
-      !HasFalsePeak(estimate, highlights, setup)) {
-    return estimate;
+  if (!lamp && context->IterationsLeft() && !context->Interrupted() &&
+      context->Remaining() >= 0.0 &&
+      HasFalsePeak(estimate, highlights, setup)) {
+    estimate = Search(setup, both, context).Run(&estimate);
   }
-  return Search(setup, both, context).Run(&estimate);
+  SetCovariance(setup, *context, &estimate);
+  return estimate;
 }
 
 }  // namespace ibrdf

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "ibrdf/base/eigen_vectors.h"
+#include "ibrdf/scene/num_views.h"
 #include "ibrdf/solvers/paint/chroma_plane.h"
 
 namespace ibrdf {

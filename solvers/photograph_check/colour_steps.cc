@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "ibrdf/scene/num_views.h"
+
 namespace ibrdf {
 namespace {
 
@@ -72,7 +74,7 @@ double SharpColourSteps(const std::vector<NormalSample>& samples,
   // A line's extents down and across; blocks of two meet each part of it once
   // more than kSpan.
   return std::hypot(static_cast<double>(across), static_cast<double>(down)) /
-         ((kSpan + 1) * CountViews(samples) * ObjectSize(samples));
+         ((kSpan + 1) * NumViews(samples) * ObjectSize(samples));
 }
 
 }  // namespace ibrdf

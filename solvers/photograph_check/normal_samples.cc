@@ -1,8 +1,8 @@
 #include "ibrdf/solvers/photograph_check/normal_samples.h"
 
 #include <cmath>
-#include <set>
 
+#include "ibrdf/scene/num_views.h"
 #include "ibrdf/solvers/photograph_check/pixel_counts.h"
 #include "ibrdf/transport/quadrature.h"
 
@@ -44,15 +44,8 @@ std::vector<NormalSample> SampleNormals(
   return samples;
 }
 
-int CountViews(const std::vector<NormalSample>& samples) {
-  std::set<int> views;
-  for (const NormalSample& sample : samples) views.insert(sample.view);
-  return static_cast<int>(views.size());
-}
-
 double ObjectSize(const std::vector<NormalSample>& samples) {
-  if (samples.empty()) return 0.0;
-  return std::sqrt(static_cast<double>(samples.size()) / CountViews(samples));
+  return std::sqrt(static_cast<double>(samples.size()) / NumViews(samples));
 }
 
 }  // namespace ibrdf

@@ -31,8 +31,6 @@ struct NormalSample {
 std::vector<NormalSample> SampleNormals(
     const Image& radiance, const std::vector<ShadingPoint>& points);
 
-int CountViews(const std::vector<NormalSample>& samples);
-
 // The object's size in an image, pixels: the square root of its samples, or of
 // a view's in the mean of several.
 double ObjectSize(const std::vector<NormalSample>& samples);

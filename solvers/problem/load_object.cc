@@ -125,11 +125,11 @@ StatusOr<SeenObject> SeeObject(const Problem& problem, const Scene& scene,
 }
 
 // One view's problem, of all that the view alone decides.
-Problem OfView(const Problem& problem, const PhotographSheet& sheet, size_t v) {
+Problem OfView(const Problem& problem, const SheetView& view) {
   Problem one = problem;
-  one.camera = sheet.sheet.views[v].camera;
-  one.image.file = sheet.files[v];
-  one.image.mask = sheet.mask_files[v];
+  one.camera = view.camera;
+  one.image.file = view.file;
+  one.image.mask = view.mask;
   return one;
 }
 
@@ -168,11 +168,11 @@ StatusOr<SeenObject> SeeOnSheet(const Problem& problem, const Scene& scene,
   for (size_t v = 0; v < sheet.views.size(); ++v) {
     const SheetView& place = sheet.views[v];
     StatusOr<SeenObject> seen = SeeObject(
-        OfView(problem, photographs, v), scene, place.width, place.height,
+        OfView(problem, place), scene, place.width, place.height,
         CutOut(photographs.photograph.mask, place), num_threads, warnings);
     if (!seen.ok()) {
       blind = seen.status().message();
-      warnings->push_back(photographs.files[v] + ": view " + place.name +
+      warnings->push_back(place.file + ": view " + place.name +
                           " takes no part: " + blind);
       continue;
     }

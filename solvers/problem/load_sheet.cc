@@ -77,8 +77,8 @@ StatusOr<PhotographSheet> LoadPhotographSheet(const Problem& problem) {
   std::vector<SheetView> placed;
   for (const ViewPhotograph& view : views) {
     const Image& radiance = view.photograph.radiance;
-    placed.push_back(
-        {view.name, view.camera, 0, 0, radiance.width, radiance.height});
+    placed.push_back({view.name, view.file, view.mask, view.camera, 0, 0,
+                      radiance.width, radiance.height});
   }
   PhotographSheet out;
   out.sheet = LayOut(std::move(placed));
@@ -90,8 +90,6 @@ StatusOr<PhotographSheet> LoadPhotographSheet(const Problem& problem) {
     PlaceRadiance(views[v].photograph, place, &out.photograph);
     IBRDF_RETURN_IF_ERROR(PlaceCodes(views[v], place, &out.photograph));
     Place(views[v].photograph.mask, place, &out.photograph.mask);
-    out.files.push_back(views[v].file);
-    out.mask_files.push_back(views[v].mask);
     views[v].photograph = Photograph();  // the memory of one sheet
   }
   out.photograph.warnings = std::move(warnings);

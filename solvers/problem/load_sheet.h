@@ -1,7 +1,6 @@
 // The photographs of several views on one sheet.
 #pragma once
 #include <string>
-#include <vector>
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/io/problem.h"
@@ -15,8 +14,6 @@ struct PhotographSheet {
   // All views, in their places. A mask is always there: nothing between the
   // views is of the object. Of views of which one is of codes, all have bounds.
   Photograph photograph;
-  // Of each view: its photograph's file, and its mask's or "".
-  std::vector<std::string> files, mask_files;
 };
 
 // Reads the views of a problem that has several. Fails where they take more

@@ -7,13 +7,23 @@
 
 namespace ibrdf {
 
+StatusOr<std::vector<CalibratedView>> ReadCalibratedViews(
+    const std::string& transforms, const std::string& colmap, UpAxis up) {
+  StatusOr<std::vector<CalibratedView>> views =
+      transforms.empty() ? ReadColmap(colmap) : ReadTransforms(transforms);
+  if (!views.ok()) return views.status();
+  for (CalibratedView& view : *views) {
+    view.world_from_camera = Turned(view.world_from_camera, YUpFrom(up));
+  }
+  return views;
+}
+
 StatusOr<std::vector<ViewSpec>> LoadViews(const Problem& problem, int width,
                                           int height) {
   const ViewsSpec& views = problem.views;
   if (!views.given() || !views.list.empty()) return views.list;
   const StatusOr<std::vector<CalibratedView>> calibrated =
-      views.transforms.empty() ? ReadColmap(views.colmap)
-                               : ReadTransforms(views.transforms);
+      ReadCalibratedViews(views.transforms, views.colmap, problem.geometry.up);
   if (!calibrated.ok()) return calibrated.status();
   std::vector<ViewSpec> out;
   for (const CalibratedView& view : *calibrated) {
@@ -23,7 +33,7 @@ StatusOr<std::vector<ViewSpec>> LoadViews(const Problem& problem, int width,
     }
     ViewSpec spec;
     spec.name = view.name;
-    spec.camera = Turned(*camera, YUpFrom(problem.geometry.up));
+    spec.camera = *camera;
     out.push_back(std::move(spec));
   }
   return out;

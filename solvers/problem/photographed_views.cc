@@ -5,12 +5,13 @@
 
 #include "ibrdf/io/calibrated_views.h"
 #include "ibrdf/solvers/problem/load_photograph.h"
+#include "ibrdf/solvers/problem/load_views.h"
 
 namespace ibrdf {
 namespace {
 namespace fs = std::filesystem;
 
-// Of a view: where its camera comes from, and its files.
+// Where a view's camera comes from, and its files.
 struct ViewSource {
   std::string name, file, mask;
   Camera camera;                               // of a list
@@ -102,7 +103,7 @@ StatusOr<ViewPhotograph> ReadView(const Problem& problem,
   if (!camera.ok()) {
     return InvalidInput(source.file, camera.status().message());
   }
-  out.camera = Turned(*camera, YUpFrom(problem.geometry.up));
+  out.camera = *camera;
   return out;
 }
 
@@ -114,9 +115,8 @@ Status ReadViewPhotographs(const Problem& problem,
   const ViewsSpec& views = problem.views;
   std::vector<CalibratedView> calibrated;
   if (views.list.empty()) {
-    StatusOr<std::vector<CalibratedView>> read =
-        views.transforms.empty() ? ReadColmap(views.colmap)
-                                 : ReadTransforms(views.transforms);
+    StatusOr<std::vector<CalibratedView>> read = ReadCalibratedViews(
+        views.transforms, views.colmap, problem.geometry.up);
     if (!read.ok()) return read.status();
     calibrated = *std::move(read);
   }

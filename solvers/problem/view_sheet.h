@@ -16,7 +16,8 @@ namespace ibrdf {
 
 // A photograph's place on the sheet.
 struct SheetView {
-  std::string name;  // ViewNameFault (io/calibrated_views.h)
+  std::string name;        // ViewNameFault (io/calibrated_views.h)
+  std::string file, mask;  // that were read; mask empty: none
   Camera camera;
   int x = 0, y = 0;           // of its top left pixel
   int width = 0, height = 0;  // pixels

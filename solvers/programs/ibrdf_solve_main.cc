@@ -108,7 +108,14 @@ Status WriteBefore(const AskedProblem& asked, const PhotographedObject& object,
         ResultPaths(asked.problem, object, folder);
     paths.insert(paths.end(), results.begin(), results.end());
   }
-  IBRDF_RETURN_IF_ERROR(CheckNothingReplaced(asked.problem, paths));
+  std::vector<NamedFile> photographs;
+  for (const SheetView& view : object.sheet.views) {
+    for (const std::string& file : {view.file, view.mask}) {
+      if (!file.empty()) photographs.push_back({"view " + view.name, file});
+    }
+  }
+  IBRDF_RETURN_IF_ERROR(
+      CheckNothingReplaced(asked.problem, paths, photographs));
   if (asked.made.has_value()) {
     IBRDF_RETURN_IF_ERROR(WriteFlagProblem(*asked.made, folder));
   }

@@ -98,8 +98,7 @@ Status CheckRenderOutputs(const Problem& problem, const RenderOutputs& out) {
 StatusOr<RenderOutputs> CheckViewOutputs(const Problem& problem,
                                          const RenderOutputs& out,
                                          const std::string& view) {
-  const std::filesystem::path folder =
-      std::filesystem::path(out.image) / "views" / view;
+  const std::filesystem::path folder = ViewFolder(out.image, view);
   RenderOutputs files = out;
   files.image = (folder / "render.exr").string();
   files.mask = (folder / "mask.png").string();

@@ -49,8 +49,7 @@ std::string MisfitWarning(const SolvedProblem& solved) {
 
 // One view that the others contradict.
 std::string ViewWarning(const SolvedProblem& solved) {
-  const std::vector<ViewMisfit> odd =
-      OddViews(MisfitOfViews(solved.inverse, solved.solution));
+  const std::vector<ViewMisfit> odd = OddViews(solved.metrics.views);
   if (odd.empty()) return "";
   std::string names;
   for (const ViewMisfit& view : odd) {

@@ -15,7 +15,6 @@
 #include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/report/verdict.h"
-#include "ibrdf/solvers/report/view_results.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
@@ -264,8 +263,7 @@ ReflectanceVariation VariationOf(const Solution& solution) {
 // How well each of several views is explained.
 Json ViewsJson(const SolvedProblem& solved) {
   Json views = Json::array();
-  for (const ViewMisfit& view :
-       MisfitOfViews(solved.inverse, solved.solution)) {
+  for (const ViewMisfit& view : solved.metrics.views) {
     views.push_back({{"name", view.name},
                      {"pixels_used", view.pixels},
                      {"misfit", Finite(view.misfit)}});

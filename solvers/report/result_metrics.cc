@@ -9,6 +9,35 @@
 
 namespace ibrdf {
 
+namespace {
+
+std::vector<ViewMisfit> MisfitOfViews(const InverseProblem& inverse,
+                                      const Solution& solution) {
+  std::vector<ViewMisfit> views;
+  if (inverse.sheet.empty()) return views;
+  for (const SheetView& view : inverse.sheet.views) {
+    views.push_back({view.name, 0});
+  }
+  const Image residual = LogResidual(inverse, solution);
+  const Mask used = UsedMask(inverse);
+  std::vector<double> sums(views.size(), 0.0);
+  for (const ShadingPoint& point : inverse.points) {
+    if (used.inside[point.pixel] == 0) continue;
+    const auto v = static_cast<size_t>(point.view);
+    ++views[v].pixels;
+    for (int c = 0; c < 3; ++c) {
+      sums[v] += std::abs(residual.rgb[size_t{3} * point.pixel + c]) / 3.0;
+    }
+  }
+  for (size_t v = 0; v < views.size(); ++v) {
+    if (views[v].pixels == 0) continue;
+    views[v].misfit = sums[v] / static_cast<double>(views[v].pixels);
+  }
+  return views;
+}
+
+}  // namespace
+
 StatusOr<ResultMetrics> MeasureResult(const InverseProblem& inverse,
                                       const Truth& truth,
                                       const Solution& solution) {
@@ -29,6 +58,7 @@ StatusOr<ResultMetrics> MeasureResult(const InverseProblem& inverse,
   const StatusOr<ImageMetrics> image = CompareImages(
       solution.render, NearestObserved(inverse, solution), UsedMask(inverse));
   if (image.ok()) metrics.image = *image;
+  metrics.views = MisfitOfViews(inverse, solution);
   return metrics;
 }
 

@@ -16,6 +16,13 @@
 
 namespace ibrdf {
 
+struct ViewMisfit {
+  std::string name;
+  size_t pixels = 0;  // that took part
+  // Mean |log render - log input| of them; NaN where there is none.
+  double misfit = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct ResultMetrics {
   double seconds = std::numeric_limits<double>::quiet_NaN();
   double misfit = std::numeric_limits<double>::quiet_NaN();
@@ -23,6 +30,8 @@ struct ResultMetrics {
   std::optional<BrdfMetrics> brdf;
   std::optional<IlluminationMetrics> illumination;
   std::optional<ImageMetrics> image;  // unset: no pixel compares
+  // By view, in the sheet's order; empty: one photograph.
+  std::vector<ViewMisfit> views;
 };
 
 // Fails where the truth cannot be compared with; LoadTruth refuses such files.

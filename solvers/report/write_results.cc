@@ -36,8 +36,7 @@ std::vector<std::string> EarlierNames(const Solution& solution) {
     names.emplace_back("illumination_variance_left.exr");
   }
   if (!solution.has_paint()) {
-    names.insert(names.end(),
-                 {"albedo.exr", "gloss.exr", "albedo.png", "gloss.png"});
+    names.insert(names.end(), PaintFiles().begin(), PaintFiles().end());
   }
   if (solution.materials.empty()) names.emplace_back("labels.png");
   return names;
@@ -126,8 +125,7 @@ std::vector<std::string> ResultPaths(const Problem& problem,
   }
   if (problem.reflectance.variation == ReflectanceVariation::kAuto ||
       problem.reflectance.variation == ReflectanceVariation::kAlbedo) {
-    paths.insert(paths.end(),
-                 {"albedo.exr", "gloss.exr", "albedo.png", "gloss.png"});
+    paths.insert(paths.end(), PaintFiles().begin(), PaintFiles().end());
   }
   for (const MaterialLabel& label : object.materials) {
     for (const char* end : {".binary", ".json"}) {
@@ -151,7 +149,7 @@ Status WriteResults(const SolvedProblem& solved, const std::string& folder) {
   const StatusOr<ResultPanels> panels = MakeResultPanels(preview);
   if (!panels.ok()) return panels.status();
   IBRDF_RETURN_IF_ERROR(WriteResultPreviews(*panels, preview, folder));
-  IBRDF_RETURN_IF_ERROR(WriteViews(solved, folder));
+  IBRDF_RETURN_IF_ERROR(WriteViews(solved, preview, folder));
   const MaterialSummary material =
       SummariseMaterial(solved.inverse, solved.solution);
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(folder + "/result.json",

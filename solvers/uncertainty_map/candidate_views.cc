@@ -8,6 +8,7 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/base/pi.h"
+#include "ibrdf/solvers/problem/load_views.h"
 
 namespace ibrdf {
 namespace {
@@ -126,16 +127,12 @@ StatusOr<std::vector<CalibratedView>> LoadCandidates(
     }
     return SphereCandidates(count, inputs);
   }
+  const bool colmap = std::filesystem::is_directory(text);
   StatusOr<std::vector<CalibratedView>> views =
-      std::filesystem::is_directory(text) ? ReadColmap(text)
-                                          : ReadTransforms(text);
+      ReadCalibratedViews(colmap ? "" : text, colmap ? text : "", up);
   if (views.ok() && views->size() > kMostCandidates) {
     return InvalidInput(kOption, "expected cameras" + range + ", found " +
                                      std::to_string(views->size()));
-  }
-  if (!views.ok()) return views.status();
-  for (CalibratedView& view : *views) {
-    view.world_from_camera = Turned(view.world_from_camera, YUpFrom(up));
   }
   return views;
 }

@@ -27,10 +27,6 @@ std::string InFolder(const std::string& folder, const std::string& name) {
   return (fs::path(folder) / name).string();
 }
 
-std::string FolderOfView(const std::string& out_dir, const std::string& view) {
-  return (fs::path(out_dir) / "views" / view).string();
-}
-
 // The files that a transforms file or a model names are inputs, too.
 Status CheckInputsStay(const Problem& problem, const UncertaintyResult& result,
                        const std::string& out_dir) {
@@ -40,18 +36,14 @@ Status CheckInputsStay(const Problem& problem, const UncertaintyResult& result,
                            kNextViewsFile, "result.json", "report.html"}) {
     paths.push_back(InFolder(out_dir, name));
   }
-  Problem read = problem;
-  read.views.list.clear();
+  std::vector<NamedFile> photographs;
   for (const PhotographedView& view : result.inputs.views) {
-    const std::string folder = FolderOfView(out_dir, view.name);
+    const std::string folder = ViewFolder(out_dir, view.name);
     paths.push_back(InFolder(folder, "entropy.exr"));
     paths.push_back(InFolder(folder, "entropy.png"));
-    ViewSpec named;
-    named.file = view.file;
-    read.views.list.push_back(std::move(named));
+    photographs.push_back({"view " + view.name, view.file});
   }
-  IBRDF_RETURN_IF_ERROR(CheckNothingReplaced(problem, paths));
-  return CheckNothingReplaced(read, paths);
+  return CheckNothingReplaced(problem, paths, photographs);
 }
 
 Status WriteEntropy(const EntropyMaps& maps, const TexelRows& rows,
@@ -91,7 +83,7 @@ StatusOr<std::vector<TexelRows>> WriteViews(const UncertaintyResult& result,
     TexelRows rows =
         RowsOfView(result.inputs.surface.scene, texture, view.camera,
                    view.radiance.width, view.radiance.height, num_threads);
-    const std::string folder = FolderOfView(out_dir, view.name);
+    const std::string folder = ViewFolder(out_dir, view.name);
     IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
     IBRDF_RETURN_IF_ERROR(WriteEntropy(result.texels.maps, rows, folder));
     if (shown.size() < kShownViews) shown.push_back(std::move(rows));

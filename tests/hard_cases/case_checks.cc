@@ -8,7 +8,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <set>
 #include <vector>
 
 #include "ibrdf/io/exr.h"
@@ -170,6 +169,13 @@ void ExpectRendersAgain(const YAML::Node& problem, const std::string& folder,
 
 }  // namespace
 
+void ExpectKnownKeys(const YAML::Node& map,
+                     const std::set<std::string>& known) {
+  for (const auto& entry : map) {
+    ASSERT_EQ(1u, known.count(entry.first.as<std::string>())) << entry.first;
+  }
+}
+
 void CheckSameBits(const CaseRun& a, const CaseRun& b) {
   EXPECT_EQ(a.exit_status, b.exit_status);
   int compared = 0;
@@ -186,13 +192,10 @@ void CheckSameBits(const CaseRun& a, const CaseRun& b) {
 
 void CheckRun(const YAML::Node& holds, const YAML::Node& problem,
               const CaseRun& run) {
-  // A misspelt key would leave something untested.
   static const std::set<std::string> kKnown = {"exit",   "says",    "files",
                                                "values", "equals",  "map",
                                                "albedo", "renders", "image"};
-  for (const auto& entry : holds) {
-    ASSERT_EQ(1u, kKnown.count(entry.first.as<std::string>())) << entry.first;
-  }
+  ExpectKnownKeys(holds, kKnown);
   std::vector<int> allowed;
   if (holds["exit"].IsSequence()) {
     allowed = holds["exit"].as<std::vector<int>>();

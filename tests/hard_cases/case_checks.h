@@ -2,6 +2,7 @@
 #pragma once
 #include <yaml-cpp/yaml.h>
 
+#include <set>
 #include <string>
 
 namespace ibrdf {
@@ -38,6 +39,10 @@ void CheckRun(const YAML::Node& holds, const YAML::Node& problem,
               const CaseRun& run);
 
 // That two runs ended alike, with the same bits in what they estimated.
+// Fails on a key that is not known: a misspelt one would leave something
+// untested.
+void ExpectKnownKeys(const YAML::Node& map, const std::set<std::string>& known);
+
 void CheckSameBits(const CaseRun& a, const CaseRun& b);
 
 }  // namespace ibrdf

@@ -478,6 +478,17 @@ TEST_F(SolveProblemTest, ResultsDoNotReplaceWhatTheProblemNames) {
     return CheckNothingReplaced(
         problem, ResultPaths(problem, PhotographedObject(), out));
   };
+  // Nor a photograph that another program's file names.
+  const std::string view = ViewFolder(out, "left");
+  ASSERT_TRUE(PrepareFolder(view).ok());
+  std::filesystem::copy_file(dir_.File("input.exr"), view + "/render.exr");
+  const Problem plain = ReadProblem(dir_.File("joint.yaml"), {}).value();
+  EXPECT_TRUE(CheckNothingReplaced(plain, {view + "/render.exr"}).ok());
+  EXPECT_NE(std::string::npos,
+            CheckNothingReplaced(plain, {view + "/render.exr"},
+                                 {{"view left", view + "/render.exr"}})
+                .message()
+                .find("view left: expected a file that no result replaces"));
   const struct {
     std::string key, file;
   } cases[] = {{"image.file", "render.exr"},

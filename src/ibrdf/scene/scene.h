@@ -111,9 +111,6 @@ StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
     const Scene& scene, const Camera& camera, int width, int height,
     const Mask& mask, int samples_per_side, int num_threads = 0);
 
-// Of how many views the points are; at least 1.
-int NumViews(const std::vector<ShadingPoint>& points);
-
 // At most `most` of the points, evenly spread over the list.
 std::vector<ShadingPoint> SpreadPoints(const std::vector<ShadingPoint>& points,
                                        size_t most);

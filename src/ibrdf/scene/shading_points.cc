@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string>
 
 #include "ibrdf/base/parallel_for.h"
@@ -136,12 +135,6 @@ StatusOr<std::vector<ShadingPoint>> FindShadingPoints(
     points[i].index = static_cast<int>(i);
   }
   return points;
-}
-
-int NumViews(const std::vector<ShadingPoint>& points) {
-  std::set<int> views;
-  for (const ShadingPoint& point : points) views.insert(point.view);
-  return std::max(1, static_cast<int>(views.size()));
 }
 
 std::vector<ShadingPoint> SpreadPoints(const std::vector<ShadingPoint>& points,
