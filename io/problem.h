@@ -171,7 +171,7 @@ struct PrincipledSpec {
 
 struct ReflectanceSpec {
   // Unknown reflectance.
-  std::string model;         // trained model; empty: the default one
+  std::string model;         // trained model; empty: auto
   int lobes = 2;             // [1, 8]
   double prior_sigma = 0.5;  // of the codes, > 0
   ReflectanceVariation variation = ReflectanceVariation::kAuto;

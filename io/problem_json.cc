@@ -172,7 +172,7 @@ json ReflectanceJson(const ReflectanceSpec& reflectance) {
     return {{"known", KnownReflectanceJson(reflectance)}};
   }
   json out = {
-      {"model", reflectance.model.empty() ? "default" : reflectance.model},
+      {"model", reflectance.model.empty() ? "auto" : reflectance.model},
       {"lobes", reflectance.lobes},
       {"prior_sigma", reflectance.prior_sigma},
       {"variation", ReflectanceVariationName(reflectance.variation)}};

@@ -21,8 +21,12 @@ Keys UnknownReflectanceKeys() {
       Row("reflectance.model",
           "Trained model of unknown BRDFs, from `ibrdf_train`. `default` and "
           "`broad` come with the programs.")
-          .Path(".ibrdf", "default",
-                {{"broad",
+          .Path(".ibrdf", "auto",
+                {{"auto",
+                  "`default`, or the mean of `default` and `broad`, by "
+                  "evidence, where light and one material are unknown."},
+                 {"default", "Trained on MERL: plastic, paint, metal, fabric."},
+                 {"broad",
                   "Trained on two databases, with a Lambertian lobe: nearer to "
                   "paper and felt, no nearer to plastic and metal."}})
           .UsedBy(kUnknownReflectance),

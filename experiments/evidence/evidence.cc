@@ -28,7 +28,7 @@
 #include "ibrdf/solvers/problem/load_problem.h"
 #include "ibrdf/solvers/problem/truth.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
-#include "ibrdf/solvers/training/lobe_table_fit.h"
+#include "ibrdf/solvers/table_fit/lobe_table_fit.h"
 
 namespace ibrdf {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "ibrdf/flow/neural_brdf_model.h"
 #include "ibrdf/solvers/bench/table_fitter.h"
-#include "ibrdf/solvers/training/lobe_table_fit.h"
+#include "ibrdf/solvers/table_fit/lobe_table_fit.h"
 
 namespace ibrdf {
 

@@ -13,6 +13,7 @@
 #include "ibrdf/image/response_curve.h"
 #include "ibrdf/solvers/estimation/material_ranking.h"
 #include "ibrdf/solvers/priors/determined_directions.h"
+#include "ibrdf/solvers/problem/inverse_problem.h"
 
 namespace ibrdf {
 
@@ -71,6 +72,11 @@ struct MaterialSolution {
 struct Solution : MaterialSolution {
   MaterialSolution& reflectance() { return *this; }
   const MaterialSolution& reflectance() const { return *this; }
+  // Joint problems of one material: the models searched, the one that the lobes
+  // are of first, and their shares of the evidence, sum 1. Else empty: the
+  // problem's model.
+  std::vector<NamedModel> models;
+  std::vector<double> model_weights;
   // Where the curve was unknown: the best of each family, the best first.
   std::vector<CurveEstimate> curves;
   // Labelled materials, by ShadingPoint::material. Empty: no labels.

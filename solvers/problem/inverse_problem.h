@@ -22,6 +22,12 @@
 
 namespace ibrdf {
 
+// A trained model and the name that problem files give it.
+struct NamedModel {
+  std::string name;
+  std::shared_ptr<const NeuralBrdfModel> model;
+};
+
 struct InverseProblem {
   ProblemKind kind = ProblemKind::kJoint;
   Image image;  // observed radiance; of several views, the sheet's
@@ -42,6 +48,10 @@ struct InverseProblem {
   // Unknown reflectance: the trained model, which copies of the problem share;
   // known: null, and its grid.
   std::shared_ptr<const NeuralBrdfModel> model;
+  std::string model_name = "default";
+  // Where light and one material are unknown: further models, which are
+  // searched as well (SolveJoint).
+  std::vector<NamedModel> other_models;
   int lobes = 2;
   double prior_sigma = 0.5;
   // kAuto: as the solve finds (IsProbablyPainted).

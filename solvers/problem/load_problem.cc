@@ -23,20 +23,32 @@ constexpr int kMostKnownWidth = 256;
 // patches and bright samples.
 constexpr int kMostFarCells = 3 * kMaxFarSources / 4;
 
-// Sets the model, or the grid of a known reflectance.
-Status LoadReflectance(const ReflectanceSpec& reflectance,
-                       InverseProblem* inverse) {
+StatusOr<NamedModel> LoadModel(const std::string& name) {
+  StatusOr<OpenedModel> opened = OpenModel(name);
+  if (!opened.ok()) return opened.status();
+  return NamedModel{
+      name, std::make_shared<const NeuralBrdfModel>(std::move(opened->model))};
+}
+
+// Sets the models, or the grid of a known reflectance.
+Status LoadReflectance(const Problem& problem, InverseProblem* inverse) {
+  const ReflectanceSpec& reflectance = problem.reflectance;
   if (reflectance.known()) {
     const StatusOr<MerlTable> table = LoadKnownReflectance(reflectance);
     if (!table.ok()) return table.status();
     inverse->known_brdf = BrdfGrid::FromMerl(*table, inverse->transport.grid);
     return OkStatus();
   }
-  StatusOr<OpenedModel> opened =
-      OpenModel(reflectance.model.empty() ? "default" : reflectance.model);
-  if (!opened.ok()) return opened.status();
-  inverse->model =
-      std::make_shared<const NeuralBrdfModel>(std::move(opened->model));
+  const bool automatic = reflectance.model.empty();
+  StatusOr<NamedModel> model =
+      LoadModel(automatic ? "default" : reflectance.model);
+  if (!model.ok()) return model.status();
+  inverse->model = std::move(model->model);
+  inverse->model_name = std::move(model->name);
+  if (!automatic || problem.kind != ProblemKind::kJoint) return OkStatus();
+  StatusOr<NamedModel> broad = LoadModel("broad");
+  if (!broad.ok()) return broad.status();
+  inverse->other_models.push_back(*std::move(broad));
   return OkStatus();
 }
 
@@ -231,7 +243,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   inverse.materials = std::move(object.materials);
   inverse.look = std::move(object.look);
   inverse.variation = ChosenVariation(problem, inverse.look->check);
-  IBRDF_RETURN_IF_ERROR(LoadReflectance(problem.reflectance, &inverse));
+  IBRDF_RETURN_IF_ERROR(LoadReflectance(problem, &inverse));
   IBRDF_RETURN_IF_ERROR(LoadIllumination(problem, &inverse));
   IBRDF_RETURN_IF_ERROR(PlanAndTraceEffects(problem, object.scene, &inverse));
   IBRDF_RETURN_IF_ERROR(FindDarkPixels(problem.illumination.ambient, &inverse));

@@ -27,6 +27,7 @@
 #include "ibrdf/solvers/report/write_check.h"
 #include "ibrdf/solvers/report/write_results.h"
 #include "ibrdf/solvers/solve/curve_search.h"
+#include "ibrdf/solvers/solve/joint.h"
 #include "ibrdf/solvers/solve/solve.h"
 
 namespace ibrdf {
@@ -156,6 +157,7 @@ Status SolveAndWrite(const Problem& problem, const Truth& truth,
   if (!estimate->curves.empty()) {
     inverse = WithCurve(inverse, estimate->curves.front().curve);
   }
+  inverse = WithModelOf(*estimate, std::move(inverse));
   const StatusOr<ResultMetrics> metrics =
       MeasureResult(inverse, truth, *estimate);
   if (!metrics.ok()) return metrics.status();

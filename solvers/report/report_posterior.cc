@@ -97,16 +97,17 @@ std::string DeterminedInWords(const Solution& solution) {
          "\n";
 }
 
-std::string ExpectedErrorInWords(double spread) {
+std::string ExpectedErrorInWords(const Solution& solution) {
+  const double spread = solution.spread;
   if (!std::isfinite(spread)) return "";
-  const ErrorToExpect error = ExpectError(spread);
+  const ErrorToExpect error = ExpectError(solution);
   return HtmlElement(
              "p",
              "How far off to expect it: reflectances sampled from this "
              "posterior differ from the estimate by " +
                  Format("%.2g", spread) +
                  " in the logarithm (root mean square over all angles, after "
-                 "the best scale). Such posteriors are too sure. Of images "
+                 "the best scale). Of images "
                  "whose truth is known, half were off by more than " +
                  Format("%.2g", error.median) + " at such a spread (" +
                  ErrorInWords(error.median) + "), one in ten by more than " +
@@ -120,6 +121,23 @@ std::string AtLeast(double least, double value) {
   if (!std::isfinite(value)) return "-";
   return value >= 0.0 && value < least ? "below " + ShortNumber(least)
                                        : Format("%.2g", value);
+}
+
+// The models that were searched, and what the estimate is the mean of.
+std::string ModelsInWords(const Solution& solution) {
+  if (solution.models.empty()) return "";
+  std::string text =
+      "The estimate is the mean of the local optima, by evidence: those that "
+      "explain the image as well count alike.";
+  for (size_t m = 0; solution.models.size() > 1 && m < solution.models.size();
+       ++m) {
+    text += (m == 0 ? " The model " : ", the model ") +
+            solution.models[m].name + " has " +
+            Format("%.0f", 100.0 * solution.model_weights[m]) + " %";
+  }
+  return HtmlElement("p",
+                     text + (solution.models.size() > 1 ? " of it." : "")) +
+         "\n";
 }
 
 std::string AlternativesInWords(const std::vector<Alternative>& alternatives) {
@@ -156,8 +174,9 @@ std::string PosteriorSection(const InverseProblem& inverse,
   return "<section>\n" +
          HtmlElement("h2", "How well the reflectance is known") + "\n" +
          LobesInWords(SummariseLobes(inverse, solution)) +
-         DeterminedInWords(solution) + ExpectedErrorInWords(solution.spread) +
-         AlternativesInWords(solution.alternatives) + "</section>\n";
+         DeterminedInWords(solution) + ExpectedErrorInWords(solution) +
+         ModelsInWords(solution) + AlternativesInWords(solution.alternatives) +
+         "</section>\n";
 }
 
 }  // namespace ibrdf

@@ -108,7 +108,7 @@ std::string FewPixelsWarning(const SolvedProblem& solved) {
 
 std::string UncertainWarning(const Solution& solution) {
   if (!std::isfinite(solution.spread)) return "";
-  const double expected = ExpectError(solution.spread).median;
+  const double expected = ExpectError(solution).median;
   if (!(expected > kUncertain)) return "";
   if (expected > kLargestKnownError) {
     return "This image does not determine the reflectance.";
@@ -149,9 +149,9 @@ std::string RivalWarning(const std::vector<Alternative>& alternatives) {
   for (const Alternative& other : alternatives) {
     const double difference = other.brdf_log_difference;
     if (!(other.cost < kRivalCost && difference > kRivalDifference)) continue;
-    return "Another reflectance explains the image nearly as well. It is the "
-           "local optimum found from " +
-           other.start + ": it has " + Format("%.2g", std::exp(-other.cost)) +
+    return "Several reflectances explain the image nearly as well. The local "
+           "optimum found from " +
+           other.start + " has " + Format("%.2g", std::exp(-other.cost)) +
            " of the best one's evidence, and its logarithm differs from the "
            "estimate's by " +
            Format("%.2g", difference) + " (root mean square).";

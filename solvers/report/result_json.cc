@@ -184,8 +184,11 @@ double CovarianceCondition(const Solution& solution) {
   return condition;
 }
 
-// What the image adds to the prior; the ranked materials.
+// What the image adds to the prior; the ranked materials; the models.
 void AddInformation(const Solution& solution, Json* out) {
+  for (size_t m = 0; m < solution.models.size(); ++m) {
+    (*out)["models"][solution.models[m].name] = solution.model_weights[m];
+  }
   if (const auto& determined = solution.determined) {
     (*out)["directions"] = {
         {"of", determined->variance_left.size()},
@@ -224,7 +227,7 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
   AddInformation(solution, &out);
   if (std::isfinite(solution.spread)) {
     out["brdf_spread"] = solution.spread;
-    const ErrorToExpect error = ExpectError(solution.spread);
+    const ErrorToExpect error = ExpectError(solution);
     out["brdf_log_rmse_expected"] = error.median;
     out["brdf_log_rmse_90"] = error.most;
   }
@@ -320,8 +323,7 @@ std::string BrdfJson(const SolvedProblem& solved) {
        SummariseLobes(solved.inverse, solved.solution)) {
     lobes.push_back({{"code", lobe.code}, {"colour_raw_merl", lobe.colour}});
   }
-  const std::string& model = solved.problem.reflectance.model;
-  return Text({{"model", model.empty() ? "default" : model},
+  return Text({{"model", solved.inverse.model_name},
                {"formula", kLobeFormula},
                {"exponent", solved.inverse.model->exponent},
                {"lobes", lobes}});

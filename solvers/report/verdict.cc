@@ -388,7 +388,7 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
     n.floor = 0.0;
   }
   if (std::isfinite(solution.spread)) {
-    n.reflectance_error = ExpectError(solution.spread).median;
+    n.reflectance_error = ExpectError(solution).median;
   }
   FindColourErrors(solved, &n);
   for (const Alternative& other : solution.alternatives) {

@@ -19,6 +19,9 @@ constexpr double kFloor = 1e-6;  // raw units, as of CompareBrdfs
 // Errors over spreads: the median and the 90th percentile.
 constexpr double kMedianRatio = 2.1;
 constexpr double kMostRatio = 3.8;
+// Of means over two models.
+constexpr double kMedianRatioOfTwo = 0.9;
+constexpr double kMostRatioOfTwo = 1.8;
 
 }  // namespace
 
@@ -100,6 +103,12 @@ double ReflectanceSpread(const LobeDistance& distance,
 
 ErrorToExpect ExpectError(double spread) {
   return {kMedianRatio * spread, kMostRatio * spread};
+}
+
+ErrorToExpect ExpectError(const Solution& solution) {
+  if (solution.models.size() < 2) return ExpectError(solution.spread);
+  return {kMedianRatioOfTwo * solution.spread,
+          kMostRatioOfTwo * solution.spread};
 }
 
 }  // namespace ibrdf

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/solvers/estimation/solution.h"
 
 namespace ibrdf {
 
@@ -47,5 +48,9 @@ struct ErrorToExpect {
   double median = 0.0, most = 0.0;
 };
 ErrorToExpect ExpectError(double spread);
+// The same for a solution. The spread of a mean over the optima of two models
+// has what they disagree in; then the factors are those of 21 held-out cases
+// (docs/notes/averaged_optima.md).
+ErrorToExpect ExpectError(const Solution& solution);
 
 }  // namespace ibrdf

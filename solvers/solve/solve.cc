@@ -14,6 +14,7 @@
 #include "ibrdf/solvers/published/joint_maximum.h"
 #include "ibrdf/solvers/solve/curve_search.h"
 #include "ibrdf/solvers/solve/exposure.h"
+#include "ibrdf/solvers/solve/joint.h"
 #include "ibrdf/solvers/solve/labelled.h"
 #include "ibrdf/solvers/solve/paint_evidence.h"
 #include "ibrdf/solvers/solve/painted.h"
@@ -22,20 +23,6 @@
 
 namespace ibrdf {
 namespace {
-
-// The light integrated out gives the reflectance; the light is the most
-// probable one given it.
-StatusOr<Estimate> EstimateReflectanceThenLight(const SolveSetup& setup,
-                                                SolveContext* context) {
-  StatusOr<ReflectanceEstimate> reflectance =
-      EstimateReflectance(setup, context);
-  if (reflectance.status().code() == StatusCode::kNoImprovement) {
-    LOG(WARNING) << reflectance.status().message();
-    return ConstantLight(setup, MeanMaterial(setup));
-  }
-  if (!reflectance.ok()) return reflectance.status();
-  return EstimateLight(setup, *std::move(reflectance), context);
-}
 
 StatusOr<Estimate> EstimateLightOfKnownReflectance(const SolveSetup& setup,
                                                    SolveContext* context) {
@@ -52,8 +39,23 @@ StatusOr<Estimate> EstimateUnknowns(const SolveSetup& setup,
   if (!setup.lobes_unknown()) {
     return EstimateLightOfKnownReflectance(setup, context);
   }
-  if (setup.joint_maximum()) return EstimateJointMaximum(setup, context);
-  return EstimateReflectanceThenLight(setup, context);
+  return EstimateJointMaximum(setup, context);
+}
+
+StatusOr<Solution> SolveOneMaterial(const SolveSetup& setup,
+                                    bool may_be_painted,
+                                    SolveContext* context) {
+  if (setup.light_unknown() && setup.lobes_unknown() &&
+      !setup.joint_maximum()) {
+    return SolveJoint(setup, context);
+  }
+  StatusOr<Estimate> estimate = EstimateUnknowns(setup, context);
+  if (!estimate.ok()) return estimate.status();
+  if (may_be_painted && !setup.light_unknown() &&
+      LeavesPaint(setup, *estimate, *context)) {
+    return SolvePaintedUnderKnownLight(setup, context);
+  }
+  return Summarise(setup, *std::move(estimate), context);
 }
 
 // In units in which radiance is near 1.
@@ -70,15 +72,10 @@ StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
                          : SolvePaintedUnderKnownLight(*setup, context);
   }
   if (problem.materials.size() > 1) return SolveLabelled(*setup, context);
-  StatusOr<Estimate> estimate = EstimateUnknowns(*setup, context);
-  if (!estimate.ok()) return estimate.status();
-  if (may_be_painted && !light_unknown &&
-      LeavesPaint(*setup, *estimate, *context)) {
-    return SolvePaintedUnderKnownLight(*setup, context);
-  }
-  Solution solution = Summarise(*setup, *std::move(estimate), context);
-  if (!problem.materials.empty()) {
-    solution.materials.push_back(solution.reflectance());
+  StatusOr<Solution> solution =
+      SolveOneMaterial(*setup, may_be_painted, context);
+  if (solution.ok() && !problem.materials.empty() && !solution->has_paint()) {
+    solution->materials.push_back(solution->reflectance());
   }
   return solution;
 }
@@ -93,8 +90,8 @@ StatusOr<Solution> SolveDeveloped(const InverseProblem& problem,
   RestoreUnits(exposure, &*solution);
   if (problem.solver.gauge != SolverGauge::kPrior &&
       !problem.known_map.has_value() && !problem.known_brdf.has_value()) {
-    SetGauge(problem.solver.gauge, problem.model->shape.code_size(),
-             &*solution);
+    SetGauge(problem.solver.gauge,
+             ModelOf(problem, *solution).model->shape.code_size(), &*solution);
   }
   return solution;
 }

@@ -151,8 +151,10 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
   out.ranking = reflectance.ranking;
   // How spreads stand to errors was measured where the light is unknown.
   if (covariance.size() > 0 && setup.light_unknown()) {
-    out.spread = ReflectanceSpread(distance, lobes, out.lobe_covariance,
-                                   kSpreadSamples, problem.seed);
+    out.spread = std::hypot(
+        ReflectanceSpread(distance, lobes, out.lobe_covariance, kSpreadSamples,
+                          problem.seed),
+        reflectance.between_optima);
   }
   out.alternatives = AlternativesOf(reflectance.candidates, distance, lobes);
   out.start = reflectance.initial_guess;

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "ibrdf/brdf/disney.h"
-#include "ibrdf/solvers/training/training_data.h"
+#include "ibrdf/solvers/table_fit/table_columns.h"
 
 namespace ibrdf {
 

@@ -9,7 +9,7 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/flow/neural_brdf_model.h"
-#include "ibrdf/solvers/training/training_data.h"
+#include "ibrdf/solvers/table_fit/table_columns.h"
 
 namespace ibrdf {
 

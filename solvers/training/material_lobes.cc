@@ -8,7 +8,7 @@
 #include "ibrdf/brdf/flow_brdf.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/brdf/lobe_mixture.h"
-#include "ibrdf/solvers/training/lobe_table_fit.h"
+#include "ibrdf/solvers/table_fit/lobe_table_fit.h"
 
 namespace ibrdf {
 namespace {

@@ -45,7 +45,8 @@ TEST_F(ProblemFile, ModelsThatComeWithTheProgramsHaveNames) {
         .value()
         .reflectance.model;
   };
-  EXPECT_EQ("", model("default"));
+  EXPECT_EQ("", model("auto"));
+  EXPECT_EQ("default", model("default"));
   EXPECT_EQ("broad", model("broad"));
   EXPECT_EQ(dir_.File("broad"), model("./broad"));
   EXPECT_EQ(dir_.File("broad.ibrdf"), model("broad.ibrdf"));

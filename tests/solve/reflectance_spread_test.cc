@@ -112,5 +112,16 @@ TEST(ExpectError, PosteriorsAreTooSure) {
   EXPECT_EQ(0.0, ExpectError(0.0).most);
 }
 
+// What two models disagree in is in the spread already.
+TEST(ExpectError, AMeanOverTwoModelsIsNotAsFarOff) {
+  Solution solution;
+  solution.spread = 0.5;
+  solution.models = {{"a", nullptr}};
+  EXPECT_EQ(ExpectError(0.5).median, ExpectError(solution).median);
+  solution.models.push_back({"b", nullptr});
+  EXPECT_LT(ExpectError(solution).median, ExpectError(0.5).median);
+  EXPECT_LT(ExpectError(solution).median, ExpectError(solution).most);
+}
+
 }  // namespace
 }  // namespace ibrdf

@@ -13,7 +13,7 @@
 #include "ibrdf/io/merl.h"
 #include "ibrdf/solvers/optim/adam.h"
 #include "ibrdf/solvers/training/checkpoint.h"
-#include "ibrdf/solvers/training/training_data.h"
+#include "ibrdf/solvers/table_fit/table_columns.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {

@@ -60,6 +60,11 @@ class LobeTableFitter {
   StatusOr<LobeTableFit> Fit(const MerlTable& table,
                              const LobeTableFitOptions& options) const;
 
+  // The same from lobes that the caller knows to be near, of any number.
+  StatusOr<LobeTableFit> FitFrom(const MerlTable& table,
+                                 std::vector<double> parameters,
+                                 const LobeTableFitOptions& options) const;
+
   // A Lambertian lobe beside the lobes of a table's fit without one, all of
   // them refined from there: near the same lobes of the flow, where Fit with
   // `lambertian` may find others that fit better.

@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/training/lobe_table_fit.h"
+#include "ibrdf/solvers/table_fit/lobe_table_fit.h"
 
 #include <ceres/ceres.h>
 #include <ceres/normal_prior.h>
@@ -13,7 +13,7 @@
 
 #include "ibrdf/solvers/costs/log_table_cost.h"
 #include "ibrdf/solvers/priors/prior_costs.h"
-#include "ibrdf/solvers/training/training_data.h"
+#include "ibrdf/solvers/table_fit/table_columns.h"
 
 namespace ibrdf {
 namespace {
@@ -332,6 +332,23 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
     }
   }
   return FitOf(columns, options, std::move(best.parameters));
+}
+
+StatusOr<LobeTableFit> LobeTableFitter::FitFrom(
+    const MerlTable& table, std::vector<double> parameters,
+    const LobeTableFitOptions& options) const {
+  IBRDF_RETURN_IF_ERROR(options.Check());
+  StatusOr<std::vector<float>> target =
+      ThinTable(table, fit_columns_, kFitPoints);
+  if (!target.ok()) return target.status();
+  const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
+                             std::move(*target)};
+  Start start = {std::move(parameters), 0.0};
+  Finish(columns, options, &start);
+  if (!std::isfinite(start.cost)) {
+    return Status(StatusCode::kNoImprovement, "no lobes near the start fit");
+  }
+  return FitOf(columns, options, std::move(start.parameters));
 }
 
 StatusOr<LobeTableFit> LobeTableFitter::AddLambertian(

@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/training/lobe_table_fit.h"
+#include "ibrdf/solvers/table_fit/lobe_table_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/solvers/bench/neural_fitters.h"
 #include "ibrdf/solvers/costs/log_table_cost.h"
-#include "ibrdf/solvers/training/training_data.h"
+#include "ibrdf/solvers/table_fit/table_columns.h"
 #include "tests/support/solver_testing.h"
 
 namespace ibrdf {

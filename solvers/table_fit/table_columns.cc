@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/training/training_data.h"
+#include "ibrdf/solvers/table_fit/table_columns.h"
 
 #include <glog/logging.h>
 

@@ -1,0 +1,51 @@
+// Local optima that the evidence hardly tells apart, averaged.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ibrdf/base/status.h"
+#include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/solvers/estimation/posterior.h"
+#include "ibrdf/solvers/estimation/solve_setup.h"
+
+namespace ibrdf {
+
+// Weights proportional to exp(-cost / T), sum 1, costs in nats. Bins of one
+// image do not err independently, as the likelihood has it: T = 20 nats of its
+// evidence count as one (docs/notes/averaged_optima.md). Those below a
+// hundredth get 0. Empty for no costs; all must be finite.
+std::vector<double> OptimumWeights(const std::vector<double>& costs);
+
+// The weighted mean of log(raw + 1e-6), bin by bin. All tables must have values
+// in the same bins.
+class LogTableMean {
+ public:
+  void Add(const MerlTable& table, double weight);
+  MerlTable Mean() const;
+
+ private:
+  std::vector<double> sum_;
+  double weight_ = 0.0;
+};
+
+// What a search with one model found.
+struct ModelOptima {
+  const SolveSetup* setup = nullptr;
+  ReflectanceEstimate estimate;
+};
+
+struct OptimumAverage {
+  size_t model = 0;  // whose lobes the estimate has: that of the least cost
+  // Share of the evidence of each model, sum 1.
+  std::vector<double> model_weights;
+  // That model's estimate, its lobes the nearest to the mean of log BRDF over
+  // the optima of all models. Where one optimum has all the weight it is as it
+  // was.
+  ReflectanceEstimate estimate;
+};
+
+// Searches of one image, at least one. Each must have candidates of finite
+// cost.
+OptimumAverage AverageOptima(std::vector<ModelOptima> searches);
+
+}  // namespace ibrdf

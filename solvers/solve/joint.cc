@@ -1,0 +1,131 @@
+#include "ibrdf/solvers/solve/joint.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "ibrdf/solvers/estimation/light_given_reflectance.h"
+#include "ibrdf/solvers/estimation/marginal_search.h"
+#include "ibrdf/solvers/estimation/optimum_average.h"
+#include "ibrdf/solvers/solve/summary.h"
+
+namespace ibrdf {
+namespace {
+
+// A further model is searched where the first one's search took at most this
+// share of the time that remains.
+constexpr double kMostOfRemaining = 0.5;
+
+// A problem with another model, and what its stages share.
+struct OtherModel {
+  std::unique_ptr<const InverseProblem> problem;
+  std::unique_ptr<const SolveSetup> setup;
+};
+
+InverseProblem WithModel(NamedModel model, InverseProblem problem) {
+  problem.model = std::move(model.model);
+  problem.model_name = std::move(model.name);
+  problem.other_models.clear();
+  return problem;
+}
+
+StatusOr<OtherModel> SetUpWith(const NamedModel& model,
+                               const InverseProblem& problem) {
+  OtherModel other;
+  other.problem =
+      std::make_unique<const InverseProblem>(WithModel(model, problem));
+  StatusOr<SolveSetup> setup = SetUp(*other.problem);
+  if (!setup.ok()) return setup.status();
+  other.setup = std::make_unique<const SolveSetup>(*std::move(setup));
+  return other;
+}
+
+// Adds what a search finds; nothing where no material explains the image.
+Status AddSearch(const SolveSetup& setup, SolveContext* context,
+                 std::vector<ModelOptima>* searches) {
+  StatusOr<ReflectanceEstimate> found = EstimateReflectance(setup, context);
+  if (found.status().code() == StatusCode::kNoImprovement) {
+    LOG(WARNING) << found.status().message();
+    return OkStatus();
+  }
+  if (!found.ok()) return found.status();
+  searches->push_back({&setup, *std::move(found)});
+  return OkStatus();
+}
+
+// Costs of two resolutions do not compare: a search that time cut short is
+// left out.
+void DropCoarser(std::vector<ModelOptima>* searches) {
+  size_t finest = 0;
+  for (const ModelOptima& search : *searches) {
+    finest = std::max(finest, search.estimate.light.mode.num_texels());
+  }
+  searches->erase(
+      std::remove_if(searches->begin(), searches->end(),
+                     [&](const ModelOptima& search) {
+                       return search.estimate.light.mode.num_texels() < finest;
+                     }),
+      searches->end());
+}
+
+// The models by name, the one that the lobes are of first.
+void NameModels(const std::vector<ModelOptima>& searches,
+                const OptimumAverage& average, Solution* solution) {
+  for (size_t m = 0; m < searches.size(); ++m) {
+    const InverseProblem& problem = *searches[m].setup->problem;
+    const auto at = static_cast<std::ptrdiff_t>(
+        m == average.model ? 0 : solution->models.size());
+    solution->models.insert(solution->models.begin() + at,
+                            {problem.model_name, problem.model});
+    solution->model_weights.insert(solution->model_weights.begin() + at,
+                                   average.model_weights[m]);
+  }
+}
+
+}  // namespace
+
+StatusOr<Solution> SolveJoint(const SolveSetup& setup, SolveContext* context) {
+  const InverseProblem& problem = *setup.problem;
+  std::vector<ModelOptima> searches;
+  const double begin = context->Elapsed();
+  IBRDF_RETURN_IF_ERROR(AddSearch(setup, context, &searches));
+  const double seconds = context->Elapsed() - begin;
+  std::vector<OtherModel> others;
+  for (const NamedModel& model : problem.other_models) {
+    if (context->Interrupted() || problem.solver.max_iterations == 0 ||
+        seconds > kMostOfRemaining * context->Remaining()) {
+      break;
+    }
+    StatusOr<OtherModel> other = SetUpWith(model, problem);
+    if (!other.ok()) return other.status();
+    others.push_back(*std::move(other));
+    IBRDF_RETURN_IF_ERROR(AddSearch(*others.back().setup, context, &searches));
+  }
+  if (searches.empty()) {
+    return Summarise(setup, ConstantLight(setup, MeanMaterial(setup)), context);
+  }
+  DropCoarser(&searches);
+  OptimumAverage average = AverageOptima(searches);
+  const SolveSetup& found = *searches[average.model].setup;
+  StatusOr<Estimate> estimate =
+      EstimateLight(found, std::move(average.estimate), context);
+  if (!estimate.ok()) return estimate.status();
+  Solution solution = Summarise(found, *std::move(estimate), context);
+  NameModels(searches, average, &solution);
+  return solution;
+}
+
+NamedModel ModelOf(const InverseProblem& problem, const Solution& solution) {
+  return solution.models.empty() ? NamedModel{problem.model_name, problem.model}
+                                 : solution.models.front();
+}
+
+InverseProblem WithModelOf(const Solution& solution, InverseProblem problem) {
+  NamedModel model = ModelOf(problem, solution);
+  return WithModel(std::move(model), std::move(problem));
+}
+
+}  // namespace ibrdf

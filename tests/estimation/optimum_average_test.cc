@@ -1,0 +1,156 @@
+#include "ibrdf/solvers/estimation/optimum_average.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "ibrdf/metrics/brdf_metrics.h"
+#include "tests/solve/ball_problem.h"
+#include "tests/support/solver_testing.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+TEST(OptimumWeights, FallWithCost) {
+  const std::vector<double> weights = OptimumWeights({-700.0, -720.0, -700.0});
+  EXPECT_NEAR(1.0, std::accumulate(weights.begin(), weights.end(), 0.0), 1e-12);
+  EXPECT_NEAR(std::exp(-1.0), weights[0] / weights[1], 1e-12);
+  EXPECT_EQ(weights[0], weights[2]);
+}
+
+TEST(OptimumWeights, WhatIsFarOffCountsNothing) {
+  EXPECT_EQ((std::vector<double>{0.0, 1.0}), OptimumWeights({0.0, -1e6}));
+  EXPECT_EQ((std::vector<double>{1.0}), OptimumWeights({1e300}));
+  EXPECT_TRUE(OptimumWeights({}).empty());
+}
+
+TEST(LogTableMean, IsGeometricAndKeepsBinsWithoutValues) {
+  LogTableMean mean;
+  mean.Add({{4.0, -1.0, 0.0, 1e8}}, 1.0);
+  mean.Add({{9.0, -1.0, 0.0, 1e-2}}, 1.0);
+  const MerlTable out = mean.Mean();
+  EXPECT_NEAR(6.0, out.raw[0], 1e-5);
+  EXPECT_EQ(-1.0, out.raw[1]);
+  EXPECT_NEAR(0.0, out.raw[2], 1e-15);
+  EXPECT_NEAR(1e3, out.raw[3], 0.1);
+}
+
+TEST(LogTableMean, OfOneTableIsIt) {
+  LogTableMean mean;
+  mean.Add({{4.0, 1e-5, 3e4}}, 0.3);
+  const MerlTable out = mean.Mean();
+  EXPECT_NEAR(4.0, out.raw[0], 1e-12);
+  EXPECT_NEAR(1e-5, out.raw[1], 1e-15);
+  EXPECT_NEAR(3e4, out.raw[2], 1e-8);
+}
+
+class AverageOptimaTest : public ::testing::Test {
+ protected:
+  AverageOptimaTest() : problem_(BallProblem(12)), other_(BallProblem(12)) {
+    for (InverseProblem* p : {&problem_, &other_}) {
+      p->image.rgb.assign(p->image.rgb.size(), 1.0f);
+    }
+    other_.model =
+        std::make_shared<const NeuralBrdfModel>(SmoothTinyModel(4, 7));
+    setup_ = std::make_unique<SolveSetup>(ibrdf::SetUp(problem_).value());
+    of_other_ = std::make_unique<SolveSetup>(ibrdf::SetUp(other_).value());
+  }
+
+  // The optimum at one of the model's materials.
+  static MaterialCandidate At(const SolveSetup& setup, int material,
+                              double cost) {
+    MaterialCandidate candidate;
+    const MaterialPrior::Material& m = setup.materials.materials[material];
+    candidate.name = m.name;
+    candidate.cost = cost;
+    candidate.parameters.assign(m.parameters.begin(), m.parameters.end());
+    return candidate;
+  }
+
+  static ModelOptima Search(const SolveSetup& setup,
+                            std::vector<MaterialCandidate> candidates) {
+    ModelOptima search;
+    search.setup = &setup;
+    search.estimate.lobes = candidates.front().parameters;
+    search.estimate.light.mode = LogMap({4, 2});
+    search.estimate.candidates = std::move(candidates);
+    return search;
+  }
+
+  static MerlTable TableOf(const SolveSetup& setup,
+                           const std::vector<double>& lobes) {
+    return setup.lobes->ToMerl(lobes.data());
+  }
+  // Aligned log-RMSE of lobes to a table.
+  static double Distance(const SolveSetup& setup,
+                         const std::vector<double>& lobes,
+                         const MerlTable& table) {
+    return CompareBrdfs(TableOf(setup, lobes), table)->log_rmse_aligned;
+  }
+
+  InverseProblem problem_, other_;
+  std::unique_ptr<SolveSetup> setup_, of_other_;
+};
+
+TEST_F(AverageOptimaTest, OneOptimumStaysAsItIs) {
+  const MaterialCandidate best = At(*setup_, 0, -800.0);
+  const OptimumAverage average =
+      AverageOptima({Search(*setup_, {best, At(*setup_, 1, 1000.0)})});
+  EXPECT_EQ(best.parameters, average.estimate.lobes);
+  EXPECT_EQ(0.0, average.estimate.between_optima);
+  EXPECT_EQ((std::vector<double>{1.0}), average.model_weights);
+}
+
+// The lobes are nearer to the mean of the logarithms than either optimum.
+TEST_F(AverageOptimaTest, TwoOptimaAreMetHalfway) {
+  const MaterialCandidate a = At(*setup_, 0, -800.0);
+  const MaterialCandidate b = At(*setup_, 2, -800.0);
+  LogTableMean mean;
+  mean.Add(TableOf(*setup_, a.parameters), 1.0);
+  mean.Add(TableOf(*setup_, b.parameters), 1.0);
+  const MerlTable half = mean.Mean();
+  const OptimumAverage average = AverageOptima({Search(*setup_, {a, b})});
+  const double of_either = Distance(*setup_, a.parameters, half);
+  EXPECT_GT(of_either, 0.01);
+  EXPECT_LT(Distance(*setup_, average.estimate.lobes, half), 0.5 * of_either);
+  // Each is as far from the middle, give or take what the lobes cannot meet.
+  EXPECT_NEAR(of_either, average.estimate.between_optima, 0.5 * of_either);
+}
+
+TEST_F(AverageOptimaTest, LobesAreOfTheModelWhoseOptimumCostsLeast) {
+  const OptimumAverage average =
+      AverageOptima({Search(*setup_, {At(*setup_, 0, -800.0)}),
+                     Search(*of_other_, {At(*of_other_, 0, -810.0)})});
+  EXPECT_EQ(1u, average.model);
+  EXPECT_GT(average.model_weights[1], average.model_weights[0]);
+  EXPECT_GT(average.model_weights[0], 0.3);
+  EXPECT_EQ(static_cast<size_t>(of_other_->lobes->num_parameters()),
+            average.estimate.lobes.size());
+  EXPECT_GT(average.estimate.between_optima, 0.0);
+}
+
+// What the reflectance gains by a mean, the light loses.
+TEST_F(AverageOptimaTest, ProductOfReflectanceAndLightKeepsItsLevel) {
+  const MaterialCandidate a = At(*setup_, 0, -800.0);
+  const OptimumAverage average =
+      AverageOptima({Search(*setup_, {a, At(*setup_, 2, -800.0)})});
+  const MerlTable before = TableOf(*setup_, a.parameters);
+  const MerlTable after = TableOf(*setup_, average.estimate.lobes);
+  for (int c = 0; c < 3; ++c) {
+    double gain = 0.0, count = 0.0;
+    for (int bin = 0; bin < kMerlBins; ++bin) {
+      if (before.Raw(c, bin) < 0.0) continue;
+      gain +=
+          std::log((after.Raw(c, bin) + 1e-6) / (before.Raw(c, bin) + 1e-6));
+      count += 1.0;
+    }
+    EXPECT_NEAR(-gain / count, average.estimate.light.mode.Plane(c)(0, 0), 1e-4)
+        << c;
+  }
+}
+
+}  // namespace
+}  // namespace ibrdf
