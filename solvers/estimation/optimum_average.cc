@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "ibrdf/metrics/brdf_metrics.h"
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
 #include "ibrdf/solvers/table_fit/lobe_table_fit.h"
 
@@ -21,9 +22,10 @@ constexpr double kFloor = 1e-6;  // raw units, as of CompareBrdfs
 struct Optimum {
   size_t model = 0;
   const MaterialCandidate* candidate = nullptr;
-  double weight = 0.0;
+  double weight = 0.0;  // > 0
 };
 
+// Those that count, at least one.
 std::vector<Optimum> WeightedOptima(const std::vector<ModelOptima>& searches) {
   std::vector<Optimum> optima;
   std::vector<double> costs;
@@ -34,16 +36,50 @@ std::vector<Optimum> WeightedOptima(const std::vector<ModelOptima>& searches) {
     }
   }
   const std::vector<double> weights = OptimumWeights(costs);
+  CHECK(!optima.empty());
   for (size_t k = 0; k < optima.size(); ++k) optima[k].weight = weights[k];
+  optima.erase(std::remove_if(optima.begin(), optima.end(),
+                              [](const Optimum& o) { return o.weight == 0.0; }),
+               optima.end());
   return optima;
 }
 
-// The table of an optimum at its model's level.
-MerlTable TableOf(const Optimum& optimum, const LevelGauge& gauge,
-                  const SolveSetup& setup) {
-  std::vector<double> lobes = optimum.candidate->parameters;
-  gauge.Fix(lobes.data());
-  return setup.lobes->ToMerl(lobes.data());
+// Tables of optima, each at the level of its model's materials.
+class OptimumTables {
+ public:
+  explicit OptimumTables(const std::vector<ModelOptima>& searches)
+      : searches_(searches) {
+    for (const ModelOptima& search : searches) {
+      const InverseProblem& problem = *search.setup->problem;
+      gauges_.push_back(std::make_unique<LevelGauge>(
+          *problem.model, search.setup->materials, problem.num_threads));
+    }
+  }
+
+  const LevelGauge& gauge(size_t model) const { return *gauges_[model]; }
+  MerlTable Of(const Optimum& optimum) const {
+    std::vector<double> lobes = optimum.candidate->parameters;
+    gauge(optimum.model).Fix(lobes.data());
+    return searches_[optimum.model].setup->lobes->ToMerl(lobes.data());
+  }
+
+ private:
+  const std::vector<ModelOptima>& searches_;
+  std::vector<std::unique_ptr<LevelGauge>> gauges_;  // by model
+};
+
+// Root mean square of the optima's distances from a table, by weight.
+double DistanceFrom(const MerlTable& table, const std::vector<Optimum>& optima,
+                    const OptimumTables& tables) {
+  double squares = 0.0;
+  for (const Optimum& optimum : optima) {
+    const StatusOr<BrdfMetrics> metrics =
+        CompareBrdfs(tables.Of(optimum), table);
+    if (!metrics.ok()) continue;  // the table is black
+    squares +=
+        optimum.weight * metrics->log_rmse_aligned * metrics->log_rmse_aligned;
+  }
+  return std::sqrt(squares);
 }
 
 // Mean of log(raw + floor) over the bins above the horizon, by channel.
@@ -58,24 +94,6 @@ Eigen::Array3d MeanLog(const MerlTable& table) {
     }
   }
   return sum / count.max(1.0);
-}
-
-// Root mean square over channels of the deviation of the logarithms' ratio.
-double AlignedDistance(const MerlTable& a, const MerlTable& b) {
-  double squares = 0.0;
-  for (int c = 0; c < 3; ++c) {
-    double sum = 0.0, square = 0.0, count = 0.0;
-    for (int bin = 0; bin < kMerlBins; ++bin) {
-      const double x = a.Raw(c, bin), y = b.Raw(c, bin);
-      if (x < 0.0 || y < 0.0) continue;
-      const double d = std::log((x + kFloor) / (y + kFloor));
-      sum += d;
-      square += d * d;
-      count += 1.0;
-    }
-    if (count > 0.0) squares += square / count - sum * sum / (count * count);
-  }
-  return std::sqrt(std::max(squares, 0.0) / 3.0);
 }
 
 // The lobes of a model that are nearest to a table, from the best of starts;
@@ -110,41 +128,24 @@ void Dim(const Eigen::Array3d& level, LogMap* mode) {
 void TakeMean(const std::vector<Optimum>& optima,
               const std::vector<ModelOptima>& searches, OptimumAverage* out) {
   const SolveSetup& setup = *searches[out->model].setup;
-  std::vector<std::unique_ptr<LevelGauge>> gauges;
-  for (const ModelOptima& search : searches) {
-    gauges.push_back(std::make_unique<LevelGauge>(
-        *search.setup->problem->model, search.setup->materials,
-        search.setup->problem->num_threads));
-  }
+  const OptimumTables tables(searches);
   LogTableMean mean;
   std::vector<std::vector<double>> starts;
   for (const Optimum& optimum : optima) {
-    if (optimum.weight == 0.0) continue;
-    mean.Add(TableOf(optimum, *gauges[optimum.model],
-                     *searches[optimum.model].setup),
-             optimum.weight);
+    mean.Add(tables.Of(optimum), optimum.weight);
     if (optimum.model == out->model) {
       starts.push_back(optimum.candidate->parameters);
     }
   }
   std::vector<double> lobes = NearestLobes(mean.Mean(), setup, starts);
   if (lobes.empty()) return;
-  gauges[out->model]->Fix(lobes.data());
+  tables.gauge(out->model).Fix(lobes.data());
   ReflectanceEstimate& estimate = out->estimate;
   const MerlTable found = setup.lobes->ToMerl(lobes.data());
   Dim(MeanLog(found) - MeanLog(setup.lobes->ToMerl(estimate.lobes.data())),
       &estimate.light.mode);
-  double squares = 0.0;
-  for (const Optimum& optimum : optima) {
-    if (optimum.weight == 0.0) continue;
-    const double distance =
-        AlignedDistance(TableOf(optimum, *gauges[optimum.model],
-                                *searches[optimum.model].setup),
-                        found);
-    squares += optimum.weight * distance * distance;
-  }
+  estimate.between_optima = DistanceFrom(found, optima, tables);
   estimate.lobes = std::move(lobes);
-  estimate.between_optima = std::sqrt(squares);
 }
 
 }  // namespace
@@ -192,22 +193,19 @@ MerlTable LogTableMean::Mean() const {
   return mean;
 }
 
-OptimumAverage AverageOptima(std::vector<ModelOptima> searches) {
+OptimumAverage AverageOptima(const std::vector<ModelOptima>& searches) {
   CHECK(!searches.empty());
   const std::vector<Optimum> optima = WeightedOptima(searches);
-  CHECK(!optima.empty());
   OptimumAverage out;
   out.model_weights.assign(searches.size(), 0.0);
-  size_t averaged = 0;
   const Optimum* best = &optima.front();
   for (const Optimum& optimum : optima) {
     out.model_weights[optimum.model] += optimum.weight;
-    averaged += optimum.weight > 0.0 ? 1 : 0;
     if (optimum.candidate->cost < best->candidate->cost) best = &optimum;
   }
   out.model = best->model;
   out.estimate = searches[out.model].estimate;
-  if (averaged > 1) TakeMean(optima, searches, &out);
+  if (optima.size() > 1) TakeMean(optima, searches, &out);
   return out;
 }
 

@@ -46,6 +46,6 @@ struct OptimumAverage {
 
 // Searches of one image, at least one. Each must have candidates of finite
 // cost.
-OptimumAverage AverageOptima(std::vector<ModelOptima> searches);
+OptimumAverage AverageOptima(const std::vector<ModelOptima>& searches);
 
 }  // namespace ibrdf
