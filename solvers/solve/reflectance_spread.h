@@ -49,7 +49,7 @@ struct ErrorToExpect {
 };
 ErrorToExpect ExpectError(double spread);
 // The same for a solution. The spread of a mean over the optima of two models
-// has what they disagree in; then the factors are those of 21 held-out cases
+// has what they disagree in; then the factors are those of 22 held-out cases
 // (docs/notes/averaged_optima.md).
 ErrorToExpect ExpectError(const Solution& solution);
 
