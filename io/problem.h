@@ -69,6 +69,8 @@ struct ViewSpec {
   // The photograph and its mask, as ImageSpec has them, and the view's
   // reflectance.labels. Empty: none, as of a view that is to be rendered.
   std::string file = {}, mask = {}, labels = {};
+  // In place of ImageSpec::exposure, > 0; unset: that one.
+  std::optional<double> exposure = std::nullopt;
 };
 
 // Several views: at most one of the three is set.

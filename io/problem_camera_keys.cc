@@ -76,7 +76,8 @@ Keys ViewKeys() {
                   "`file` as well, and may have a `mask`: `{name: left, file: "
                   "left.exr, mask: left.png, camera: {...}}`.",
                   "`image` then holds what the photographs share: the curve "
-                  "and the exposure.",
+                  "and the exposure. An item may have an `exposure` of its "
+                  "own.",
                   "Views of labelled materials each have `labels`, in place "
                   "of `reflectance.labels`.",
                   "A solve explains all views by one reflectance and one "

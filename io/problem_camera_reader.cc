@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ibrdf/io/calibrated_views.h"
+#include "ibrdf/io/problem_schema_rows.h"
 #include "ibrdf/io/problem_section_readers.h"
 
 namespace ibrdf {
@@ -39,8 +40,8 @@ void ReadLens(ProblemReader* reader, Camera* camera) {
 // Reads one view of a list.
 void ReadView(const ProblemReader& root, const std::string& shown,
               const ConfigNode& node, std::vector<ViewSpec>* views) {
-  ConfigReader reader =
-      root.Other(shown, node, {"name", "camera", "file", "mask", "labels"});
+  ConfigReader reader = root.Other(
+      shown, node, {"name", "camera", "file", "mask", "labels", "exposure"});
   ViewSpec view;
   reader.Text("name", &view.name);
   if (!reader.Has("name")) reader.FailExpected("name", "the view's name");
@@ -55,7 +56,11 @@ void ReadView(const ProblemReader& root, const std::string& shown,
   reader.Path("file", &view.file);
   reader.Path("mask", &view.mask);
   reader.Path("labels", &view.labels);
-  for (const char* key : {"mask", "labels"}) {
+  if (reader.Has("exposure")) {
+    reader.Number("exposure", problem_keys::kPositive,
+                  &view.exposure.emplace());
+  }
+  for (const char* key : {"mask", "labels", "exposure"}) {
     if (reader.Has(key) && view.file.empty()) {
       reader.Fail(key, "expected beside the view's file");
     }

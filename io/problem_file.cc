@@ -26,6 +26,7 @@ void TakeOneView(ProblemReader* root, Problem* problem) {
   }
   image->file = view.file;
   image->mask = view.mask;
+  image->exposure = view.exposure.value_or(image->exposure);
 }
 
 void TurnCameras(const Eigen::Matrix3d& rotation, Problem* problem) {

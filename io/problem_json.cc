@@ -87,6 +87,7 @@ json ViewsJson(const ViewsSpec& views, UpAxis up) {
     if (!view.file.empty()) out.back()["file"] = view.file;
     if (!view.mask.empty()) out.back()["mask"] = view.mask;
     if (!view.labels.empty()) out.back()["labels"] = view.labels;
+    if (view.exposure) out.back()["exposure"] = *view.exposure;
   }
   return out;
 }

@@ -96,15 +96,16 @@ Eigen::Array3d MeanLog(const MerlTable& table) {
   return sum / count.max(1.0);
 }
 
-// The lobes of a model that are nearest to a table, from the best of starts;
-// empty where no fit comes to anything.
-std::vector<double> NearestLobes(
-    const MerlTable& table, const SolveSetup& setup,
-    const std::vector<std::vector<double>>& starts) {
+// The lobes of a model that are nearest to a table, from the best of starts; no
+// parameters where no fit comes to anything.
+LobeTableFit NearestLobes(const MerlTable& table, const SolveSetup& setup,
+                          const std::vector<std::vector<double>>& starts) {
   const InverseProblem& problem = *setup.problem;
   const LobeTableFitter fitter(*problem.model);
   LobeTableFitOptions options;
   options.num_threads = problem.num_threads;
+  // Without fits of materials it is the prior of the search (LobePrior).
+  if (problem.model->fit_lobes == 0) options.prior_sigma = problem.prior_sigma;
   LobeTableFit best;
   for (const std::vector<double>& start : starts) {
     StatusOr<LobeTableFit> fit = fitter.FitFrom(table, start, options);
@@ -114,7 +115,7 @@ std::vector<double> NearestLobes(
     }
   }
   VLOG(1) << "lobes nearest to the mean of optima: log-RMSE " << best.log_rmse;
-  return std::move(best.parameters);
+  return best;
 }
 
 // The light's log radiance falls by what the reflectance's rises.
@@ -137,13 +138,20 @@ void TakeMean(const std::vector<Optimum>& optima,
       starts.push_back(optimum.candidate->parameters);
     }
   }
-  std::vector<double> lobes = NearestLobes(mean.Mean(), setup, starts);
-  if (lobes.empty()) return;
+  const MerlTable middle = mean.Mean();
+  LobeTableFit fit = NearestLobes(middle, setup, starts);
+  const MerlTable before = setup.lobes->ToMerl(out->estimate.lobes.data());
+  const StatusOr<BrdfMetrics> of_best = CompareBrdfs(before, middle);
+  // Lobes that are held, as by a narrow prior, may not come near the mean.
+  if (fit.parameters.empty() || !of_best.ok() ||
+      !(fit.log_rmse < of_best->log_rmse)) {
+    return;
+  }
+  std::vector<double>& lobes = fit.parameters;
   tables.gauge(out->model).Fix(lobes.data());
   ReflectanceEstimate& estimate = out->estimate;
   const MerlTable found = setup.lobes->ToMerl(lobes.data());
-  Dim(MeanLog(found) - MeanLog(setup.lobes->ToMerl(estimate.lobes.data())),
-      &estimate.light.mode);
+  Dim(MeanLog(found) - MeanLog(before), &estimate.light.mode);
   estimate.between_optima = DistanceFrom(found, optima, tables);
   estimate.lobes = std::move(lobes);
 }

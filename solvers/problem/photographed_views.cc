@@ -1,6 +1,7 @@
 #include "ibrdf/solvers/problem/photographed_views.h"
 
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "ibrdf/io/calibrated_views.h"
@@ -15,6 +16,7 @@ namespace fs = std::filesystem;
 struct ViewSource {
   std::string name, file, mask;
   Camera camera;                               // of a list
+  std::optional<double> exposure;              // of a list; unset: the image's
   const CalibratedView* calibrated = nullptr;  // of a file
 };
 
@@ -54,7 +56,8 @@ class SharedWarnings {
 std::vector<ViewSource> ListedSources(const ViewsSpec& views) {
   std::vector<ViewSource> out;
   for (const ViewSpec& view : views.list) {
-    out.push_back({view.name, view.file, view.mask, view.camera, nullptr});
+    out.push_back(
+        {view.name, view.file, view.mask, view.camera, view.exposure, nullptr});
   }
   return out;
 }
@@ -89,6 +92,7 @@ StatusOr<ViewPhotograph> ReadView(const Problem& problem,
   ImageSpec spec = problem.image;
   spec.file = source.file;
   spec.mask = source.mask;
+  spec.exposure = source.exposure.value_or(spec.exposure);
   StatusOr<Photograph> photograph = LoadPhotograph(spec);
   if (!photograph.ok()) return photograph.status();
   for (const std::string& warning : photograph->warnings) {

@@ -49,7 +49,8 @@ struct ErrorToExpect {
 };
 ErrorToExpect ExpectError(double spread);
 // The same for a solution. The spread of a mean over the optima of two models
-// has what they disagree in; then the factors are those of 22 held-out cases
+// has what they disagree in, and a small one says little: sqrt(0.35^2 + (0.55
+// spread)^2) and 1.8 times that, by 22 held-out cases
 // (docs/notes/averaged_optima.md).
 ErrorToExpect ExpectError(const Solution& solution);
 

@@ -35,7 +35,8 @@ std::vector<Refusal> ViewRefusals() {
        "views.transform: unknown key; the nearest known one is "
        "views.transforms"},
       {least + "views: [3]",
-       "views[0]: expected a map of name, camera, file, mask or labels"},
+       "views[0]: expected a map of name, camera, file, mask, labels or "
+       "exposure"},
       {least + "views: [{camera: {}}]", "views[0].name: expected the view's"},
       {least + "views: [{name: a/b}]",
        "views[0].name: expected a name that a file may have"},
@@ -48,6 +49,10 @@ std::vector<Refusal> ViewRefusals() {
        "views[0].mask: expected beside the view's file"},
       {least + "views: [{name: a, labels: b}]",
        "views[0].labels: expected beside the view's file"},
+      {least + "views: [{name: a, exposure: 2}]",
+       "views[0].exposure: expected beside the view's file"},
+      {least + "views: [{name: a, file: b, exposure: 0}]",
+       "views[0].exposure: expected a number > 0"},
       {least + "views: [{name: a, camera: {fov_degrees: 3}}]",
        "views[0].camera.fov_degrees: expected with camera.type: perspective"},
       {least + "views: [{name: a, camera: {type: perspective, to: [0, 0, 4]}}]",

@@ -133,6 +133,32 @@ TEST_F(LoadViewsTest, OneViewIsThePlainProblem) {
   }
 }
 
+// One view's exposure is its own; the others have that of `image`.
+TEST_F(LoadViewsTest, AViewMayHaveItsOwnExposure) {
+  const auto p = Load(View("left", "file: a.exr, exposure: 4", kFront) +
+                          View("right", "file: b.exr", kRight),
+                      {"image.exposure=2"});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  int of_view[2] = {};
+  for (const ShadingPoint& point : p->points) {
+    ++of_view[point.view];
+    const SheetView& view = p->sheet.views[point.view];
+    const int x = point.pixel % p->sheet.width - view.x;
+    const int y = point.pixel / p->sheet.width - view.y;
+    const float value = (point.view == 0 ? 1.0f : 2.0f) +
+                        0.001f * static_cast<float>(3 * (y * view.width + x));
+    EXPECT_FLOAT_EQ(value / (point.view == 0 ? 4.0f : 2.0f),
+                    p->image.rgb[size_t{3} * point.pixel]);
+  }
+  EXPECT_GT(of_view[0], 70);
+  EXPECT_GT(of_view[1], 40);
+  const auto one = Load(View("only", "file: a.exr, exposure: 4", kFront));
+  ASSERT_TRUE(one.ok()) << one.status().message();
+  EXPECT_FLOAT_EQ(
+      (1.0f + 0.001f * static_cast<float>(3 * one->points[0].pixel)) / 4.0f,
+      one->image.rgb[size_t{3} * one->points[0].pixel]);
+}
+
 TEST_F(LoadViewsTest, BlindViewsTakeNoPart) {
   const auto p = Load(View("sees", "file: a.exr", kFront) +
                       View("blind", "file: b.exr", kAway, "perspective"));

@@ -121,6 +121,9 @@ TEST(ExpectError, AMeanOverTwoModelsIsNotAsFarOff) {
   solution.models.push_back({"b", nullptr});
   EXPECT_LT(ExpectError(solution).median, ExpectError(0.5).median);
   EXPECT_LT(ExpectError(solution).median, ExpectError(solution).most);
+  // A small one says little.
+  solution.spread = 0.05;
+  EXPECT_GT(ExpectError(solution).median, ExpectError(0.05).median);
 }
 
 }  // namespace
