@@ -297,6 +297,15 @@ Status LobeTableFitOptions::Check() const {
   return OkStatus();
 }
 
+StatusOr<TableColumns> LobeTableFitter::ColumnsOf(
+    const MerlTable& table) const {
+  StatusOr<std::vector<float>> log_raw =
+      ThinTable(table, fit_columns_, kFitPoints);
+  if (!log_raw.ok()) return log_raw.status();
+  return TableColumns{ThinColumns(fit_columns_, kFitPoints),
+                      *std::move(log_raw)};
+}
+
 StatusOr<LobeTableFit> LobeTableFitter::Fit(
     const MerlTable& table, const LobeTableFitOptions& options) const {
   IBRDF_RETURN_IF_ERROR(options.Check());
@@ -307,12 +316,9 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
   StatusOr<std::vector<float>> seen =
       ThinTable(table, search_columns_, kSearchPoints);
   if (!seen.ok()) return seen.status();
-  StatusOr<std::vector<float>> target =
-      ThinTable(table, fit_columns_, kFitPoints);
-  if (!target.ok()) return target.status();
+  const StatusOr<TableColumns> columns = ColumnsOf(table);
+  if (!columns.ok()) return columns.status();
   const TableColumns rough{search_points_, *seen};
-  const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
-                             std::move(*target)};
 
   const Search search(*this, std::move(*seen));
   // All starts are refined roughly, the best one to the end.
@@ -320,49 +326,43 @@ StatusOr<LobeTableFit> LobeTableFitter::Fit(
   if (best.parameters.empty()) {
     return InvalidInput("table", "no start of the fit has a finite cost");
   }
-  Finish(columns, options, &best);
+  Finish(*columns, options, &best);
   if (options.lambertian) {
-    FinishWithLambertian(columns, options, &best);
+    FinishWithLambertian(*columns, options, &best);
     // The lobe from the start leads to other lobes of the flow, often to better
     // ones.
     Start matte = AddLobes(DarkColours(rough.log_raw), rough, search, options);
     if (!matte.parameters.empty()) {
-      Finish(columns, options, &matte);
+      Finish(*columns, options, &matte);
       if (matte.cost < best.cost) best = std::move(matte);
     }
   }
-  return FitOf(columns, options, std::move(best.parameters));
+  return FitOf(*columns, options, std::move(best.parameters));
 }
 
 StatusOr<LobeTableFit> LobeTableFitter::FitFrom(
     const MerlTable& table, std::vector<double> parameters,
     const LobeTableFitOptions& options) const {
   IBRDF_RETURN_IF_ERROR(options.Check());
-  StatusOr<std::vector<float>> target =
-      ThinTable(table, fit_columns_, kFitPoints);
-  if (!target.ok()) return target.status();
-  const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
-                             std::move(*target)};
+  const StatusOr<TableColumns> columns = ColumnsOf(table);
+  if (!columns.ok()) return columns.status();
   Start start = {std::move(parameters), 0.0};
-  Finish(columns, options, &start);
+  Finish(*columns, options, &start);
   if (!std::isfinite(start.cost)) {
     return Status(StatusCode::kNoImprovement, "no lobes near the start fit");
   }
-  return FitOf(columns, options, std::move(start.parameters));
+  return FitOf(*columns, options, std::move(start.parameters));
 }
 
 StatusOr<LobeTableFit> LobeTableFitter::AddLambertian(
     const MerlTable& table, const LobeTableFit& fit,
     const LobeTableFitOptions& options) const {
   IBRDF_RETURN_IF_ERROR(options.Check());
-  StatusOr<std::vector<float>> target =
-      ThinTable(table, fit_columns_, kFitPoints);
-  if (!target.ok()) return target.status();
-  const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
-                             std::move(*target)};
+  const StatusOr<TableColumns> columns = ColumnsOf(table);
+  if (!columns.ok()) return columns.status();
   Start start = {fit.parameters, fit.log_rmse};
-  FinishWithLambertian(columns, options, &start);
-  return FitOf(columns, options, std::move(start.parameters));
+  FinishWithLambertian(*columns, options, &start);
+  return FitOf(*columns, options, std::move(start.parameters));
 }
 
 LobeTableFit LobeTableFitter::FitOf(const TableColumns& columns,

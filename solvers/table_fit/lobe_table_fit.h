@@ -80,6 +80,8 @@ class LobeTableFitter {
     std::vector<double> parameters;  // empty where no cost is finite
     double cost = 0.0;
   };
+  // What a fit sees of a table; refuses values that are not finite.
+  StatusOr<TableColumns> ColumnsOf(const MerlTable& table) const;
   // Lobes of the flow added one by one to `base`, which may be empty, at the
   // few columns of the search.
   Start AddLobes(std::vector<double> base, const TableColumns& rough,
