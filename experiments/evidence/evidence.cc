@@ -93,7 +93,7 @@ class EvidenceStudy {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-        factory_, prior_, problem_.points, observed_, options_);
+        {factory_, &prior_}, problem_.points, observed_, options_);
     if (!found.ok()) return found.status();
     const double seconds =
         std::chrono::duration<double>(Clock::now() - start).count();

@@ -70,10 +70,11 @@ std::vector<LabelCandidate> CandidatesOf(const SolveSetup& setup, int material,
                  const std::string& stage, double cost, double misfit) {
     report("label " + label + ": " + stage, cost, misfit);
   };
-  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      FlowLobes::Factory(*alone.model, setup.lobes->layout(),
-                         alone.num_threads),
-      setup.materials, alone.points, SearchedPixels(*of_label), o);
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance({FlowLobes::Factory(*alone.model, setup.lobes->layout(),
+                                            alone.num_threads),
+                         &setup.materials},
+                        alone.points, SearchedPixels(*of_label), o);
   if (!found.ok()) return {CentralMaterial(setup)};
   std::vector<LabelCandidate> out;
   for (const MaterialCandidate& c : found->candidates) {
@@ -209,9 +210,10 @@ StatusOr<LabelledReflectance> EstimateLabelledReflectance(
   o.covariance = problem.solver.max_iterations > 0;
   o.num_materials = num_materials;
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      FlowLobes::Factory(*problem.model, setup.lobes->layout(),
-                         problem.num_threads),
-      prior, problem.points, SearchedPixels(setup), o);
+      {FlowLobes::Factory(*problem.model, setup.lobes->layout(),
+                          problem.num_threads),
+       &prior, BounceGainOf(setup, o.fine)},
+      problem.points, SearchedPixels(setup), o);
   if (!found.ok()) return found.status();
   LabelledReflectance out;
   std::vector<double> parameters = found->parameters;

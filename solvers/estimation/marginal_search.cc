@@ -50,37 +50,71 @@ void AddPaint(const FirstPaint& first, ReflectanceSearchOptions* o) {
   o->process.directional_light_chroma_variance *= kPaintedLightChroma;
 }
 
+SearchedModel ModelOf(const SolveSetup& setup,
+                      const ReflectanceSearchOptions& o) {
+  return {FlowLobes::Factory(*setup.problem->model, setup.lobes->layout(),
+                             setup.problem->num_threads),
+          &setup.materials, BounceGainOf(setup, o.fine)};
+}
+
+// A search's result at the materials' mean level.
+ModelOptima OptimaOf(const ReflectanceSearchResult& found,
+                     const SolveSetup& setup) {
+  ModelOptima optima;
+  optima.setup = &setup;
+  optima.gauge = std::make_shared<const LevelGauge>(
+      *setup.problem->model, setup.materials, setup.problem->num_threads);
+  ReflectanceEstimate& out = optima.estimate;
+  out.lobes = found.parameters;
+  out.light = LightOf(found, optima.gauge->Fix(out.lobes.data()));
+  out.initial_guess = found.initial_guess;
+  const auto& materials = setup.materials.materials;
+  const auto initial = std::find_if(
+      materials.begin(), materials.end(),
+      [&](const auto& m) { return m.name == found.initial_guess; });
+  out.initial_lobes = ToVector(initial->parameters);
+  optima.gauge->Fix(out.initial_lobes.data());
+  out.covariance = found.covariance;
+  out.ranking = RankMaterials(found.candidates);
+  for (const MaterialCandidate& candidate : found.candidates) {
+    if (std::isfinite(candidate.cost)) out.candidates.push_back(candidate);
+  }
+  return optima;
+}
+
+// The setups are of one problem, each with a model of its own.
+StatusOr<std::vector<ModelOptima>> Search(
+    const std::vector<const SolveSetup*>& setups, ReflectanceSearchOptions o) {
+  const InverseProblem& problem = *setups.front()->problem;
+  o.covariance = problem.solver.max_iterations > 0;
+  std::vector<SearchedModel> models;
+  for (const SolveSetup* setup : setups) models.push_back(ModelOf(*setup, o));
+  const StatusOr<std::vector<ReflectanceSearchResult>> found =
+      SearchReflectances(models, problem.points,
+                         SearchedPixels(*setups.front()), o);
+  if (!found.ok()) return found.status();
+  std::vector<ModelOptima> optima;
+  for (const ReflectanceSearchResult& result : *found) {
+    optima.push_back(OptimaOf(result, *setups[result.model]));
+  }
+  return optima;
+}
+
 }  // namespace
 
 StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
                                                   SolveContext* context,
                                                   const FirstPaint* paint) {
-  const InverseProblem& problem = *setup.problem;
   ReflectanceSearchOptions o = SearchOptions(kSearchShare, setup, context);
-  o.covariance = problem.solver.max_iterations > 0;
   if (paint != nullptr) AddPaint(*paint, &o);
-  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
-      FlowLobes::Factory(*problem.model, setup.lobes->layout(),
-                         problem.num_threads),
-      setup.materials, problem.points, SearchedPixels(setup), o);
+  StatusOr<std::vector<ModelOptima>> found = Search({&setup}, o);
   if (!found.ok()) return found.status();
-  ReflectanceEstimate out;
-  out.lobes = found->parameters;
-  const LevelGauge gauge(*problem.model, setup.materials, problem.num_threads);
-  out.light = LightOf(*found, gauge.Fix(out.lobes.data()));
-  out.initial_guess = found->initial_guess;
-  const auto& materials = setup.materials.materials;
-  const auto initial = std::find_if(
-      materials.begin(), materials.end(),
-      [&](const auto& m) { return m.name == found->initial_guess; });
-  out.initial_lobes = ToVector(initial->parameters);
-  gauge.Fix(out.initial_lobes.data());
-  out.covariance = found->covariance;
-  out.ranking = RankMaterials(found->candidates);
-  for (const MaterialCandidate& candidate : found->candidates) {
-    if (std::isfinite(candidate.cost)) out.candidates.push_back(candidate);
-  }
-  return out;
+  return std::move(found->front().estimate);
+}
+
+StatusOr<std::vector<ModelOptima>> EstimateReflectances(
+    const std::vector<const SolveSetup*>& setups, SolveContext* context) {
+  return Search(setups, SearchOptions(kSearchShare, *setups.front(), context));
 }
 
 LightPosterior EstimateLightPosterior(const SolveSetup& setup,
@@ -92,9 +126,11 @@ LightPosterior EstimateLightPosterior(const SolveSetup& setup,
   }
   ReflectanceSearchOptions o = SearchOptions(kLightSearchShare, setup, context);
   o.covariance = false;
+  const MaterialPrior known =
+      KnownMaterial(ToEigen(TableLobes::KnownParameters()));
   const StatusOr<ReflectanceSearchResult> found =
-      SearchReflectance(TableLobes::Factory(*problem.known_brdf),
-                        KnownMaterial(ToEigen(TableLobes::KnownParameters())),
+      SearchReflectance({TableLobes::Factory(*problem.known_brdf), &known,
+                         BounceGainOf(setup, o.fine)},
                         problem.points, SearchedPixels(setup), o);
   return found.ok() ? LightOf(*found, 0.0) : LightPosterior();
 }
@@ -106,16 +142,17 @@ double CoarseEvidence(const SolveSetup& setup, SolveContext* context,
   o.coarse_stages = kEvidenceStages;
   o.report = {};
   if (paint != nullptr) o.paint = *paint;
-  const StatusOr<ReflectanceSearchResult> found =
+  const MaterialPrior known =
+      KnownMaterial(ToEigen(TableLobes::KnownParameters()));
+  const SearchedModel model =
       setup.lobes_unknown()
-          ? SearchReflectance(
-                FlowLobes::Factory(*problem.model, setup.lobes->layout(),
-                                   problem.num_threads),
-                setup.materials, problem.points, SearchedPixels(setup), o)
-          : SearchReflectance(
-                TableLobes::Factory(*problem.known_brdf),
-                KnownMaterial(ToEigen(TableLobes::KnownParameters())),
-                problem.points, SearchedPixels(setup), o);
+          ? SearchedModel{FlowLobes::Factory(*problem.model,
+                                             setup.lobes->layout(),
+                                             problem.num_threads),
+                          &setup.materials}
+          : SearchedModel{TableLobes::Factory(*problem.known_brdf), &known};
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance(model, problem.points, SearchedPixels(setup), o);
   return found.ok() ? found->cost : std::numeric_limits<double>::infinity();
 }
 

@@ -1,8 +1,12 @@
 // The reflectance with the light integrated out, and what that says of the
 // light.
 #pragma once
+#include <memory>
+#include <vector>
+
 #include "ibrdf/base/status.h"
 #include "ibrdf/solvers/estimation/posterior.h"
+#include "ibrdf/solvers/estimation/scale_ambiguity.h"
 #include "ibrdf/solvers/estimation/solve_context.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 #include "ibrdf/solvers/paint/first_paint.h"
@@ -16,6 +20,20 @@ namespace ibrdf {
 StatusOr<ReflectanceEstimate> EstimateReflectance(
     const SolveSetup& setup, SolveContext* context,
     const FirstPaint* paint = nullptr);
+
+// What a search among several models found with one of them.
+struct ModelOptima {
+  const SolveSetup* setup = nullptr;
+  std::shared_ptr<const LevelGauge> gauge;  // of its materials
+  ReflectanceEstimate estimate;
+};
+
+// The same among the materials of several models of one image, which compete.
+// One of each model that is left at the end, the covariance with the best one
+// alone. setups: the same problem with each model; they must outlive the
+// result.
+StatusOr<std::vector<ModelOptima>> EstimateReflectances(
+    const std::vector<const SolveSetup*>& setups, SolveContext* context);
 
 // For a known reflectance: directional lights and hyperparameters of highest
 // posterior probability with the map integrated out; at the average where the

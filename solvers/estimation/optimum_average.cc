@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "ibrdf/metrics/brdf_metrics.h"
-#include "ibrdf/solvers/estimation/scale_ambiguity.h"
 #include "ibrdf/solvers/table_fit/lobe_table_fit.h"
 
 namespace ibrdf {
@@ -18,7 +16,7 @@ constexpr double kTemperature = 20.0;  // nats
 constexpr double kLeastWeight = 0.01;
 constexpr double kFloor = 1e-6;  // raw units, as of CompareBrdfs
 
-// A local optimum of one of several searches.
+// A local optimum with one of the models.
 struct Optimum {
   size_t model = 0;
   const MaterialCandidate* candidate = nullptr;
@@ -26,11 +24,11 @@ struct Optimum {
 };
 
 // Those that count, at least one.
-std::vector<Optimum> WeightedOptima(const std::vector<ModelOptima>& searches) {
+std::vector<Optimum> WeightedOptima(const std::vector<ModelOptima>& models) {
   std::vector<Optimum> optima;
   std::vector<double> costs;
-  for (size_t m = 0; m < searches.size(); ++m) {
-    for (const MaterialCandidate& c : searches[m].estimate.candidates) {
+  for (size_t m = 0; m < models.size(); ++m) {
+    for (const MaterialCandidate& c : models[m].estimate.candidates) {
       optima.push_back({m, &c});
       costs.push_back(c.cost);
     }
@@ -44,37 +42,22 @@ std::vector<Optimum> WeightedOptima(const std::vector<ModelOptima>& searches) {
   return optima;
 }
 
-// Tables of optima, each at the level of its model's materials.
-class OptimumTables {
- public:
-  explicit OptimumTables(const std::vector<ModelOptima>& searches)
-      : searches_(searches) {
-    for (const ModelOptima& search : searches) {
-      const InverseProblem& problem = *search.setup->problem;
-      gauges_.push_back(std::make_unique<LevelGauge>(
-          *problem.model, search.setup->materials, problem.num_threads));
-    }
-  }
-
-  const LevelGauge& gauge(size_t model) const { return *gauges_[model]; }
-  MerlTable Of(const Optimum& optimum) const {
-    std::vector<double> lobes = optimum.candidate->parameters;
-    gauge(optimum.model).Fix(lobes.data());
-    return searches_[optimum.model].setup->lobes->ToMerl(lobes.data());
-  }
-
- private:
-  const std::vector<ModelOptima>& searches_;
-  std::vector<std::unique_ptr<LevelGauge>> gauges_;  // by model
-};
+// At the level of its model's materials.
+MerlTable TableOf(const Optimum& optimum,
+                  const std::vector<ModelOptima>& models) {
+  const ModelOptima& of = models[optimum.model];
+  std::vector<double> lobes = optimum.candidate->parameters;
+  of.gauge->Fix(lobes.data());
+  return of.setup->lobes->ToMerl(lobes.data());
+}
 
 // Root mean square of the optima's distances from a table, by weight.
 double DistanceFrom(const MerlTable& table, const std::vector<Optimum>& optima,
-                    const OptimumTables& tables) {
+                    const std::vector<ModelOptima>& models) {
   double squares = 0.0;
   for (const Optimum& optimum : optima) {
     const StatusOr<BrdfMetrics> metrics =
-        CompareBrdfs(tables.Of(optimum), table);
+        CompareBrdfs(TableOf(optimum, models), table);
     if (!metrics.ok()) continue;  // the table is black
     squares +=
         optimum.weight * metrics->log_rmse_aligned * metrics->log_rmse_aligned;
@@ -127,13 +110,12 @@ void Dim(const Eigen::Array3d& level, LogMap* mode) {
 
 // Puts the mean of the optima in the place of the best one.
 void TakeMean(const std::vector<Optimum>& optima,
-              const std::vector<ModelOptima>& searches, OptimumAverage* out) {
-  const SolveSetup& setup = *searches[out->model].setup;
-  const OptimumTables tables(searches);
+              const std::vector<ModelOptima>& models, OptimumAverage* out) {
+  const SolveSetup& setup = *models[out->model].setup;
   LogTableMean mean;
   std::vector<std::vector<double>> starts;
   for (const Optimum& optimum : optima) {
-    mean.Add(tables.Of(optimum), optimum.weight);
+    mean.Add(TableOf(optimum, models), optimum.weight);
     if (optimum.model == out->model) {
       starts.push_back(optimum.candidate->parameters);
     }
@@ -148,11 +130,11 @@ void TakeMean(const std::vector<Optimum>& optima,
     return;
   }
   std::vector<double>& lobes = fit.parameters;
-  tables.gauge(out->model).Fix(lobes.data());
+  models[out->model].gauge->Fix(lobes.data());
   ReflectanceEstimate& estimate = out->estimate;
   const MerlTable found = setup.lobes->ToMerl(lobes.data());
   Dim(MeanLog(found) - MeanLog(before), &estimate.light.mode);
-  estimate.between_optima = DistanceFrom(found, optima, tables);
+  estimate.between_optima = DistanceFrom(found, optima, models);
   estimate.lobes = std::move(lobes);
 }
 
@@ -201,19 +183,19 @@ MerlTable LogTableMean::Mean() const {
   return mean;
 }
 
-OptimumAverage AverageOptima(const std::vector<ModelOptima>& searches) {
-  CHECK(!searches.empty());
-  const std::vector<Optimum> optima = WeightedOptima(searches);
+OptimumAverage AverageOptima(const std::vector<ModelOptima>& models) {
+  CHECK(!models.empty());
+  const std::vector<Optimum> optima = WeightedOptima(models);
   OptimumAverage out;
-  out.model_weights.assign(searches.size(), 0.0);
+  out.model_weights.assign(models.size(), 0.0);
   const Optimum* best = &optima.front();
   for (const Optimum& optimum : optima) {
     out.model_weights[optimum.model] += optimum.weight;
     if (optimum.candidate->cost < best->candidate->cost) best = &optimum;
   }
   out.model = best->model;
-  out.estimate = searches[out.model].estimate;
-  if (optima.size() > 1) TakeMean(optima, searches, &out);
+  out.estimate = models[out.model].estimate;
+  if (optima.size() > 1) TakeMean(optima, models, &out);
   return out;
 }
 

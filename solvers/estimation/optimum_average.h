@@ -5,8 +5,8 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/brdf/merl_table.h"
+#include "ibrdf/solvers/estimation/marginal_search.h"
 #include "ibrdf/solvers/estimation/posterior.h"
-#include "ibrdf/solvers/estimation/solve_setup.h"
 
 namespace ibrdf {
 
@@ -28,12 +28,6 @@ class LogTableMean {
   double weight_ = 0.0;
 };
 
-// What a search with one model found.
-struct ModelOptima {
-  const SolveSetup* setup = nullptr;
-  ReflectanceEstimate estimate;
-};
-
 struct OptimumAverage {
   size_t model = 0;  // whose lobes the estimate has: that of the least cost
   // Share of the evidence of each model, sum 1.
@@ -44,8 +38,8 @@ struct OptimumAverage {
   ReflectanceEstimate estimate;
 };
 
-// Searches of one image, at least one. Each must have candidates of finite
+// models: of one search, at least one. Each must have candidates of finite
 // cost.
-OptimumAverage AverageOptima(const std::vector<ModelOptima>& searches);
+OptimumAverage AverageOptima(const std::vector<ModelOptima>& models);
 
 }  // namespace ibrdf

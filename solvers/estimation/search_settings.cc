@@ -24,9 +24,9 @@ constexpr double kMostBounceGain = 10.0;
 
 // Radiance [points][3] with bounces over that without, under a map of log
 // radiance [3][texels].
-std::vector<double> BounceGain(const Transport& transport,
-                               const MaterialGrids& grids,
-                               const std::vector<double>& log_radiance) {
+std::vector<double> GainByBounces(const Transport& transport,
+                                  const MaterialGrids& grids,
+                                  const std::vector<double>& log_radiance) {
   const int texels = transport.map_height() * transport.map_width();
   if (log_radiance.size() != size_t{3} * texels) return {};
   // The level cancels in the ratio.
@@ -43,8 +43,8 @@ std::vector<double> BounceGain(const Transport& transport,
   return all;
 }
 
-// BounceGain of all pixels, slice by slice. The last slice's transport is kept,
-// which spares a small image the making of another.
+// GainByBounces of all pixels, slice by slice. The last slice's transport is
+// kept, which spares a small image the making of another.
 class BounceGains {
  public:
   BounceGains(const SolveSetup& setup, MapSize size)
@@ -60,7 +60,7 @@ class BounceGains {
     std::vector<double> gain;
     for (size_t begin = 0; begin < count; begin += kPointsAtOnceWithBounces) {
       const std::vector<double> of_slice =
-          BounceGain(TransportOf(begin), ByMaterial(grids), log_radiance);
+          GainByBounces(TransportOf(begin), ByMaterial(grids), log_radiance);
       if (of_slice.empty()) return of_slice;
       gain.insert(gain.end(), of_slice.begin(), of_slice.end());
     }
@@ -128,15 +128,18 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
     entry.seconds = context->Elapsed();
     context->Report(entry);
   };
-  if (problem.transport.patches != nullptr) {
-    const auto gains = std::make_shared<BounceGains>(
-        setup, MapSize{o.fine.map_width, o.fine.map_height});
-    o.bounce_gain = [gains](const std::vector<double>& lobes,
-                            const std::vector<double>& log_radiance) {
-      return gains->Of(lobes, log_radiance);
-    };
-  }
   return o;
+}
+
+BounceGain BounceGainOf(const SolveSetup& setup,
+                        const MarginalResolution& fine) {
+  if (setup.problem->transport.patches == nullptr) return {};
+  const auto gains = std::make_shared<BounceGains>(
+      setup, MapSize{fine.map_width, fine.map_height});
+  return [gains](const std::vector<double>& lobes,
+                 const std::vector<double>& log_radiance) {
+    return gains->Of(lobes, log_radiance);
+  };
 }
 
 ReflectanceSearchOptions CoarseSearchOptions(double share,
@@ -145,7 +148,6 @@ ReflectanceSearchOptions CoarseSearchOptions(double share,
   ReflectanceSearchOptions o = SearchOptions(share, setup, context);
   o.fine_iterations = 0;
   o.covariance = false;
-  o.bounce_gain = {};
   return o;
 }
 

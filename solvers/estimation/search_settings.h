@@ -14,8 +14,12 @@ namespace ibrdf {
 ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
                                        SolveContext* context);
 
-// The same that ends at the coarse resolution: neither its finer stages nor the
-// object's own light, and no covariance.
+// SearchedModel::bounce_gain of a search whose finest resolution this is; empty
+// where the object throws no light on itself. The setup must outlive it.
+BounceGain BounceGainOf(const SolveSetup& setup,
+                        const MarginalResolution& fine);
+
+// SearchOptions of one that ends at the coarse resolution, without covariance.
 ReflectanceSearchOptions CoarseSearchOptions(double share,
                                              const SolveSetup& setup,
                                              SolveContext* context);

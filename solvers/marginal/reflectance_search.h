@@ -5,74 +5,31 @@
 #include <Eigen/Core>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/scene/scene.h"
-#include "ibrdf/solvers/marginal/marginal_reflectance.h"
+#include "ibrdf/solvers/marginal/search_options.h"
 #include "ibrdf/solvers/priors/material_prior.h"
 
 namespace ibrdf {
 
-// The best so far, at most so many, go on by so many steps of the descent.
-struct SearchStage {
-  int most = 0;
-  int iterations = 0;
-};
+// Light that the object throws on itself, of which the search knows nothing: by
+// what each point's radiance [points][3] is above the map's light alone, at the
+// lobes and the log radiance [3][H W] of an optimum (factors > 0; empty: not to
+// be had). The image is divided by them and the optimum refined,
+// bounce_iterations times. Where it settles the model explains the image with
+// its own bounces; that the factors follow the lobes is left out of the
+// covariance.
+using BounceGain = std::function<std::vector<double>(
+    const std::vector<double>& lobes, const std::vector<double>& log_radiance)>;
 
-struct ReflectanceSearchOptions {
-  LightProcess process;
-  // All materials are ranked at the first resolution, the best of them at the
-  // second, where some are refined; the optimum is found at the third.
-  MarginalResolution screen = {{8, 4, 0.2}, 16, 8, {48, 20, 12}};
-  MarginalResolution coarse = {{12, 4, 0.2}, 24, 12, {48, 20, 12}};
-  MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}, {}};
-  int kept = 10;  // of each ranking
-  // At the coarse resolution, the best of each going on to the next. The first
-  // takes the rankings' best in turns.
-  std::vector<SearchStage> coarse_stages = {{10, 2}, {8, 4}, {3, 6}};
-  // Nats above the lowest cost: candidates of the coarse resolution that go on
-  // to the fine one, and of those, after some steps there, the ones that are
-  // finished.
-  double coarse_margin = 40.0;
-  double margin = 12.0;
-  int fine_iterations = 20;
-  // Where directional lights are that the caller knows of: unit directions.
-  std::vector<Eigen::Vector3d> directional_lights;
-  // With those that the image's highlights make beside them
-  // (FindDirectionalLights).
-  int most_directional_lights = 3;
-  // Standard deviation of log radiance between model and image, of a bin. Not
-  // the pixels' noise, which a bin averages out, but what no lobes of the
-  // model can render: were it free to fall to the noise, light and reflectance
-  // would bend to every error of the model.
-  double sigma = 0.03;
-  // The points have so many. Lobes, prior and results hold as many lobes for
-  // each, one material's after the other's.
-  int num_materials = 1;
-  // The prior of albedo that varies over the surface; unset: it does not.
-  std::optional<PaintPrior> paint;
-  bool covariance = true;
-  int num_threads = 0;
-  // Light that the object throws on itself, of which the search knows nothing:
-  // by what each point's radiance [points][3] is above the map's light alone,
-  // at the lobes and the log radiance [3][H W] of an optimum (factors > 0;
-  // empty: not to be had). The image is divided by them and the optimum
-  // refined, so many times. Where it settles the model explains the image with
-  // its own bounces; that the factors follow the lobes is left out of the
-  // covariance.
-  std::function<std::vector<double>(const std::vector<double>& lobes,
-                                    const std::vector<double>& log_radiance)>
-      bounce_gain;
-  int bounce_iterations = 3;
-  // Checked between steps, by several threads; true ends early with the best so
-  // far.
-  std::function<bool()> should_stop;
-  // After each material refined and the last optimum; may be empty.
-  std::function<void(const std::string& stage, double cost, double misfit)>
-      report;
+// A model that a search chooses a reflectance of.
+struct SearchedModel {
+  LobeFactory lobes;
+  const MaterialPrior* prior = nullptr;  // of these lobes; must outlive it
+  BounceGain bounce_gain = {};           // unset: it throws none
 };
 
 // A material and the local optimum that it led to, costs in nats.
@@ -91,6 +48,7 @@ struct MaterialCandidate {
 };
 
 struct ReflectanceSearchResult {
+  size_t model = 0;                // of the models that were searched
   std::vector<double> parameters;  // as LobeModel's
   std::string initial_guess;       // the material that it began from
   double cost = 0.0;               // -log posterior, nats, up to a constant
@@ -110,10 +68,18 @@ struct ReflectanceSearchResult {
   std::vector<double> log_radiance_variance_left;
 };
 
-// kInvalidInput where no point can be used. prior: of these lobes.
-StatusOr<ReflectanceSearchResult> SearchReflectance(
-    const LobeFactory& lobes, const MaterialPrior& prior,
+// The materials of all models compete for each stage of the search. The result
+// of every model that has an optimum at the finest resolution reached, in the
+// models' order; the covariance is of the best one's alone. kInvalidInput where
+// no point can be used, kNoImprovement where no material explains the image.
+StatusOr<std::vector<ReflectanceSearchResult>> SearchReflectances(
+    const std::vector<SearchedModel>& models,
     const std::vector<ShadingPoint>& points, const Observations& observed,
     const ReflectanceSearchOptions& options);
+
+// The same with one model.
+StatusOr<ReflectanceSearchResult> SearchReflectance(
+    const SearchedModel& model, const std::vector<ShadingPoint>& points,
+    const Observations& observed, const ReflectanceSearchOptions& options);
 
 }  // namespace ibrdf

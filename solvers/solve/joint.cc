@@ -15,10 +15,6 @@
 namespace ibrdf {
 namespace {
 
-// A further model is searched where the first one's search took at most this
-// share of the time that remains.
-constexpr double kMostOfRemaining = 0.5;
-
 // A problem with another model, and what its stages share.
 struct OtherModel {
   std::unique_ptr<const InverseProblem> problem;
@@ -43,34 +39,6 @@ StatusOr<OtherModel> SetUpWith(const NamedModel& model,
   return other;
 }
 
-// Adds what a search finds; nothing where no material explains the image.
-Status AddSearch(const SolveSetup& setup, SolveContext* context,
-                 std::vector<ModelOptima>* searches) {
-  StatusOr<ReflectanceEstimate> found = EstimateReflectance(setup, context);
-  if (found.status().code() == StatusCode::kNoImprovement) {
-    LOG(WARNING) << found.status().message();
-    return OkStatus();
-  }
-  if (!found.ok()) return found.status();
-  searches->push_back({&setup, *std::move(found)});
-  return OkStatus();
-}
-
-// Costs of two resolutions do not compare: a search that time cut short is
-// left out.
-void DropCoarser(std::vector<ModelOptima>* searches) {
-  size_t finest = 0;
-  for (const ModelOptima& search : *searches) {
-    finest = std::max(finest, search.estimate.light.mode.num_texels());
-  }
-  searches->erase(
-      std::remove_if(searches->begin(), searches->end(),
-                     [&](const ModelOptima& search) {
-                       return search.estimate.light.mode.num_texels() < finest;
-                     }),
-      searches->end());
-}
-
 // The models by name, the one that the lobes are of first.
 void NameModels(const std::vector<ModelOptima>& searches,
                 const OptimumAverage& average, Solution* solution) {
@@ -89,32 +57,30 @@ void NameModels(const std::vector<ModelOptima>& searches,
 
 StatusOr<Solution> SolveJoint(const SolveSetup& setup, SolveContext* context) {
   const InverseProblem& problem = *setup.problem;
-  std::vector<ModelOptima> searches;
-  const double begin = context->Elapsed();
-  IBRDF_RETURN_IF_ERROR(AddSearch(setup, context, &searches));
-  const double seconds = context->Elapsed() - begin;
+  std::vector<const SolveSetup*> setups = {&setup};
   std::vector<OtherModel> others;
-  for (const NamedModel& model : problem.other_models) {
-    if (context->Interrupted() || problem.solver.max_iterations == 0 ||
-        seconds > kMostOfRemaining * context->Remaining()) {
-      break;
+  if (problem.solver.max_iterations > 0) {
+    for (const NamedModel& model : problem.other_models) {
+      StatusOr<OtherModel> other = SetUpWith(model, problem);
+      if (!other.ok()) return other.status();
+      others.push_back(*std::move(other));
+      setups.push_back(others.back().setup.get());
     }
-    StatusOr<OtherModel> other = SetUpWith(model, problem);
-    if (!other.ok()) return other.status();
-    others.push_back(*std::move(other));
-    IBRDF_RETURN_IF_ERROR(AddSearch(*others.back().setup, context, &searches));
   }
-  if (searches.empty()) {
+  const StatusOr<std::vector<ModelOptima>> searches =
+      EstimateReflectances(setups, context);
+  if (searches.status().code() == StatusCode::kNoImprovement) {
+    LOG(WARNING) << searches.status().message();
     return Summarise(setup, ConstantLight(setup, MeanMaterial(setup)), context);
   }
-  DropCoarser(&searches);
-  OptimumAverage average = AverageOptima(searches);
-  const SolveSetup& found = *searches[average.model].setup;
+  if (!searches.ok()) return searches.status();
+  OptimumAverage average = AverageOptima(*searches);
+  const SolveSetup& found = *(*searches)[average.model].setup;
   StatusOr<Estimate> estimate =
       EstimateLight(found, std::move(average.estimate), context);
   if (!estimate.ok()) return estimate.status();
   Solution solution = Summarise(found, *std::move(estimate), context);
-  NameModels(searches, average, &solution);
+  NameModels(*searches, average, &solution);
   return solution;
 }
 

@@ -74,6 +74,8 @@ class AverageOptimaTest : public ::testing::Test {
                             std::vector<MaterialCandidate> candidates) {
     ModelOptima search;
     search.setup = &setup;
+    search.gauge = std::make_shared<const LevelGauge>(*setup.problem->model,
+                                                      setup.materials, 1);
     search.estimate.lobes = candidates.front().parameters;
     search.estimate.light.mode = LogMap({4, 2});
     search.estimate.candidates = std::move(candidates);

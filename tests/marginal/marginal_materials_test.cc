@@ -209,7 +209,7 @@ TEST_F(MarginalMaterialsTest, SearchFindsBoth) {
   options.num_materials = 2;
   options.most_directional_lights = 0;
   const StatusOr<ReflectanceSearchResult> found =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points,
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points,
                         MakeObservations(radiance), options);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_EQ("right", found->initial_guess);

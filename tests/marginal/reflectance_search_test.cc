@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/brdf/cook_torrance_lobes.h"
@@ -59,7 +62,7 @@ TEST_F(ReflectanceSearchTest, AmongCookTorranceExplainsItsOwn) {
   MaterialPrior prior = GaussianPrior(materials, CookTorranceLobes::kCode);
   prior.wall = 0.0;
   const StatusOr<ReflectanceSearchResult> found =
-      SearchReflectance(CookTorranceLobes::Factory(1), prior, points_,
+      SearchReflectance({CookTorranceLobes::Factory(1), &prior}, points_,
                         MakeObservations(image), Options());
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_LT(found->misfit, found->candidates[0].first_misfit);
@@ -103,7 +106,7 @@ TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
   const MaterialPrior prior = KnownMaterial(ToEigen(parameters));
   EXPECT_EQ(0.0, prior.Cost(ToEigen(parameters), nullptr));
   const StatusOr<ReflectanceSearchResult> found =
-      SearchReflectance(TableLobes::Factory(known), prior, points,
+      SearchReflectance({TableLobes::Factory(known), &prior}, points,
                         MakeObservations(image), options);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_EQ("known", found->initial_guess);
@@ -130,7 +133,7 @@ TEST_F(ReflectanceSearchTest, UnderABlackReflectanceSaysSo) {
   int reports = 0;
   options.report = [&](const std::string&, double, double) { ++reports; };
   const StatusOr<ReflectanceSearchResult> found =
-      SearchReflectance(TableLobes::Factory(black), prior, points_,
+      SearchReflectance({TableLobes::Factory(black), &prior}, points_,
                         MakeObservations(radiance_), options);
   ASSERT_FALSE(found.ok());
   EXPECT_EQ(StatusCode::kNoImprovement, found.status().code());
@@ -141,7 +144,7 @@ TEST_F(ReflectanceSearchTest, LowersTheCostWhateverTheThreads) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   ReflectanceSearchOptions options = Options();
   const StatusOr<ReflectanceSearchResult> one =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
                         MakeObservations(radiance_), options);
   ASSERT_TRUE(one.ok()) << one.status().message();
   ASSERT_EQ(14u, one->parameters.size());
@@ -176,7 +179,7 @@ TEST_F(ReflectanceSearchTest, LowersTheCostWhateverTheThreads) {
   EXPECT_LT(one->covariance.trace(), prior_variance.sum());
   options.num_threads = 2;
   const StatusOr<ReflectanceSearchResult> two =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
                         MakeObservations(radiance_), options);
   ASSERT_TRUE(two.ok());
   EXPECT_EQ(one->parameters, two->parameters);
@@ -193,16 +196,17 @@ TEST_F(ReflectanceSearchTest, BouncesAreTakenOutOfTheImage) {
   }
   ReflectanceSearchOptions options = Options();
   const ReflectanceSearchResult clean =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
                         MakeObservations(radiance_), options)
           .value();
   const ReflectanceSearchResult left =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
                         MakeObservations(brighter), options)
           .value();
   int calls = 0;
-  options.bounce_gain = [&](const std::vector<double>& lobes,
-                            const std::vector<double>& log_radiance) {
+  SearchedModel model = {FlowLobes::Factory(model_, 2, 1), &prior};
+  model.bounce_gain = [&](const std::vector<double>& lobes,
+                          const std::vector<double>& log_radiance) {
     ++calls;
     EXPECT_EQ(14u, lobes.size());
     EXPECT_EQ(size_t{3} * left.map_width * left.map_height,
@@ -210,8 +214,7 @@ TEST_F(ReflectanceSearchTest, BouncesAreTakenOutOfTheImage) {
     return gain;
   };
   const ReflectanceSearchResult taken =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
-                        MakeObservations(brighter), options)
+      SearchReflectance(model, points_, MakeObservations(brighter), options)
           .value();
   EXPECT_EQ(options.bounce_iterations, calls);
   EXPECT_GT(left.cost, clean.cost + 5.0);
@@ -219,14 +222,14 @@ TEST_F(ReflectanceSearchTest, BouncesAreTakenOutOfTheImage) {
   // Lower where its rounds, of more iterations, came further.
   EXPECT_LT(taken.cost, clean.cost + 0.1 * (left.cost - clean.cost));
   // Where there is nothing to be had all stays.
-  options.bounce_gain = [](const auto&, const auto&) {
+  model.bounce_gain = [](const auto&, const auto&) {
     return std::vector<double>();
   };
-  EXPECT_EQ(left.parameters,
-            SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
-                              MakeObservations(brighter), options)
-                .value()
-                .parameters);
+  EXPECT_EQ(
+      left.parameters,
+      SearchReflectance(model, points_, MakeObservations(brighter), options)
+          .value()
+          .parameters);
 }
 
 TEST_F(ReflectanceSearchTest, WiderMarginsNeverEndAtAHigherCost) {
@@ -236,11 +239,11 @@ TEST_F(ReflectanceSearchTest, WiderMarginsNeverEndAtAHigherCost) {
   options.coarse_margin = 1e9;
   options.margin = 0.0;
   const StatusOr<ReflectanceSearchResult> one =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
                         MakeObservations(radiance_), options);
   options.margin = 1e9;
   const StatusOr<ReflectanceSearchResult> all =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
                         MakeObservations(radiance_), options);
   ASSERT_TRUE(one.ok() && all.ok());
   EXPECT_LE(all->cost, one->cost);
@@ -254,12 +257,96 @@ TEST_F(ReflectanceSearchTest, WiderMarginsNeverEndAtAHigherCost) {
   EXPECT_GT(change, 0.0);
 }
 
+// Where nothing is dropped the models do not meet.
+TEST_F(ReflectanceSearchTest, ModelsWithoutCompetitionFindWhatEachFindsAlone) {
+  const NeuralBrdfModel other = SmoothTinyModel(4, 7);
+  const MaterialPrior priors[] = {JointMaterialPrior(model_, 2, 0.5),
+                                  JointMaterialPrior(other, 2, 0.5)};
+  const std::vector<SearchedModel> models = {
+      {FlowLobes::Factory(model_, 2, 1), &priors[0]},
+      {FlowLobes::Factory(other, 2, 1), &priors[1]}};
+  ReflectanceSearchOptions options = Options();
+  options.kept = 100;
+  options.coarse_stages = {{100, 1}, {100, 2}};
+  options.coarse_margin = options.margin = 1e9;
+  const StatusOr<std::vector<ReflectanceSearchResult>> both =
+      SearchReflectances(models, points_, MakeObservations(radiance_), options);
+  ASSERT_TRUE(both.ok()) << both.status().message();
+  ASSERT_EQ(2u, both->size());
+  const size_t best = (*both)[0].cost < (*both)[1].cost ? 0 : 1;
+  for (size_t m = 0; m < 2; ++m) {
+    const ReflectanceSearchResult& found = (*both)[m];
+    const ReflectanceSearchResult alone =
+        SearchReflectance(models[m], points_, MakeObservations(radiance_),
+                          options)
+            .value();
+    EXPECT_EQ(m, found.model);
+    EXPECT_EQ(alone.parameters, found.parameters);
+    EXPECT_EQ(alone.cost, found.cost);
+    EXPECT_EQ(alone.log_radiance, found.log_radiance);
+    EXPECT_EQ(m == best, found.covariance.size() > 0) << m;
+  }
+}
+
+// Each stage goes on with the best of all models.
+TEST_F(ReflectanceSearchTest, CandidatesOfAllModelsCompete) {
+  const NeuralBrdfModel other = SmoothTinyModel(4, 7);
+  const MaterialPrior priors[] = {JointMaterialPrior(model_, 2, 0.5),
+                                  JointMaterialPrior(other, 2, 0.5)};
+  const std::vector<SearchedModel> models = {
+      {FlowLobes::Factory(model_, 2, 1), &priors[0]},
+      {FlowLobes::Factory(other, 2, 1), &priors[1]}};
+  ReflectanceSearchOptions options = Options();
+  options.kept = 4;
+  options.coarse_stages = {{6, 2}, {1, 2}};
+  options.fine.map_width *= 2;
+  options.fine.map_height *= 2;
+  std::vector<std::string> refined;
+  options.report = [&](const std::string& stage, double, double) {
+    refined.push_back(stage);
+  };
+  const StatusOr<std::vector<ReflectanceSearchResult>> found =
+      SearchReflectances(models, points_, MakeObservations(radiance_), options);
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  // The model of the one that is left.
+  ASSERT_EQ(1u, found->size());
+  const ReflectanceSearchResult& left = found->front();
+  EXPECT_EQ(1, std::count_if(left.candidates.begin(), left.candidates.end(),
+                             [](const MaterialCandidate& c) {
+                               return std::isfinite(c.cost);
+                             }));
+  const std::vector<std::string> stages = {
+      "rank " +
+          std::to_string(priors[0].materials.size() +
+                         priors[1].materials.size()) +
+          " materials",
+      "refine 6", "refine 1", "finish " + left.initial_guess};
+  EXPECT_EQ(stages, refined);
+}
+
+TEST_F(ReflectanceSearchTest, ModelThatExplainsNothingLeavesTheRace) {
+  const BrdfGrid black = BrdfGrid::FromFunction(
+      [](double, double, double) { return Eigen::Array3d::Zero().eval(); },
+      resolution_.grid);
+  const MaterialPrior known =
+      KnownMaterial(ToEigen(TableLobes::KnownParameters()));
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  const StatusOr<std::vector<ReflectanceSearchResult>> found =
+      SearchReflectances({{TableLobes::Factory(black), &known},
+                          {FlowLobes::Factory(model_, 2, 1), &prior}},
+                         points_, MakeObservations(radiance_), Options());
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  ASSERT_EQ(1u, found->size());
+  EXPECT_EQ(1u, found->front().model);
+  EXPECT_GT(found->front().covariance.size(), 0);
+}
+
 TEST_F(ReflectanceSearchTest, StoppedSearchIsWhole) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   ReflectanceSearchOptions options = Options();
   options.should_stop = [] { return true; };
   const StatusOr<ReflectanceSearchResult> found =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
                         MakeObservations(radiance_), options);
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_EQ(14u, found->parameters.size());
@@ -273,7 +360,7 @@ TEST_F(ReflectanceSearchTest, ImageWithoutAUsablePixelIsNamed) {
     bad[i] = i % 2 == 0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
   }
   const Status status =
-      SearchReflectance(FlowLobes::Factory(model_, 2, 1), prior, points_,
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
                         MakeObservations(bad), Options())
           .status();
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
