@@ -119,11 +119,13 @@ class MarginalLikelihood {
   // with the light held at its mode. Of the log determinant the hyperparameters
   // alone have their part in it, the Fisher information tr(A^-1 J K_a J^T A^-1
   // J K_b J^T) / 2, K_a the derivative of K by scale a. Positive semidefinite.
-  // Empty where A is not positive definite.
-  Eigen::MatrixXd Information(const std::array<RowMatrix, 3>& matrices,
-                              const DataErrors& errors,
-                              const LightHyperparameters& hyperparameters,
-                              const LightMode& mode, const RowMatrix& G) const;
+  // Empty where A is not positive definite. of_hyperparameters: their block,
+  // which takes most of the time; one that is not empty is used as it is, an
+  // empty one receives it.
+  Eigen::MatrixXd Information(
+      const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
+      const LightHyperparameters& hyperparameters, const LightMode& mode,
+      const RowMatrix& G, Eigen::MatrixXd* of_hyperparameters = nullptr) const;
 
   // sigma^2 and what the map's coarse texels cannot hold: light inside a texel
   // shows where a lobe changes within it,
@@ -302,6 +304,15 @@ class MarginalLikelihood {
   // definite, or not finite.
   bool FindMode(const Given& given, double tolerance, Point* point,
                 DataTerm* data, LightMode* mode) const;
+
+  // Information's blocks: marginal_posterior.cc.
+  Eigen::MatrixXd HyperparameterInformation(const Light& light,
+                                            const Linearisation& linear) const;
+  // J K_b J^T, rows and columns scaled, K_b the derivative of K by the log
+  // roughness of a band; rough: J of a channel times the rough part.
+  RowMatrix CovarianceByBand(const Light& light, const Linearisation& linear,
+                             const std::array<RowMatrix, 3>& rough,
+                             int band) const;
 
   // The gradient's parts: marginal_gradient.cc.
   DeterminantGradient GradientOfDeterminant(const Given& given,

@@ -103,8 +103,12 @@ Eigen::MatrixXd MarginalObjective::Information(const double* y) const {
   const Eigen::Index n = prior_->num_parameters(), all = NumParameters();
   const Eigen::Index first_scale = reflectance_->num_parameters();
   const Eigen::VectorXd parameters = ParametersOf(y);
+  if (information_calls_++ % kHyperparameterSteps == 0) {
+    of_hyperparameters_.resize(0, 0);
+  }
   Eigen::MatrixXd information = reflectance_->Information(
-      parameters.data(), errors_, HyperparametersOf(y), *mode_);
+      parameters.data(), errors_, HyperparametersOf(y), *mode_,
+      &of_hyperparameters_);
   if (information.size() == 0 || !information.allFinite()) return {};
   prior_->AddWallInformation(parameters.head(n), &information);
   // Both sides by the whitening.

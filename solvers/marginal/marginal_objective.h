@@ -33,7 +33,10 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
 
   // Gauss-Newton Hessian [NumParameters()]^2 at y, where Evaluate with a
   // gradient was called last: prior, wall and MarginalReflectance::Information.
-  // Positive definite; empty where there is none.
+  // Positive definite; empty where there is none. The block of the
+  // hyperparameters hardly changes from step to step: it is made anew at every
+  // kHyperparameterSteps-th call, the first among them.
+  static constexpr int kHyperparameterSteps = 4;
   Eigen::MatrixXd Information(const double* y) const;
 
   // MarginalReflectance's, and the lobes' among them.
@@ -56,6 +59,8 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   mutable std::vector<double> trial_;  // of the last evaluation, no gradient
   mutable LightMode trial_mode_;
   mutable MarginalValue last_value_;
+  mutable Eigen::MatrixXd of_hyperparameters_;  // of Information
+  mutable int information_calls_ = 0;
 };
 
 }  // namespace ibrdf

@@ -10,12 +10,11 @@ namespace ibrdf {
 Eigen::MatrixXd MarginalLikelihood::Information(
     const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, const LightMode& mode,
-    const RowMatrix& G) const {
-  const Eigen::Index P = num_points_, n = G.cols();
+    const RowMatrix& G, Eigen::MatrixXd* of_hyperparameters) const {
+  const Eigen::Index n = G.cols();
   constexpr int kCount = LightHyperparameters::kCount;
-  CHECK_EQ(G.rows(), 3 * P);
+  CHECK_EQ(G.rows(), Eigen::Index{3} * num_points_);
   const Given given = GivenBy(matrices, errors, hyperparameters);
-  const Light& light = given.light;
   const Point point = At(given, mode.level, mode.l);
   const auto linear = Linearise(given, point, DataAt(given, point));
   if (linear == nullptr) return {};
@@ -24,7 +23,48 @@ Eigen::MatrixXd MarginalLikelihood::Information(
           RowMatrix(linear->row_scale.asDiagonal() * G));
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n + kCount, n + kCount);
   information.topLeftCorner(n, n).noalias() = whitened.transpose() * whitened;
-  RowMatrix inverse = linear->factor;
+  Eigen::MatrixXd block;
+  if (of_hyperparameters == nullptr) of_hyperparameters = &block;
+  if (of_hyperparameters->size() == 0) {
+    *of_hyperparameters = HyperparameterInformation(given.light, *linear);
+  }
+  information.bottomRightCorner(kCount, kCount) = *of_hyperparameters;
+  return information;
+}
+
+RowMatrix MarginalLikelihood::CovarianceByBand(
+    const Light& light, const Linearisation& linear,
+    const std::array<RowMatrix, 3>& rough, int band) const {
+  const Eigen::Index P = num_points_;
+  // Only its rows of the map.
+  int first = 0, last = map_height_;
+  while (first < last && roughness_weights_(band, first) == 0.0) ++first;
+  while (first < last && roughness_weights_(band, last - 1) == 0.0) --last;
+  const Eigen::Index from = Eigen::Index{first} * map_width_;
+  const Eigen::Index size = Eigen::Index{last - first} * map_width_;
+  RowMatrix half = RowMatrix::Zero(3 * P, 3 * P);
+  if (size == 0) return half;
+  const Eigen::VectorXd h = BandWeights(band).segment(from, size);
+  for (int c = 0; c < 3; ++c) {
+    const RowMatrix weighted = rough[c].middleCols(from, size) * h.asDiagonal();
+    for (int d = 0; d < 3; ++d) {
+      RowMatrix product;
+      MultiplyTransposed(weighted,
+                         RowMatrix(linear.jacobian[d].middleCols(from, size)),
+                         &product);
+      product *= light.amplitude * local_(c, d);
+      ScaleBlock(linear, c, d, &product);
+      half.block(c * P, d * P, P, P) = product;
+    }
+  }
+  return half + half.transpose();
+}
+
+Eigen::MatrixXd MarginalLikelihood::HyperparameterInformation(
+    const Light& light, const Linearisation& linear) const {
+  const Eigen::Index P = num_points_;
+  constexpr int kCount = LightHyperparameters::kCount;
+  RowMatrix inverse = linear.factor;
   InvertFactored(&inverse);
   // A^-1 J K_a J^T of each scale. The amplitude's: I - A^-1 (D + what it does
   // not scale).
@@ -32,47 +72,26 @@ Eigen::MatrixXd MarginalLikelihood::Information(
   RowMatrix unscaled(3 * P, 3 * P);
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
-      RowMatrix block = UnscaledBlock(*linear, c, d);
-      ScaleBlock(*linear, c, d, &block);
+      RowMatrix block = UnscaledBlock(linear, c, d);
+      ScaleBlock(linear, c, d, &block);
       unscaled.block(c * P, d * P, P, P) = block;
     }
   }
-  unscaled.diagonal() += linear->diagonal;
+  unscaled.diagonal() += linear.diagonal;
   MultiplyInTiles(inverse, -unscaled, num_threads_, &by[0]);
   by[0].diagonal().array() += 1.0;
   std::array<RowMatrix, 3> rough;
   for (int c = 0; c < 3; ++c) {
-    light.rough.Multiply(linear->jacobian[c].leftCols(num_texels()), &rough[c]);
+    light.rough.Multiply(linear.jacobian[c].leftCols(num_texels()), &rough[c]);
   }
   for (int b = 0; b < LightHyperparameters::kBands; ++b) {
-    // Only its rows of the map.
-    int first = 0, last = map_height_;
-    while (first < last && roughness_weights_(b, first) == 0.0) ++first;
-    while (first < last && roughness_weights_(b, last - 1) == 0.0) --last;
-    const Eigen::Index from = Eigen::Index{first} * map_width_;
-    const Eigen::Index size = Eigen::Index{last - first} * map_width_;
-    RowMatrix half = RowMatrix::Zero(3 * P, 3 * P);
-    if (size > 0) {
-      const Eigen::VectorXd h = BandWeights(b).segment(from, size);
-      for (int c = 0; c < 3; ++c) {
-        const RowMatrix weighted =
-            rough[c].middleCols(from, size) * h.asDiagonal();
-        for (int d = 0; d < 3; ++d) {
-          RowMatrix product;
-          MultiplyTransposed(
-              weighted, RowMatrix(linear->jacobian[d].middleCols(from, size)),
-              &product);
-          product *= light.amplitude * local_(c, d);
-          ScaleBlock(*linear, c, d, &product);
-          half.block(c * P, d * P, P, P) = product;
-        }
-      }
-    }
-    MultiplyInTiles(inverse, half + half.transpose(), num_threads_, &by[1 + b]);
+    MultiplyInTiles(inverse, CovarianceByBand(light, linear, rough, b),
+                    num_threads_, &by[1 + b]);
   }
+  Eigen::MatrixXd information(kCount, kCount);
   for (int a = 0; a < kCount; ++a) {
     for (int b = 0; b <= a; ++b) {
-      information(n + a, n + b) = information(n + b, n + a) =
+      information(a, b) = information(b, a) =
           0.5 * by[a].cwiseProduct(by[b].transpose()).sum();
     }
   }

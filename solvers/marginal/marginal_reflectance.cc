@@ -506,7 +506,8 @@ void MarginalReflectance::AddLogRadianceJacobian(
 
 Eigen::MatrixXd MarginalReflectance::Information(
     const double* parameters, const DataErrors& errors,
-    const LightHyperparameters& hyperparameters, const LightMode& mode) const {
+    const LightHyperparameters& hyperparameters, const LightMode& mode,
+    Eigen::MatrixXd* of_hyperparameters) const {
   const Fields fields = Tabulate(parameters, true);
   const DirectionalLightResponses directional_lights =
       DirectionalLights(parameters);
@@ -516,7 +517,7 @@ Eigen::MatrixXd MarginalReflectance::Information(
   return likelihood_->Information(
       Coloured(parameters, ShapeMatrices(directional_lights, fields,
                                          1 + lobes_->code_size())),
-      errors, hyperparameters, mode, G);
+      errors, hyperparameters, mode, G, of_hyperparameters);
 }
 
 }  // namespace ibrdf

@@ -71,10 +71,10 @@ class MarginalReflectance {
                          std::vector<double>* gradient) const;
 
   // As MarginalLikelihood::Information at the mode of these parameters.
-  Eigen::MatrixXd Information(const double* parameters,
-                              const DataErrors& errors,
-                              const LightHyperparameters& hyperparameters,
-                              const LightMode& mode) const;
+  Eigen::MatrixXd Information(
+      const double* parameters, const DataErrors& errors,
+      const LightHyperparameters& hyperparameters, const LightMode& mode,
+      Eigen::MatrixXd* of_hyperparameters = nullptr) const;
 
   // The matrices T_c of parameters, and those of what paint scales (MattePart
   // of each lobe); empty ones without paint.

@@ -51,64 +51,71 @@ std::unique_ptr<SearchLevel> ModelSearch::LevelAt(
                                        directional_lights_, options_);
 }
 
-void ModelSearch::Rank() {
-  for (const LightHyperparameters& hyperparameters :
-       {LightHyperparameters(), LightHyperparameters::Harsh()}) {
+void ModelSearch::Rank(const std::vector<LightGuess>& lights) {
+  rankings_.clear();
+  for (const LightGuess& light : lights) {
     Ranking& ranking = rankings_.emplace_back();
     for (size_t i = 0; i < materials_.size(); ++i) {
-      ranking.push_back({static_cast<int>(i), hyperparameters});
+      ranking.push_back({static_cast<int>(i), light});
     }
   }
-  RankAll(*LevelAt(options_.screen));
-  for (MaterialCandidate& material : materials_) {
-    material.screen_cost = material.first_cost;
-  }
+  if (screen_ == nullptr) screen_ = LevelAt(options_.screen);
+  if (level_ == nullptr) level_ = LevelAt(options_.coarse);
   for (Ranking& ranking : rankings_) {
+    RankAll(*screen_, &ranking);
+    for (const MaterialUnderLight& ranked : ranking) {
+      double& least = materials_[ranked.material].screen_cost;
+      least = std::min(least, ranked.cost);
+    }
     ranking.resize(std::min<size_t>(ranking.size(), options_.kept));
+    RankAll(*level_, &ranking);
+    for (const MaterialUnderLight& ranked : ranking) {
+      MaterialCandidate& material = materials_[ranked.material];
+      if (!(ranked.cost < material.first_cost)) continue;
+      material.first_cost = ranked.cost;
+      material.first_misfit = ranked.misfit;
+    }
   }
-  level_ = LevelAt(options_.coarse);
-  RankAll(*level_);
+}
+
+Eigen::VectorXd ModelSearch::ParametersOf(const MaterialUnderLight& ranked,
+                                          const SearchLevel& level) const {
+  Eigen::VectorXd parameters = level.reflectance().WithDirectionalLights(
+      model_.prior->materials[ranked.material].parameters);
+  const Eigen::VectorXd& offsets = ranked.light.offsets;
+  if (offsets.size() > 0) parameters.tail(offsets.size()) = offsets;
+  return parameters;
 }
 
 // Whole materials in parallel: what each does inside then runs in its thread.
-void ModelSearch::RankAll(const SearchLevel& level) {
-  // Costs of two resolutions do not compare.
-  for (MaterialCandidate& material : materials_)
-    material.first_cost = kInfinity;
-  for (Ranking& ranking : rankings_) {
-    ParallelFor(static_cast<int64_t>(ranking.size()), options_.num_threads,
-                [&](int64_t i, int) {
-                  MaterialUnderLight& ranked = ranking[i];
-                  ranked.cost = kInfinity;
-                  if (i > 0 && options_.Stopped()) return;
-                  ranked.cost = level.Rank(
-                      ToEigen(materials_[ranked.material].parameters),
-                      ranked.hyperparameters, &ranked.misfit);
-                });
-    for (const MaterialUnderLight& ranked : ranking) {
-      MaterialCandidate& material = materials_[ranked.material];
-      if (ranked.cost < material.first_cost) {
-        material.first_cost = ranked.cost;
-        material.first_misfit = ranked.misfit;
-      }
-    }
-    std::stable_sort(
-        ranking.begin(), ranking.end(),
-        [](const MaterialUnderLight& a, const MaterialUnderLight& b) {
-          return a.cost < b.cost;
-        });
-  }
+void ModelSearch::RankAll(const SearchLevel& level, Ranking* ranking) const {
+  ParallelFor(static_cast<int64_t>(ranking->size()), options_.num_threads,
+              [&](int64_t i, int) {
+                MaterialUnderLight& ranked = (*ranking)[i];
+                ranked.cost = kInfinity;
+                if (i > 0 && options_.Stopped()) return;
+                ranked.cost =
+                    level.Rank(ParametersOf(ranked, level),
+                               ranked.light.hyperparameters, &ranked.misfit);
+              });
+  std::stable_sort(ranking->begin(), ranking->end(),
+                   [](const MaterialUnderLight& a,
+                      const MaterialUnderLight& b) { return a.cost < b.cost; });
 }
 
 bool ModelSearch::Take(const MaterialUnderLight& ranked) {
   for (const Candidate& c : candidates_) {
     if (c.material == ranked.material) return false;
   }
-  candidates_.push_back({ranked.material,
-                         level_->reflectance().WithDirectionalLights(
-                             ToEigen(materials_[ranked.material].parameters)),
-                         ranked.hyperparameters, 0.0});
+  candidates_.push_back({ranked.material, ParametersOf(ranked, *level_),
+                         ranked.light.hyperparameters, ranked.cost});
   return true;
+}
+
+LightGuess ModelSearch::LightAt(const Candidate& candidate) const {
+  return {
+      candidate.hyperparameters,
+      candidate.parameters.tail(Eigen::Index{2} * directional_lights_.size())};
 }
 
 void ModelSearch::KeepCandidates(size_t most) {

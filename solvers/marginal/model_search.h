@@ -11,10 +11,16 @@
 
 namespace ibrdf {
 
+// What a ranking takes the light for.
+struct LightGuess {
+  LightHyperparameters hyperparameters;
+  Eigen::VectorXd offsets;  // of the directional lights; empty: where they are
+};
+
 // A material under light of one kind.
 struct MaterialUnderLight {
   int material = 0;
-  LightHyperparameters hyperparameters;
+  LightGuess light;
   double cost = std::numeric_limits<double>::infinity(), misfit = 0.0;
 };
 using Ranking = std::vector<MaterialUnderLight>;  // by cost
@@ -38,15 +44,18 @@ class ModelSearch {
               const std::vector<Eigen::Vector3d>& directional_lights,
               const ReflectanceSearchOptions& options);
 
-  // Ranks all materials at the screen's resolution and the best of each kind of
-  // light at the coarse one.
-  void Rank();
+  // Ranks all materials at the screen's resolution, and the best of them at the
+  // coarse one: under each guess of the light.
+  void Rank(const std::vector<LightGuess>& lights);
   const std::vector<Ranking>& rankings() const { return rankings_; }
   // Makes a ranked material a candidate; false where it is one.
   bool Take(const MaterialUnderLight& ranked);
 
   const std::vector<Candidate>& candidates() const { return candidates_; }
   void KeepCandidates(size_t most);
+
+  // The light where a candidate is.
+  LightGuess LightAt(const Candidate& candidate) const;
 
   // What follows refines at the fine resolution.
   void Sharpen();
@@ -79,7 +88,9 @@ class ModelSearch {
  private:
   std::unique_ptr<SearchLevel> LevelAt(
       const MarginalResolution& resolution) const;
-  void RankAll(const SearchLevel& level);
+  void RankAll(const SearchLevel& level, Ranking* ranking) const;
+  Eigen::VectorXd ParametersOf(const MaterialUnderLight& ranked,
+                               const SearchLevel& level) const;
   std::vector<double> LogRadiance() const;
   // Without the directional lights.
   std::vector<double> Lobes(const Candidate& candidate) const;
@@ -90,6 +101,7 @@ class ModelSearch {
   Observations unbounced_;  // the image without bounces
   const std::vector<Eigen::Vector3d>& directional_lights_;
   const ReflectanceSearchOptions& options_;
+  std::unique_ptr<SearchLevel> screen_;
   std::unique_ptr<SearchLevel> level_;       // the present resolution
   std::unique_ptr<SearchLevel> last_level_;  // kept while the best is of it
   std::vector<MaterialCandidate> materials_;

@@ -34,10 +34,19 @@ class Search {
   // Ranks the materials and refines the best; false where none explains the
   // image.
   bool RankAndRefine() {
-    for (ModelSearch& search : searches_) search.Rank();
-    if (!TakeBest(options_.coarse_stages.front().most)) return false;
-    for (const SearchStage& stage : options_.coarse_stages) {
+    const size_t stages = options_.coarse_stages.size();
+    if (!TakeBest(
+            {{LightHyperparameters(), {}}, {LightHyperparameters::Harsh(), {}}},
+            options_.coarse_stages.front().most)) {
+      return false;
+    }
+    for (size_t k = 0; k < stages; ++k) {
+      const SearchStage& stage = options_.coarse_stages[k];
       KeepBest(stage.most);
+      // Under the light that the best has found others may explain the image.
+      if (k == 1 && options_.ranked_anew > 0) {
+        TakeBest({BestLight()}, options_.ranked_anew);
+      }
       if (!Refine("", stage.iterations)) return false;
       const ModelSearch& best = Best();
       Report("refine " + std::to_string(NumCandidates()), best.best_cost(),
@@ -49,12 +58,12 @@ class Search {
   // Compares the candidates at the fine resolution and finishes the best.
   void FinishBest() {
     if (options_.fine_iterations == 0 || options_.Stopped()) return;
-    DropBeyond(options_.coarse_margin);
+    DropBeyond(options_.coarse_margin, 1);
     for (ModelSearch& search : searches_) {
       if (!search.candidates().empty()) search.Sharpen();
     }
     if (!Refine("", kTrialIterations)) return;
-    DropBeyond(options_.margin);
+    DropBeyond(options_.margin, 0);
     Refine("finish ", options_.fine_iterations);
   }
 
@@ -82,9 +91,24 @@ class Search {
     if (options_.report) options_.report(stage, cost, misfit);
   }
 
-  // The rankings' best in turns, the best ranking first; false where no
-  // material explains the image.
-  bool TakeBest(int most) {
+  // The light of the best candidate.
+  LightGuess BestLight() const {
+    const ModelSearch* best = nullptr;
+    for (const ModelSearch& search : searches_) {
+      if (search.candidates().empty()) continue;
+      if (best == nullptr ||
+          search.candidates().front().cost < best->candidates().front().cost) {
+        best = &search;
+      }
+    }
+    return best->LightAt(best->candidates().front());
+  }
+
+  // Ranks all materials under these lights and makes the rankings' best
+  // candidates, in turns, the best ranking first. False where no material
+  // explains the image.
+  bool TakeBest(const std::vector<LightGuess>& lights, int most) {
+    for (ModelSearch& search : searches_) search.Rank(lights);
     std::vector<std::pair<ModelSearch*, const Ranking*>> rankings;
     size_t count = 0;
     for (ModelSearch& search : searches_) {
@@ -130,20 +154,27 @@ class Search {
     return costs;
   }
 
-  void DropAbove(double cost) {
+  // Drops what costs more, but for the best few of each model.
+  void DropAbove(double cost, size_t least_of_model) {
     for (ModelSearch& search : searches_) {
       const auto& all = search.candidates();
-      search.KeepCandidates(
+      const auto below = static_cast<size_t>(
           std::count_if(all.begin(), all.end(),
                         [&](const auto& c) { return c.cost <= cost; }));
+      search.KeepCandidates(std::max(below, least_of_model));
     }
   }
+  // A model of simpler shapes begins badly and may yet end best.
   void KeepBest(size_t most) {
     const std::vector<double> costs = Costs();
-    if (costs.size() > most) DropAbove(costs[most - 1]);
+    if (costs.size() <= most) return;
+    DropAbove(costs[most - 1],
+              (most + 2 * searches_.size() - 1) / (2 * searches_.size()));
   }
   // Drops those whose costs are not within the margin of the lowest.
-  void DropBeyond(double margin) { DropAbove(Costs().front() + margin); }
+  void DropBeyond(double margin, size_t least_of_model) {
+    DropAbove(Costs().front() + margin, least_of_model);
+  }
 
   // Whole refinements of all candidates in parallel. False where none comes to
   // anything.

@@ -30,11 +30,10 @@ SearchLevel::SearchLevel(const LobeFactory& lobes, const MaterialPrior& prior,
                    options.num_threads, directional_lights, options.paint,
                    options.num_materials) {}
 
-double SearchLevel::Rank(const Eigen::VectorXd& lobes,
+double SearchLevel::Rank(const Eigen::VectorXd& parameters,
                          const LightHyperparameters& hyperparameters,
                          double* misfit) const {
   LightMode mode;
-  const Eigen::VectorXd parameters = reflectance_.WithDirectionalLights(lobes);
   const std::array<RowMatrix, 3> matrices =
       reflectance_.Matrices(parameters.data());
   const MarginalLikelihood& likelihood = reflectance_.likelihood();
@@ -49,7 +48,9 @@ double SearchLevel::Rank(const Eigen::VectorXd& lobes,
   double of_hyperparameters = 0.0;
   for (const double y : hyperparameters.Whitened())
     of_hyperparameters += 0.5 * y * y;
-  return value.cost + prior_.Cost(lobes, nullptr) + of_hyperparameters;
+  return value.cost +
+         prior_.Cost(parameters.head(prior_.num_parameters()), nullptr) +
+         of_hyperparameters;
 }
 
 LocalOptimum SearchLevel::Refine(const Eigen::VectorXd& parameters,

@@ -41,9 +41,10 @@ class SearchLevel {
     return MarginalObjective(&reflectance_, &prior_, errors, mode);
   }
 
-  // -log posterior of lobes at these hyperparameters of light; infinite, and
-  // `misfit` as it was, where they have none.
-  double Rank(const Eigen::VectorXd& lobes,
+  // -log posterior of parameters (MarginalReflectance's) at these
+  // hyperparameters of light; infinite, and `misfit` as it was, where they have
+  // none. That directional lights are moved costs nothing here.
+  double Rank(const Eigen::VectorXd& parameters,
               const LightHyperparameters& hyperparameters,
               double* misfit) const;
 

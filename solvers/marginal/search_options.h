@@ -29,6 +29,9 @@ struct ReflectanceSearchOptions {
   // At the coarse resolution, the best of each going on to the next. The first
   // takes the rankings' best in turns.
   std::vector<SearchStage> coarse_stages = {{10, 2}, {8, 4}, {3, 6}};
+  // So many more join before the second stage: the best of a ranking under the
+  // light of the first stage's best.
+  int ranked_anew = 4;
   // Nats above the lowest cost: candidates of the coarse resolution that go on
   // to the fine one, and of those, after some steps there, the ones that are
   // finished.
