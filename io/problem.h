@@ -305,7 +305,8 @@ struct TextureSpec {
 
 // The model that an entropy is of (src/ibrdf/uncertainty).
 enum class EntropyModel { kAngular, kSpectrum };
-// kMirror: light that the object hides in the mirror direction is left out.
+// kMirror: light that the object hides is left out, in the mirror direction and
+// of the irradiance.
 enum class EntropyShadows { kNone, kMirror };
 struct UncertaintySpec {
   EntropyModel evaluator = EntropyModel::kAngular;
@@ -313,7 +314,7 @@ struct UncertaintySpec {
   // Standard deviation, in units of the map's mean radiance; unset: the
   // evaluator's own.
   std::optional<double> sigma;
-  EntropyShadows shadows = EntropyShadows::kNone;
+  EntropyShadows shadows = EntropyShadows::kMirror;
 };
 
 enum class RenderQuality { kPreview, kReference };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ibrdf/base/parallel_for.h"
 #include "ibrdf/uncertainty/angular_entropy.h"
 #include "ibrdf/uncertainty/band_limit.h"
 
@@ -26,6 +27,21 @@ void Append(const EntropyMaps& block, EntropyMaps* all) {
   append(block.Kd, &all->Kd);
   append(block.misfit, &all->misfit);
   append(block.deviations, &all->deviations);
+}
+
+// Of texels from `begin` on.
+void FillIrradiance(const TexelObserver& observer, const LightScale& light,
+                    int64_t begin, int num_threads, TexelSamples* samples) {
+  if (light.irradiance == nullptr) return;
+  samples->irradiance.resize(3 * static_cast<size_t>(samples->num_texels));
+  ParallelFor(samples->num_texels, num_threads, [&](int64_t i, int) {
+    const SurfaceTexel& texel = observer.atlas().texels[begin + i];
+    const Eigen::Array3d E = light.irradiance->At(observer.RayStart(texel),
+                                                  texel.normal.cast<double>());
+    for (int c = 0; c < 3; ++c) {
+      samples->irradiance[3 * i + c] = static_cast<float>(E[c]);
+    }
+  });
 }
 
 void CountViews(const TexelSamples& samples, TexelEntropy* out) {
@@ -111,8 +127,11 @@ StatusOr<TexelEntropy> EvaluateTexels(const TexelObserver& observer,
         !progress(static_cast<double>(begin) / static_cast<double>(count))) {
       return Status(StatusCode::kInterrupted, "interrupted");
     }
-    const TexelSamples samples = SamplesOf(
+    TexelSamples samples = SamplesOf(
         observer.Observe(begin, std::min(begin + block, count)), light);
+    if (spec.evaluator == EntropyModel::kAngular) {
+      FillIrradiance(observer, light, begin, num_threads, &samples);
+    }
     const StatusOr<EntropyMaps> maps =
         evaluator->Evaluate(samples, num_threads);
     if (!maps.ok()) return maps.status();
