@@ -308,6 +308,8 @@ enum class EntropyModel { kAngular, kSpectrum };
 // kMirror: light that the object hides is left out, in the mirror direction and
 // of the irradiance.
 enum class EntropyShadows { kNone, kMirror };
+// kMaterials: as the measured materials are (measured_materials.h).
+enum class EntropyPrior { kUniform, kMaterials };
 struct UncertaintySpec {
   EntropyModel evaluator = EntropyModel::kAngular;
   int order = 5;  // of the harmonics, [1, 10]
@@ -315,6 +317,7 @@ struct UncertaintySpec {
   // evaluator's own.
   std::optional<double> sigma;
   EntropyShadows shadows = EntropyShadows::kMirror;
+  EntropyPrior prior = EntropyPrior::kUniform;
 };
 
 enum class RenderQuality { kPreview, kReference };

@@ -60,8 +60,8 @@ struct Score {
 Score ScoreOf(const StudyScene& scene, const std::vector<int>& views, int count,
               int num_threads) {
   const BruteForce brute = EvaluateBruteForce(
-      scene, std::vector<int>(views.begin(), views.begin() + count), kSharpness,
-      num_threads);
+      scene, std::vector<int>(views.begin(), views.begin() + count),
+      kBruteForceSharpness, num_threads);
   return {Mean(brute.entropy), Mean(brute.error)};
 }
 

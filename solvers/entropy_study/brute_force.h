@@ -23,6 +23,6 @@ BruteForce EvaluateBruteForce(const StudyScene& scene,
                               int num_threads);
 
 // The studies' sharpness, in units of the map's mean radiance, squared.
-inline constexpr double kSharpness = 1e-2;
+inline constexpr double kBruteForceSharpness = 1e-2;
 
 }  // namespace ibrdf

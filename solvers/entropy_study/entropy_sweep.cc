@@ -57,7 +57,8 @@ class SceneRows {
         scene_(scene),
         num_threads_(num_threads),
         append_(append),
-        brute_(EvaluateBruteForce(scene, {}, kSharpness, num_threads)),
+        brute_(
+            EvaluateBruteForce(scene, {}, kBruteForceSharpness, num_threads)),
         trivial_(TrivialPredictor(scene.samples, num_threads)) {}
 
   Status Append() const {

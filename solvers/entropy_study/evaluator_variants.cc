@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/uncertainty/measured_materials.h"
 
 namespace ibrdf {
 namespace {
@@ -106,12 +107,24 @@ void AddAngularVariants(Variants* variants) {
   }
 }
 
+// With the prior of measured materials, which those of the study are not.
+void AddPriorVariants(Variants* variants) {
+  SpectrumOptions s;
+  s.prior = PriorOfMeasuredMaterials(AlphaValues(s.alpha_grid, s.num_alpha),
+                                     UnitValues(s.num_ks));
+  variants->push_back(Spectrum("spectrum prior of materials", s));
+  AngularOptions a;
+  a.prior = s.prior;
+  variants->push_back(Angular("angular prior of materials", a));
+}
+
 }  // namespace
 
 std::vector<EvaluatorVariant> EvaluatorVariants() {
   Variants out;
   AddSpectrumVariants(&out);
   AddAngularVariants(&out);
+  AddPriorVariants(&out);
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "ibrdf/solvers/entropy_study/best_view_sweep.h"
 #include "ibrdf/solvers/entropy_study/entropy_sweep.h"
+#include "ibrdf/solvers/entropy_study/material_parameters.h"
 #include "ibrdf/solvers/entropy_study/study_cases.h"
 
 namespace ibrdf {
@@ -84,6 +85,25 @@ CLI::App* AddStudy(CLI::App* app, const char* name, const char* description,
   return experiment;
 }
 
+void AddMaterialParameters(CLI::App* app, BenchSession* session) {
+  const auto options = std::make_shared<MaterialParametersOptions>();
+  CLI::App* const experiment = AddExperiment(
+      app, "material-parameters",
+      "Roughness, gloss and albedo of measured materials: fits of the "
+      "principled BRDF to tables, from which the prior of `uncertainty.prior: "
+      "materials` is. The same command goes on where it was stopped.",
+      session, [options, session]() -> Status {
+        options->report = session->Report();
+        options->stop = session->stop;
+        return RunMaterialParameters(*options);
+      });
+  experiment
+      ->add_option("--data", options->data, "folder of MERL .binary tables")
+      ->required();
+  experiment->add_option("--out", options->out, "folder of results")
+      ->required();
+}
+
 }  // namespace
 
 void AddEntropyExperiments(CLI::App* app, BenchSession* session) {
@@ -107,6 +127,7 @@ void AddEntropyExperiments(CLI::App* app, BenchSession* session) {
       ->add_flag("--oracle", views->options.oracle,
                  "with a greedy search that knows all photographs before they "
                  "are taken: three times as long");
+  AddMaterialParameters(app, session);
 }
 
 }  // namespace ibrdf

@@ -6,6 +6,8 @@
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/uncertainty/angular_entropy.h"
 #include "ibrdf/uncertainty/band_limit.h"
+#include "ibrdf/uncertainty/measured_materials.h"
+#include "ibrdf/uncertainty/reflection_filter.h"
 
 namespace ibrdf {
 namespace {
@@ -42,6 +44,14 @@ void FillIrradiance(const TexelObserver& observer, const LightScale& light,
       samples->irradiance[3 * i + c] = static_cast<float>(E[c]);
     }
   });
+}
+
+// Empty: uniform.
+std::vector<double> PriorOf(const UncertaintySpec& spec, AlphaGrid grid,
+                            int num_alpha, int num_ks) {
+  if (spec.prior == EntropyPrior::kUniform) return {};
+  return PriorOfMeasuredMaterials(AlphaValues(grid, num_alpha),
+                                  UnitValues(num_ks));
 }
 
 void CountViews(const TexelSamples& samples, TexelEntropy* out) {
@@ -93,6 +103,8 @@ TexelSamples SamplesOf(TexelObservations observations,
 SpectrumOptions SpectrumOptionsOf(const UncertaintySpec& spec) {
   SpectrumOptions options;
   options.fit.order = spec.order;
+  options.prior =
+      PriorOf(spec, options.alpha_grid, options.num_alpha, options.num_ks);
   // The angular evaluator's is another quantity.
   if (spec.evaluator == EntropyModel::kSpectrum && spec.sigma.has_value()) {
     options.sigma = *spec.sigma;
@@ -106,6 +118,8 @@ std::unique_ptr<EntropyEvaluator> MakeEvaluator(const UncertaintySpec& spec) {
   }
   AngularOptions options;
   options.fit.order = spec.order;
+  options.prior =
+      PriorOf(spec, options.alpha_grid, options.num_alpha, options.num_ks);
   if (spec.sigma.has_value()) options.sigma = *spec.sigma;
   return std::make_unique<AngularEntropyEvaluator>(options);
 }

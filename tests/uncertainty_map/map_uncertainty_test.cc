@@ -358,6 +358,20 @@ TEST_F(MapUncertaintyTest, ShadowsLeaveOutWhatTheObjectHides) {
   EXPECT_LT(changed, seen);
 }
 
+TEST_F(MapUncertaintyTest, PriorsCountWhereNothingIsSeen) {
+  for (const char* evaluator : {"angular", "spectrum"}) {
+    const UncertaintyResult result =
+        Map({0}, {},
+            {"uncertainty.prior=materials",
+             std::string("uncertainty.evaluator=") + evaluator});
+    for (size_t i = 0; i < result.texels.observed_views.size(); ++i) {
+      if (result.texels.observed_views[i] > 0) continue;
+      EXPECT_LT(result.texels.maps.entropy[3 * i], 0.95f);
+      EXPECT_GT(result.texels.maps.entropy[3 * i], 0.2f);
+    }
+  }
+}
+
 // Transparent pixels are outside, as those that a mask leaves out.
 TEST_F(MapUncertaintyTest, AlphaOfAPngIsItsMask) {
   const Image render = ReadExr(dir_->File("a.exr")).value();
