@@ -175,9 +175,10 @@ std::string SlicesInWords(const std::vector<BrdfSlice>& slices) {
              "p",
              "Lines are the estimate. Nine tenths of the reflectances that are "
              "sampled from the posterior at this optimum lie in the band, at "
-             "each angle by itself. Like all of this posterior, it knows "
-             "nothing of what lobes cannot render, and is too narrow. The "
-             "numbers are in result.json (posterior.slices).") +
+             "each angle by itself. In a joint problem no image tells the "
+             "level, which makes most of the width. What lobes cannot render "
+             "is not in it. The numbers are in result.json "
+             "(posterior.slices).") +
          "\n" + HtmlPlots(SlicePlots(slices));
 }
 
