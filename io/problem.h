@@ -305,15 +305,19 @@ struct TextureSpec {
 
 // The model that an entropy is of (src/ibrdf/uncertainty).
 enum class EntropyModel { kAngular, kSpectrum };
-// kMirror: light that the object hides in the mirror direction is left out.
+// kMirror: light that the object hides is left out, in the mirror direction and
+// of the irradiance.
 enum class EntropyShadows { kNone, kMirror };
+// kMaterials: as the measured materials are (measured_materials.h).
+enum class EntropyPrior { kUniform, kMaterials };
 struct UncertaintySpec {
   EntropyModel evaluator = EntropyModel::kAngular;
   int order = 5;  // of the harmonics, [1, 10]
   // Standard deviation, in units of the map's mean radiance; unset: the
   // evaluator's own.
   std::optional<double> sigma;
-  EntropyShadows shadows = EntropyShadows::kNone;
+  EntropyShadows shadows = EntropyShadows::kMirror;
+  EntropyPrior prior = EntropyPrior::kUniform;
 };
 
 enum class RenderQuality { kPreview, kReference };

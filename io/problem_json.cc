@@ -249,7 +249,8 @@ json UncertaintyJson(const UncertaintySpec& u) {
   return {{"evaluator", WordOf("uncertainty.evaluator", u.evaluator)},
           {"order", u.order},
           {"sigma", AutoOr(u.sigma)},
-          {"shadows", WordOf("uncertainty.shadows", u.shadows)}};
+          {"shadows", WordOf("uncertainty.shadows", u.shadows)},
+          {"prior", WordOf("uncertainty.prior", u.prior)}};
 }
 
 json TexturesJson(const Problem& problem) {

@@ -68,10 +68,17 @@ Keys TextureKeys() {
           .Unit("mean radiance of the light"),
       Row("uncertainty.shadows", "Whether the object hides light from itself.")
           .Choice(
-              "none",
+              "mirror",
               {{"none", "It hides none, as published."},
                {"mirror",
-                "Light that it hides in the mirror direction is left out."}})};
+                "Light that it hides in the mirror direction is left out, and "
+                "what it hides of the irradiance."}}),
+      Row("uncertainty.prior",
+          "How probable roughness and gloss are before a photograph.")
+          .Choice("uniform",
+                  {{"uniform", "All values alike."},
+                   {"materials",
+                    "As the 100 materials of the MERL database have them."}})};
   for (ProblemKey& key : keys) {
     key.used_by = kUsedByTextures;
     if (!key.Parent().empty()) key.needs = needs;

@@ -20,13 +20,14 @@ void ReadTexture(ProblemReader reader, ProblemKind kind, TextureSpec* texture) {
 
 void ReadUncertainty(ProblemReader reader, ProblemKind kind,
                      UncertaintySpec* uncertainty) {
-  for (const char* key : {"evaluator", "order", "sigma", "shadows"}) {
+  for (const char* key : {"evaluator", "order", "sigma", "shadows", "prior"}) {
     reader.CheckNeeds(key, kind == ProblemKind::kTextures);
   }
   reader.Read("evaluator", &uncertainty->evaluator);
   reader.Read("order", &uncertainty->order);
   reader.Read("sigma", &uncertainty->sigma);
   reader.Read("shadows", &uncertainty->shadows);
+  reader.Read("prior", &uncertainty->prior);
 }
 
 }  // namespace ibrdf

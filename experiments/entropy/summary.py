@@ -17,23 +17,34 @@ def rows_by(path, key):
     return out
 
 
+def numbers(rows, column):
+    return [float(r[column]) for r in rows if r[column]]
+
+
 def correlation(groups):
-    print("evaluator | correlation, mean | least | partial, mean | least | AUC, mean | least | roughness error")
+    print("| evaluator | correlation | partial | AUC | with error | error of roughness |\n|---|---|---|---|---|---|")
     for name, rows in groups.items():
-        column = {c: [float(r[c]) for r in rows] for c in ("pearson", "partial", "auc", "roughness_error")}
-        cells = [f"{f(column[c]):.3f}" for c in ("pearson", "partial", "auc") for f in (statistics.mean, min)]
-        print(" | ".join([name, *cells, f"{statistics.mean(column['roughness_error']):.3f}"]))
+        cells = []
+        for column in ("pearson", "partial", "auc"):
+            values = numbers(rows, column)
+            cells.append(f"{statistics.mean(values):.3f}, {min(values):.3f}")
+        cells.append(f"{statistics.mean(numbers(rows, 'with_error')):.2f}")
+        errors = numbers(rows, "roughness_error")
+        cells.append(f"{statistics.mean(errors):.3f}" if errors else "")
+        print("| " + " | ".join([name, *cells]) + " |")
 
 
 def views(groups):
-    print("search | views, median | quartiles | entropy less by | error less by | scenes with less entropy, error")
+    print("| search | views, median | quartiles | entropy less by | scenes with less entropy | with less error |\n"
+          "|---|---|---|---|---|---|")
     for name, rows in groups.items():
-        count = [int(r["views_that_reach_20"]) for r in rows]
-        less = {w: [float(r[f"{w}_farthest"]) - float(r[f"{w}_best"]) for r in rows] for w in ("entropy", "error")}
+        count = numbers(rows, "views_that_reach_20")
+        less = {w: [a - b for a, b in zip(numbers(rows, f"{w}_farthest"), numbers(rows, f"{w}_best"))]
+                for w in ("entropy", "error")}
         quartiles = statistics.quantiles(count)
-        print(f"{name} | {statistics.median(count):g} | {quartiles[0]:g} to {quartiles[2]:g} | "
-              f"{statistics.mean(less['entropy']):.4f} | {statistics.mean(less['error']):.4f} | "
-              f"{sum(x > 0 for x in less['entropy'])}, {sum(x > 0 for x in less['error'])} of {len(rows)}")
+        print(f"| {name} | {statistics.median(count):g} | {quartiles[0]:g} to {quartiles[2]:g} | "
+              f"{statistics.mean(less['entropy']):.3f} | {sum(x > 0 for x in less['entropy'])} of {len(rows)} | "
+              f"{sum(x > 0 for x in less['error'])} |")
 
 
 def main(paths):

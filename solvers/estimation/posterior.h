@@ -30,6 +30,8 @@ struct LightPosterior {
   Image log_std;
   // The share of the prior's variance that is left, in [0, 1].
   Image variance_left;
+  // The same of its harmonics of degree l = 0, 1, ...
+  std::vector<double> variance_left_by_degree;
 };
 
 // Priors of the light, centred at a constant map.

@@ -179,6 +179,7 @@ LightPosterior LightOf(const ReflectanceSearchResult& found, double level) {
       FromPlanes(found.log_radiance_std, found.map_width, found.map_height);
   light.variance_left = FromPlanes(found.log_radiance_variance_left,
                                    found.map_width, found.map_height);
+  light.variance_left_by_degree = found.variance_left_by_degree;
   return light;
 }
 

@@ -11,6 +11,7 @@
 #include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/response_curve.h"
+#include "ibrdf/solvers/estimation/brdf_slice.h"
 #include "ibrdf/solvers/estimation/material_ranking.h"
 #include "ibrdf/solvers/priors/determined_directions.h"
 #include "ibrdf/solvers/problem/inverse_problem.h"
@@ -60,6 +61,8 @@ struct MaterialSolution {
   double spread = std::numeric_limits<double>::quiet_NaN();
   // Joint problems: other optima, with labels of all materials at once.
   std::vector<Alternative> alternatives;
+  // Slices of the BRDF with the posterior's band; empty without covariance.
+  std::vector<BrdfSlice> slices;
   MaterialRanking ranking;  // joint problems of one material; else empty
   // Set with lobe_covariance, of one material.
   std::optional<DeterminedDirections> determined;
@@ -87,6 +90,8 @@ struct Solution : MaterialSolution {
   Image map_std;
   // The share of the prior's variance of it that is left, in [0, 1], likewise.
   Image map_variance_left;
+  // The same of its harmonics of degree l = 0, 1, ...
+  std::vector<double> map_variance_left_by_degree;
   Image map;     // [H, W]; the known one if known
   Image render;  // radiance at the object's pixels, else 0
   // Where the albedo varies, has_paint(): that of what is matte, at the

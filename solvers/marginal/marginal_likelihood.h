@@ -166,6 +166,17 @@ class MarginalLikelihood {
                                 const LightHyperparameters& hyperparameters,
                                 const LightMode& mode) const;
 
+  // Variances of linear functions of l, one a column of functions [texels][n],
+  // each summed over channels [n]: of the prior, and of the posterior at the
+  // mode.
+  struct FunctionVariance {
+    Eigen::VectorXd prior, posterior;
+  };
+  FunctionVariance LightFunctionVariance(
+      const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
+      const LightHyperparameters& hyperparameters, const LightMode& mode,
+      const RowMatrix& functions) const;
+
  private:
   struct Point {
     Eigen::VectorXd L;          // radiance [3 * sources]

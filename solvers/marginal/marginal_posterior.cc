@@ -145,4 +145,35 @@ Eigen::VectorXd MarginalLikelihood::LightVariance(
   return variance.cwiseMax(0.0);
 }
 
+MarginalLikelihood::FunctionVariance MarginalLikelihood::LightFunctionVariance(
+    const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
+    const LightHyperparameters& hyperparameters, const LightMode& mode,
+    const RowMatrix& functions) const {
+  CHECK_EQ(functions.rows(), num_texels());
+  const Eigen::Index count = functions.cols();
+  const Given given = GivenBy(matrices, errors, hyperparameters);
+  const Point point = At(given, mode.level, mode.l);
+  const auto linear = Linearise(given, point, DataAt(given, point));
+  CHECK(linear != nullptr);
+  FunctionVariance out;
+  out.prior = out.posterior = Eigen::VectorXd::Zero(count);
+  RowMatrix data(3 * num_points_, count);  // cov(data, function)
+  for (int c = 0; c < 3; ++c) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      Eigen::VectorXd f = Eigen::VectorXd::Zero(num_latents());
+      f.segment(Eigen::Index{c} * num_sources(), num_texels()) =
+          functions.col(i);
+      const Eigen::VectorXd Kf = ApplyCovariance(given.light, f);
+      out.prior[i] += f.dot(Kf);
+      data.col(i) = linear->row_scale.cwiseProduct(ApplyJacobian(*linear, Kf));
+    }
+    // f^T (K - K J^T A^-1 J K) f.
+    const RowMatrix whitened =
+        linear->factor.triangularView<Eigen::Lower>().solve(data);
+    out.posterior -= whitened.colwise().squaredNorm().transpose();
+  }
+  out.posterior = (out.prior + out.posterior).cwiseMax(0.0);
+  return out;
+}
+
 }  // namespace ibrdf

@@ -8,6 +8,7 @@
 
 #include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/solvers/marginal/light_degrees.h"
 
 namespace ibrdf {
 namespace {
@@ -223,6 +224,10 @@ ReflectanceSearchResult ModelSearch::Result(bool covariance) {
                    .cwiseQuotient(likelihood.PriorLightVariance(
                        best_candidate_.hyperparameters))
                    .cwiseMin(1.0));
+  result.variance_left_by_degree = VarianceLeftByDegree(
+      likelihood, reflectance.Matrices(best_candidate_.parameters.data()),
+      best_.errors, best_candidate_.hyperparameters, best_.mode,
+      result.map_height, result.map_width);
   std::stable_sort(materials_.begin(), materials_.end(),
                    [](const MaterialCandidate& a, const MaterialCandidate& b) {
                      return std::tie(a.cost, a.first_cost) <

@@ -66,6 +66,9 @@ struct ReflectanceSearchResult {
   std::vector<double> log_radiance, log_radiance_std;
   // The share of its prior variance that is left, [3][H W] in [0, 1].
   std::vector<double> log_radiance_variance_left;
+  // The same of its harmonics of degree l = 0, 1, ..., up to kLightDegrees or
+  // half the map's rows: variances summed over m and channels.
+  std::vector<double> variance_left_by_degree;
 };
 
 // The materials of all models compete for each stage of the search. The result

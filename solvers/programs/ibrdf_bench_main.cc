@@ -9,6 +9,7 @@
 
 #include "ibrdf/solvers/programs/bench_albedo.h"
 #include "ibrdf/solvers/programs/bench_embedding.h"
+#include "ibrdf/solvers/programs/bench_entropy.h"
 #include "ibrdf/solvers/programs/bench_merl_fit.h"
 #include "ibrdf/solvers/programs/bench_render_inputs.h"
 #include "ibrdf/solvers/programs/bench_session.h"
@@ -45,6 +46,7 @@ int Main(int argc, char** argv) {
   AddMerlFitExperiment(&app, &session);
   AddAlbedoExperiment(&app, &session);
   AddEmbeddingExperiment(&app, &session);
+  AddEntropyExperiments(&app, &session);
   app.allow_extras();  // after the experiments, which would inherit it
   for (int i = 0; i < argc; ++i) {
     session.command += i == 0 ? "ibrdf_bench" : std::string(" ") + argv[i];

@@ -116,7 +116,8 @@ std::string GaugeSection(const InverseProblem& inverse) {
 std::string PlotSection(const std::vector<TraceEntry>& trace) {
   const std::vector<LinePlot> plots = TracePlots(trace);
   if (plots.empty()) return "";
-  std::string body =
+  return HtmlSection(
+      "Progress",
       HtmlElement(
           "p",
           "A point is the best state after a step. Misfits compare across all "
@@ -124,11 +125,7 @@ std::string PlotSection(const std::vector<TraceEntry>& trace) {
           "as many pixels and the same scale b of the likelihood. The scale is "
           "estimated anew in each outer iteration, and a smaller b raises the "
           "likelihood term. Lines break where the number of pixels changes.") +
-      "\n<div class=\"plots\">\n";
-  for (const LinePlot& plot : plots) {
-    body += "<div class=\"plot\">\n" + SvgLinePlot(plot) + "</div>\n";
-  }
-  return HtmlSection("Progress", body + "</div>\n");
+          "\n" + HtmlPlots(plots));
 }
 
 }  // namespace
@@ -147,6 +144,7 @@ StatusOr<std::string> ReportPage(const SolvedProblem& solved,
     body += *section;
   }
   body += PosteriorSection(solved.inverse, solved.solution);
+  body += LightPosteriorSection(solved.solution);
   body += MetricsSection(solved.metrics, kind);
   if (kind == ProblemKind::kJoint) body += GaugeSection(solved.inverse);
   body += PlotSection(solved.solution.trace);

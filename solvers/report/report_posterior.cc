@@ -7,7 +7,9 @@
 #include "ibrdf/base/format.h"
 #include "ibrdf/solvers/report/html.h"
 #include "ibrdf/solvers/report/lobe_summary.h"
+#include "ibrdf/solvers/report/posterior_plots.h"
 #include "ibrdf/solvers/report/readable_numbers.h"
+#include "ibrdf/solvers/report/result_metrics.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
@@ -166,6 +168,20 @@ std::string AlternativesInWords(const std::vector<Alternative>& alternatives) {
          "\n";
 }
 
+std::string SlicesInWords(const std::vector<BrdfSlice>& slices) {
+  if (slices.empty()) return "";
+  return HtmlElement("h3", "Slices of the BRDF") + "\n" +
+         HtmlElement(
+             "p",
+             "Lines are the estimate. Nine tenths of the reflectances that are "
+             "sampled from the posterior at this optimum lie in the band, at "
+             "each angle by itself. In a joint problem no image tells the "
+             "level, which makes most of the width. What lobes cannot render "
+             "is not in it. The numbers are in result.json "
+             "(posterior.slices).") +
+         "\n" + HtmlPlots(SlicePlots(slices));
+}
+
 }  // namespace
 
 std::string PosteriorSection(const InverseProblem& inverse,
@@ -175,7 +191,29 @@ std::string PosteriorSection(const InverseProblem& inverse,
          HtmlElement("h2", "How well the reflectance is known") + "\n" +
          LobesInWords(SummariseLobes(inverse, solution)) +
          DeterminedInWords(solution) + ExpectedErrorInWords(solution) +
-         ModelsInWords(solution) + AlternativesInWords(solution.alternatives) +
+         SlicesInWords(solution.slices) + ModelsInWords(solution) +
+         AlternativesInWords(solution.alternatives) + "</section>\n";
+}
+
+std::string LightPosteriorSection(const Solution& solution) {
+  if (solution.map_variance_left.empty() ||
+      solution.map_variance_left_by_degree.empty()) {
+    return "";
+  }
+  const DeterminedLight light = MeasureDetermined(solution.map_variance_left);
+  return "<section>\n" + HtmlElement("h2", "How well the light is known") +
+         "\n" +
+         HtmlElement(
+             "p",
+             "Given the reflectance, less than a tenth of the prior's variance "
+             "of log radiance is left over " +
+                 Format("%.0f", 100.0 * light.share) +
+                 " % of the sphere (illumination_variance_left.exr). The plot "
+                 "has the same by degree l of spherical harmonics, that is, by "
+                 "size: degree l tells places about 180 / l degrees apart. "
+                 "What is not determined is what the prior says "
+                 "(posterior.light in result.json).") +
+         "\n" + HtmlPlots({DegreePlot(solution.map_variance_left_by_degree)}) +
          "</section>\n";
 }
 

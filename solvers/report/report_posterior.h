@@ -1,4 +1,4 @@
-// How well a reflectance is known.
+// How well reflectance and light are known.
 #pragma once
 #include <string>
 
@@ -10,5 +10,8 @@ namespace ibrdf {
 // A <section>; empty where the reflectance was known.
 std::string PosteriorSection(const InverseProblem& inverse,
                              const Solution& solution);
+
+// The same of the light; empty where it was known.
+std::string LightPosteriorSection(const Solution& solution);
 
 }  // namespace ibrdf

@@ -199,8 +199,10 @@ void AddInformation(const Solution& solution, Json* out) {
   }
   if (!solution.map_variance_left.empty()) {
     const DeterminedLight light = MeasureDetermined(solution.map_variance_left);
-    (*out)["light"] = {{"determined_share", light.share},
-                       {"variance_left", light.variance_left}};
+    (*out)["light"] = {
+        {"determined_share", light.share},
+        {"variance_left", light.variance_left},
+        {"variance_left_by_degree", solution.map_variance_left_by_degree}};
   }
   if (solution.ranking.materials.empty()) return;
   constexpr size_t kShown = 5;
@@ -216,6 +218,24 @@ void AddInformation(const Solution& solution, Json* out) {
       {"most_probable", most}};
 }
 
+// Lines through the BRDF, 1/sr, with the ends of their bands.
+Json SlicesJson(const std::vector<BrdfSlice>& slices) {
+  const char* const channels[] = {"red", "green", "blue"};
+  Json out = Json::array();
+  for (const BrdfSlice& slice : slices) {
+    Json one = {{"name", slice.name},
+                {"angle", slice.angle},
+                {"degrees", slice.degrees}};
+    for (int c = 0; c < 3; ++c) {
+      one[channels[c]] = {{"brdf", slice.value[c]},
+                          {"low", slice.low[c]},
+                          {"high", slice.high[c]}};
+    }
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
 // How well the reflectance is known.
 Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
   Json out = Json::object();
@@ -225,6 +245,7 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
     out["condition_number"] = Finite(CovarianceCondition(solution));
   }
   AddInformation(solution, &out);
+  if (!solution.slices.empty()) out["slices"] = SlicesJson(solution.slices);
   if (std::isfinite(solution.spread)) {
     out["brdf_spread"] = solution.spread;
     const ErrorToExpect error = ExpectError(solution);

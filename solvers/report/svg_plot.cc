@@ -95,7 +95,7 @@ bool Shown(double value, const PlotAxis& axis) {
          (!axis.logarithmic || value > 1.0 / kLargest);
 }
 
-struct Range {
+struct Extent {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   void Add(double value) {
@@ -155,7 +155,11 @@ std::string Marker(size_t kind, double x, double y, const char* colour) {
   }
 }
 
-const char* Colour(size_t series) { return kColours[series % kColours.size()]; }
+const char* Colour(const LinePlot& plot, size_t index) {
+  const int colour = plot.series[index].colour;
+  return kColours[(colour < 0 ? index : static_cast<size_t>(colour)) %
+                  kColours.size()];
+}
 
 // Rows of names below the title; `bottom` receives where they end.
 std::string Legend(const LinePlot& plot, double* bottom) {
@@ -169,15 +173,15 @@ std::string Legend(const LinePlot& plot, double* bottom) {
       x = kLeft;
       y += kLegendLine;
     }
-    out +=
-        Marker(s, x + 5, y - 4, Colour(s)) + Text(x + 14, y, "start", 12, name);
+    out += Marker(s, x + 5, y - 4, Colour(plot, s)) +
+           Text(x + 14, y, "start", 12, name);
     x += width + 10;
   }
   *bottom = out.empty() ? kTitleLine + 8 : y + 10;
   return out;
 }
 
-std::string Axes(const LinePlot& plot, const Range& xs, const Range& ys,
+std::string Axes(const LinePlot& plot, const Extent& xs, const Extent& ys,
                  const Scale& to_x, const Scale& to_y, double top) {
   const double bottom = kHeight - kBottom, right = kWidth - kRight;
   std::string out;
@@ -207,9 +211,42 @@ std::string Axes(const LinePlot& plot, const Range& xs, const Range& ys,
   return out;
 }
 
+// Whether a point of a series has both ends of its band.
+bool HasBand(const LinePlot& plot, const PlotSeries& series, size_t i) {
+  return !series.low.empty() && Shown(series.x[i], plot.x) &&
+         Shown(series.low[i], plot.y) && Shown(series.high[i], plot.y);
+}
+
+// The band of a series, in pieces where a point has none.
+std::string Band(const LinePlot& plot, size_t index, const Scale& to_x,
+                 const Scale& to_y) {
+  const PlotSeries& series = plot.series[index];
+  std::string out;
+  for (size_t first = 0; first < series.x.size();) {
+    size_t end = first;
+    while (end < series.x.size() && HasBand(plot, series, end)) ++end;
+    std::string path;
+    for (size_t i = first; i < end; ++i) {
+      path += Format("%c%.1f %.1f", i == first ? 'M' : 'L', to_x(series.x[i]),
+                     to_y(series.high[i]));
+    }
+    for (size_t i = end; i > first; --i) {
+      path +=
+          Format("L%.1f %.1f", to_x(series.x[i - 1]), to_y(series.low[i - 1]));
+    }
+    if (!path.empty()) {
+      out += "<path d=\"" + path + "Z\" fill=\"" + Colour(plot, index) +
+             "\" fill-opacity=\"0.18\" stroke=\"none\" />\n";
+    }
+    first = end + 1;
+  }
+  return out;
+}
+
 std::string Line(const LinePlot& plot, size_t index, const Scale& to_x,
                  const Scale& to_y) {
   const PlotSeries& series = plot.series[index];
+  const char* const colour = Colour(plot, index);
   std::string path, markers;
   bool drawing = false;
   for (size_t i = 0; i < series.x.size(); ++i) {
@@ -219,11 +256,11 @@ std::string Line(const LinePlot& plot, size_t index, const Scale& to_x,
     }
     const double x = to_x(series.x[i]), y = to_y(series.y[i]);
     path += Format("%c%.1f %.1f", drawing ? 'L' : 'M', x, y);
-    markers += Marker(index, x, y, Colour(index)) + "\n";
+    if (series.markers) markers += Marker(index, x, y, colour) + "\n";
     drawing = true;
   }
   if (path.empty()) return "";
-  return "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + Colour(index) +
+  return "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour +
          "\" stroke-width=\"1.8\" />\n" + markers;
 }
 
@@ -236,11 +273,17 @@ std::vector<AxisTick> AxisTicks(double low, double high, bool logarithmic) {
 }
 
 std::string SvgLinePlot(const LinePlot& plot) {
-  Range xs, ys;
+  Extent xs, ys;
   int left_out = 0;
   for (const PlotSeries& series : plot.series) {
     CHECK_EQ(series.x.size(), series.y.size()) << series.name;
+    CHECK_EQ(series.low.size(), series.high.size()) << series.name;
+    CHECK(series.low.empty() || series.low.size() == series.x.size());
     for (size_t i = 0; i < series.x.size(); ++i) {
+      if (HasBand(plot, series, i)) {
+        ys.Add(series.low[i]);
+        ys.Add(series.high[i]);
+      }
       if (Shown(series.x[i], plot.x) && Shown(series.y[i], plot.y)) {
         xs.Add(series.x[i]);
         ys.Add(series.y[i]);
@@ -274,9 +317,20 @@ std::string SvgLinePlot(const LinePlot& plot) {
   const Scale to_y(ys.low, ys.high, plot.y.logarithmic, kHeight - kBottom, top);
   out += Axes(plot, xs, ys, to_x, to_y, top);
   for (size_t s = 0; s < plot.series.size(); ++s) {
+    out += Band(plot, s, to_x, to_y);
+  }
+  for (size_t s = 0; s < plot.series.size(); ++s) {
     out += Line(plot, s, to_x, to_y);
   }
   return out + "</svg>\n";
+}
+
+std::string HtmlPlots(const std::vector<LinePlot>& plots) {
+  std::string out = "<div class=\"plots\">\n";
+  for (const LinePlot& plot : plots) {
+    out += "<div class=\"plot\">\n" + SvgLinePlot(plot) + "</div>\n";
+  }
+  return out + "</div>\n";
 }
 
 }  // namespace ibrdf

@@ -16,6 +16,10 @@ struct PlotAxis {
 struct PlotSeries {
   std::string name;
   std::vector<double> x, y;  // of one length
+  // Ends of a band around y, of its length; or both empty.
+  std::vector<double> low = {}, high = {};
+  int colour = -1;  // of the plot's five; -1: its place among the series
+  bool markers = true;
 };
 
 struct LinePlot {
@@ -37,5 +41,8 @@ std::vector<AxisTick> AxisTicks(double low, double high, bool logarithmic);
 // An <svg> element, well-formed XML; axes and text take the page's text colour.
 // Without a value to show it says so.
 std::string SvgLinePlot(const LinePlot& plot);
+
+// Plots side by side, as the report's style has them.
+std::string HtmlPlots(const std::vector<LinePlot>& plots);
 
 }  // namespace ibrdf

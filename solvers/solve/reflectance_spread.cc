@@ -2,15 +2,13 @@
 
 #include <glog/logging.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "ibrdf/base/eigen_vectors.h"
-#include "ibrdf/base/normal_source.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
+#include "ibrdf/solvers/solve/reflectance_samples.h"
 
 namespace ibrdf {
 namespace {
@@ -78,26 +76,13 @@ double ReflectanceSpread(const LobeDistance& distance,
                          const std::vector<double>& parameters,
                          const std::vector<double>& covariance, int draws,
                          uint64_t seed) {
-  const auto n = static_cast<Eigen::Index>(parameters.size());
-  CHECK_EQ(parameters.size() * parameters.size(), covariance.size());
-  CHECK_GT(draws, 0);
-  const Eigen::Map<const Eigen::MatrixXd> matrix(covariance.data(), n, n);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  if (!matrix.allFinite()) return nan;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
-  if (solver.info() != Eigen::Success) return nan;
-  const Eigen::VectorXd deviations =
-      solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const std::vector<std::vector<double>> samples =
+      SampleReflectances(distance.lobes(), parameters, covariance, draws, seed);
+  if (samples.empty()) return std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> at = distance.LogValues(parameters);
-  NormalSource normal(seed);
   double squares = 0.0;
-  for (int k = 0; k < draws; ++k) {
-    Eigen::VectorXd z(n);
-    for (Eigen::Index i = 0; i < n; ++i) z[i] = normal.Next();
-    Eigen::VectorXd drawn = ToEigen(parameters) +
-                            solver.eigenvectors() * deviations.cwiseProduct(z);
-    distance.lobes().Mixture(drawn.data()).ClampCodes();
-    const double d = distance.Aligned(distance.LogValues(ToVector(drawn)), at);
+  for (const std::vector<double>& sample : samples) {
+    const double d = distance.Aligned(distance.LogValues(sample), at);
     squares += d * d;
   }
   return std::sqrt(squares / draws);

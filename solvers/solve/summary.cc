@@ -9,12 +9,14 @@
 
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/solvers/estimation/pixel_renders.h"
+#include "ibrdf/solvers/solve/reflectance_band.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
 namespace {
 
 constexpr int kSpreadSamples = 64;
+constexpr int kBandSamples = 200;
 // The time of a summary over that of a transport of all pixels, which it builds
 // and renders by; and that of the table and the samples of the posterior.
 constexpr double kSummaryPerTransport = 1.4;
@@ -75,6 +77,7 @@ void TurnDown(Estimate* estimate) {
   estimate->reflectance.covariance.resize(0, 0);
   estimate->reflectance.light.log_std = Image();
   estimate->reflectance.light.variance_left = Image();
+  estimate->reflectance.light.variance_left_by_degree.clear();
   estimate->reflectance.candidates.clear();
   estimate->reflectance.ranking = MaterialRanking();
 }
@@ -144,17 +147,22 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
   out.brdf = setup.lobes->ToMerl(lobes.data());
   out.lobe_covariance.assign(covariance.data(),
                              covariance.data() + covariance.size());
-  const LobeDistance distance(FlowLobes::Factory(
-      *problem.model, setup.lobes->layout(), problem.num_threads));
+  const LobeFactory factory = FlowLobes::Factory(
+      *problem.model, setup.lobes->layout(), problem.num_threads);
+  const LobeDistance distance(factory);
   out.determined =
       FindDeterminedDirections(setup.materials, out.lobe_covariance);
   out.ranking = reflectance.ranking;
+  if (covariance.size() > 0) {
+    out.slices = ReflectanceBand(factory, lobes, out.lobe_covariance,
+                                 kBandSamples, problem.seed);
+  }
   // How spreads stand to errors was measured where the light is unknown.
   if (covariance.size() > 0 && setup.light_unknown()) {
-    out.spread = std::hypot(
-        ReflectanceSpread(distance, lobes, out.lobe_covariance, kSpreadSamples,
-                          problem.seed),
-        reflectance.between_optima);
+    out.spread =
+        std::hypot(ReflectanceSpread(distance, lobes, out.lobe_covariance,
+                                     kSpreadSamples, problem.seed),
+                   reflectance.between_optima);
   }
   out.alternatives = AlternativesOf(reflectance.candidates, distance, lobes);
   out.start = reflectance.initial_guess;
@@ -201,6 +209,8 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
   }
   solution.map_std = estimate.reflectance.light.log_std;
   solution.map_variance_left = estimate.reflectance.light.variance_left;
+  solution.map_variance_left_by_degree =
+      estimate.reflectance.light.variance_left_by_degree;
   solution.scale = scale;
   solution.epsilon = setup.epsilon;
   solution.misfit = end.misfit;

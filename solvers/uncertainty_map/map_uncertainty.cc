@@ -74,7 +74,9 @@ StatusOr<UncertaintyResult> MapUncertainty(const Problem& problem,
   end_stage("find_samples");
 
   StatusOr<TexelEntropy> texels = EvaluateTexels(
-      *observer, {inputs->mean_radiance, inputs->prefilter_alpha},
+      *observer,
+      {inputs->mean_radiance, inputs->prefilter_alpha,
+       inputs->irradiance.get()},
       problem.uncertainty, options.num_threads, options.progress);
   if (!texels.ok()) return texels.status();
   IBRDF_RETURN_IF_ERROR(CheckSighted(problem, *texels, &*inputs));

@@ -133,7 +133,7 @@ StatusOr<TexelSamples> AllViews(const UncertaintyInputs& inputs,
     CopyViews(seen, i, i, observer.num_views(), &all);
   }
   return SamplesOf(std::move(all),
-                   {inputs.mean_radiance, inputs.prefilter_alpha});
+                   {inputs.mean_radiance, inputs.prefilter_alpha, nullptr});
 }
 
 // Where a camera stands, as a direction from the surface.
@@ -172,18 +172,28 @@ std::vector<int> FarthestCandidates(
   return taken;
 }
 
+BestViewOptions SearchOptionsOf(const UncertaintySpec& spec) {
+  BestViewOptions options;
+  const double sigma = options.spectrum.sigma;
+  options.spectrum = SpectrumOptionsOf(spec);
+  const bool stated =
+      spec.evaluator == EntropyModel::kSpectrum && spec.sigma.has_value();
+  if (!stated) options.spectrum.sigma = sigma;
+  return options;
+}
+
 // Mean over texels and channels with the photographs alone.
-double EntropyBefore(const TexelSamples& samples, const UncertaintySpec& spec,
-                     int num_photographed, int num_threads) {
+double EntropyBefore(const TexelSamples& samples,
+                     const BestViewOptions& options, int num_photographed,
+                     int num_threads) {
   TexelSamples photographed = samples;
   for (int i = 0; i < samples.num_texels; ++i) {
     const auto row = photographed.weight.begin() +
                      static_cast<int64_t>(i) * samples.num_views;
     std::fill(row + num_photographed, row + samples.num_views, 0.0f);
   }
-  const StatusOr<EntropyMaps> maps =
-      SpectrumEntropyEvaluator(SpectrumOptionsOf(spec))
-          .Evaluate(photographed, num_threads);
+  const StatusOr<EntropyMaps> maps = SpectrumEntropyEvaluator(options.spectrum)
+                                         .Evaluate(photographed, num_threads);
   if (!maps.ok()) return 1.0;
   double sum = 0.0;
   for (const float h : maps->entropy) sum += h;
@@ -203,14 +213,13 @@ StatusOr<NextViews> ChooseNextViews(const UncertaintyInputs& inputs,
   const int num_photographed = observer.num_views();
   const int count =
       std::min(options.count, static_cast<int>(candidates.size()));
-  BestViewOptions search_options;
-  search_options.spectrum = SpectrumOptionsOf(spec);
+  const BestViewOptions search_options = SearchOptionsOf(spec);
   BestViewSearch search(*samples, search_options, options.num_threads);
   NextViews out;
   out.texels = samples->num_texels;
   for (int k = 0; k < num_photographed; ++k) search.Add(k, true);
-  out.expected_entropy.push_back(
-      EntropyBefore(*samples, spec, num_photographed, options.num_threads));
+  out.expected_entropy.push_back(EntropyBefore(
+      *samples, search_options, num_photographed, options.num_threads));
   for (int i = 0; i < count; ++i) {
     const std::vector<double> expected = search.ExpectedEntropies();
     const auto best = std::min_element(expected.begin(), expected.end());

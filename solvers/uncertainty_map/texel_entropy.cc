@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "ibrdf/base/parallel_for.h"
 #include "ibrdf/uncertainty/angular_entropy.h"
 #include "ibrdf/uncertainty/band_limit.h"
+#include "ibrdf/uncertainty/measured_materials.h"
+#include "ibrdf/uncertainty/reflection_filter.h"
 
 namespace ibrdf {
 namespace {
@@ -26,6 +29,29 @@ void Append(const EntropyMaps& block, EntropyMaps* all) {
   append(block.Kd, &all->Kd);
   append(block.misfit, &all->misfit);
   append(block.deviations, &all->deviations);
+}
+
+// Of texels from `begin` on.
+void FillIrradiance(const TexelObserver& observer, const LightScale& light,
+                    int64_t begin, int num_threads, TexelSamples* samples) {
+  if (light.irradiance == nullptr) return;
+  samples->irradiance.resize(3 * static_cast<size_t>(samples->num_texels));
+  ParallelFor(samples->num_texels, num_threads, [&](int64_t i, int) {
+    const SurfaceTexel& texel = observer.atlas().texels[begin + i];
+    const Eigen::Array3d E = light.irradiance->At(observer.RayStart(texel),
+                                                  texel.normal.cast<double>());
+    for (int c = 0; c < 3; ++c) {
+      samples->irradiance[3 * i + c] = static_cast<float>(E[c]);
+    }
+  });
+}
+
+// Empty: uniform.
+std::vector<double> PriorOf(const UncertaintySpec& spec, AlphaGrid grid,
+                            int num_alpha, int num_ks) {
+  if (spec.prior == EntropyPrior::kUniform) return {};
+  return PriorOfMeasuredMaterials(AlphaValues(grid, num_alpha),
+                                  UnitValues(num_ks));
 }
 
 void CountViews(const TexelSamples& samples, TexelEntropy* out) {
@@ -77,6 +103,8 @@ TexelSamples SamplesOf(TexelObservations observations,
 SpectrumOptions SpectrumOptionsOf(const UncertaintySpec& spec) {
   SpectrumOptions options;
   options.fit.order = spec.order;
+  options.prior =
+      PriorOf(spec, options.alpha_grid, options.num_alpha, options.num_ks);
   // The angular evaluator's is another quantity.
   if (spec.evaluator == EntropyModel::kSpectrum && spec.sigma.has_value()) {
     options.sigma = *spec.sigma;
@@ -90,6 +118,8 @@ std::unique_ptr<EntropyEvaluator> MakeEvaluator(const UncertaintySpec& spec) {
   }
   AngularOptions options;
   options.fit.order = spec.order;
+  options.prior =
+      PriorOf(spec, options.alpha_grid, options.num_alpha, options.num_ks);
   if (spec.sigma.has_value()) options.sigma = *spec.sigma;
   return std::make_unique<AngularEntropyEvaluator>(options);
 }
@@ -111,8 +141,11 @@ StatusOr<TexelEntropy> EvaluateTexels(const TexelObserver& observer,
         !progress(static_cast<double>(begin) / static_cast<double>(count))) {
       return Status(StatusCode::kInterrupted, "interrupted");
     }
-    const TexelSamples samples = SamplesOf(
+    TexelSamples samples = SamplesOf(
         observer.Observe(begin, std::min(begin + block, count)), light);
+    if (spec.evaluator == EntropyModel::kAngular) {
+      FillIrradiance(observer, light, begin, num_threads, &samples);
+    }
     const StatusOr<EntropyMaps> maps =
         evaluator->Evaluate(samples, num_threads);
     if (!maps.ok()) return maps.status();

@@ -7,6 +7,7 @@
 
 #include "ibrdf/base/status.h"
 #include "ibrdf/io/problem.h"
+#include "ibrdf/surface/texel_irradiance.h"
 #include "ibrdf/surface/texel_observations.h"
 #include "ibrdf/uncertainty/entropy_maps.h"
 #include "ibrdf/uncertainty/spectrum_entropy.h"
@@ -30,6 +31,8 @@ struct TexelEntropy {
 // The light that the samples are of.
 struct LightScale {
   double mean_radiance = 1.0, prefilter_alpha = 0.0;
+  // Of EvaluateTexels; null: evaluators find the irradiance by themselves.
+  const TexelIrradiance* irradiance = nullptr;
 };
 TexelSamples SamplesOf(TexelObservations observations, const LightScale& light);
 

@@ -33,6 +33,9 @@ StatusOr<UncertaintyInputs> LoadUncertaintyInputs(const Problem& problem,
   out.views = *std::move(views);
   out.prefilter_alpha = PrefilterAlpha(static_cast<int>(out.views.size()));
   out.prefiltered = PrefilterMap(*map, out.prefilter_alpha, num_threads);
+  out.irradiance = std::make_shared<const TexelIrradiance>(
+      out.surface.scene, *map,
+      problem.uncertainty.shadows == EntropyShadows::kMirror);
   return out;
 }
 

@@ -1,5 +1,6 @@
 // What a map of uncertainty is made from: surface, views, light.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "ibrdf/io/problem.h"
 #include "ibrdf/solvers/problem/load_scene.h"
 #include "ibrdf/solvers/problem/photographed_views.h"
+#include "ibrdf/surface/texel_irradiance.h"
 
 namespace ibrdf {
 
@@ -17,6 +19,8 @@ struct UncertaintyInputs {
   Image prefiltered;                    // PrefilterMap of the light
   double prefilter_alpha = 0.0;
   double mean_radiance = 1.0;  // of the light, over directions and channels
+  // With the shadows of the problem's uncertainty.
+  std::shared_ptr<const TexelIrradiance> irradiance;
   std::vector<std::string> warnings;
 };
 

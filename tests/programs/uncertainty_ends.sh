@@ -61,6 +61,34 @@ for file in entropy.exr entropy.png alpha.exr ks.exr below_band_limit.png \
   views/front/entropy.exr views/side/entropy.png; do
   [ -s "map/${file}" ] || fail "no ${file}"
 done
+# The same cameras as COLMAP has them, x right, y down, z forward: what a list
+# of views says.
+mkdir sparse photos
+cp renders/views/front/render.exr photos/front.exr
+cp renders/views/side/render.exr photos/side.exr
+cat >sparse/cameras.txt <<CAMERAS
+# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]
+1 SIMPLE_PINHOLE 24 24 41.848973 12 12
+CAMERAS
+cat >sparse/images.txt <<IMAGES
+1 0 1 0 0 0 0 4 1 front.exr
+
+2 0 0.70710678 0 -0.70710678 0 0 4 1 side.exr
+
+IMAGES
+"${uncertainty}" --problem views.yaml --out of_colmap \
+  --set 'views={colmap: sparse, images: photos}' >told_of_colmap
+[ "$(head -1 told)" = "$(head -1 told_of_colmap)" ] ||
+  fail "$(cat told told_of_colmap)"
+sed -i 's/SIMPLE_PINHOLE 24 24 41.848973 12 12/OPENCV 24 24 42 42 12 12 0 0 0 0/' \
+  sparse/cameras.txt
+refused 'cameras.txt: camera 1: expected PINHOLE' --problem views.yaml \
+  --set 'views={colmap: sparse, images: photos}'
+# A sphere hides no light from itself.
+"${uncertainty}" --problem views.yaml --out open \
+  --set uncertainty.shadows=none >told_open
+cmp map/entropy.exr open/entropy.exr
+
 "${render}" --scene scene.yaml --quiet --out next \
   --set 'views={transforms: map/next_views.json}'
 [ "$(ls next/views | wc -l)" -eq 2 ] || fail "$(ls next/views)"

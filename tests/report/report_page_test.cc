@@ -10,6 +10,7 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/io/png.h"
+#include "ibrdf/solvers/report/posterior_plots.h"
 #include "ibrdf/solvers/report/report_plots.h"
 #include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
@@ -188,6 +189,36 @@ TEST(ReportPage, KnownReflectanceHasNoPosteriorAndNoGauge) {
   EXPECT_EQ("", MarkupError(page));
   EXPECT_FALSE(Contains(page, "How well the reflectance is known"));
   EXPECT_FALSE(Contains(page, "(s R, L / s)"));
+}
+
+TEST(ReportPage, ShowsWhatThePosteriorLeavesOpen) {
+  Example example;
+  BrdfSlice slice;
+  slice.name = "theta_d = 0";
+  slice.angle = "theta_h (degrees)";
+  slice.degrees = {0, 45, 90};
+  for (int c = 0; c < 3; ++c) {
+    slice.value[c] = {3, 2, 1};
+    slice.low[c] = {2, 1, 0.5};
+    slice.high[c] = {4, 3, 2};
+  }
+  example.solution.slices = {slice};
+  example.solution.map_variance_left = Image(4, 2);
+  example.solution.map_variance_left_by_degree = {0.1, 0.6};
+  const std::string page = Page(example);
+  EXPECT_EQ("", MarkupError(page));
+  EXPECT_TRUE(Contains(page, "Slices of the BRDF"));
+  EXPECT_TRUE(Contains(page, "fill-opacity=\"0.18\""));
+  EXPECT_TRUE(Contains(page, "over 100 % of the sphere"));
+  EXPECT_TRUE(Contains(page, "degree l of spherical harmonics"));
+  EXPECT_FALSE(Contains(Page(Example()), "Slices of the BRDF"));
+  EXPECT_FALSE(Contains(Page(Example()), "How well the light is known"));
+}
+
+TEST(PosteriorPlots, HoldWhatIsDetermined) {
+  const LinePlot plot = DegreePlot({0.25, 1.0});
+  EXPECT_EQ(std::vector<double>({0.75, 0.0}), plot.series[0].y);
+  EXPECT_EQ(std::vector<double>({0.0, 1.0}), plot.series[0].x);
 }
 
 TEST(ReportPage, EmptyAndShortTraces) {

@@ -29,6 +29,27 @@ size_t Count(const std::string& text, const std::string& part) {
   return n;
 }
 
+// A band in two pieces, without markers, in the colour that is asked for.
+TEST(SvgLinePlot, BandsEncloseTheirLines) {
+  PlotSeries series{"blue", {0, 1, 2, 3}, {2, 3, 4, 5}};
+  series.low = {1, 2, kNan, 4};
+  series.high = {3, 9, 6, 6};
+  series.colour = 4;
+  series.markers = false;
+  const std::string svg =
+      SvgLinePlot({"t", {"x", false}, {"y", false}, {series}});
+  EXPECT_EQ("", MarkupError(svg));
+  EXPECT_EQ(2u, Count(svg, "fill-opacity"));
+  EXPECT_EQ(3u, Count(svg, "#8c8c3c") - 1);  // two bands, the line; the legend
+  EXPECT_EQ(1u, Count(svg, "<circle"));      // the legend's
+  // The axis reaches to the band's ends.
+  EXPECT_EQ(1u, Count(svg, ">8<"));
+  series.low.clear();
+  series.high.clear();
+  EXPECT_EQ(0u, Count(SvgLinePlot({"t", {"x", false}, {"y", false}, {series}}),
+                      "fill-opacity"));
+}
+
 TEST(AxisTicks, RoundNumbers) {
   EXPECT_EQ("0 10 20 30 40 50", Labels(AxisTicks(0, 52, false)));
   EXPECT_EQ("-1.0 -0.5 0.0 0.5 1.0", Labels(AxisTicks(-1, 1, false)));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "ibrdf/base/format.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/io/calibrated_views.h"
 #include "ibrdf/io/exr.h"
@@ -20,6 +22,7 @@
 #include "ibrdf/solvers/uncertainty_map/write_uncertainty.h"
 #include "tests/support/markup.h"
 #include "tests/support/mesh_files.h"
+#include "tests/support/photo_files.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temp_dir.h"
 
@@ -279,6 +282,127 @@ TEST_F(MapUncertaintyTest, ViewsOfAFileNameTheirImages) {
     EXPECT_NEAR(listed.texels.maps.entropy[i], read.texels.maps.entropy[i],
                 1e-6);
   }
+}
+
+// The cameras of views as COLMAP has them: x right, y down, z forward.
+std::string ColmapImages(const std::vector<PhotographedView>& views) {
+  std::string text;
+  for (size_t k = 0; k < views.size(); ++k) {
+    const CameraAxes axes = AxesOf(views[k].camera);
+    const Eigen::Matrix3d camera_from_world =
+        Eigen::Vector3d(1, -1, -1).asDiagonal() *
+        axes.world_from_camera.transpose();
+    const Eigen::Quaterniond q(camera_from_world);
+    const Eigen::Vector3d t = -camera_from_world * axes.centre;
+    text += Format("%zu %.17g %.17g %.17g %.17g %.17g %.17g %.17g 1 %s.exr\n\n",
+                   k + 1, q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(),
+                   views[k].name.c_str());
+  }
+  return text;
+}
+
+TEST_F(MapUncertaintyTest, ModelsOfColmapAreViews) {
+  const UncertaintyResult listed = Map({0, 1, 2});
+  std::filesystem::create_directories(dir_->File("sparse"));
+  const PixelGrid grid = PixelGridOf(listed.inputs.views[0].camera, 32, 32);
+  WriteBytes(dir_->File("sparse/cameras.txt"),
+             Format("1 PINHOLE 32 32 %.17g %.17g 16 16\n", 1.0 / grid.side.x(),
+                    1.0 / grid.side.y()));
+  WriteBytes(dir_->File("sparse/images.txt"),
+             ColmapImages(listed.inputs.views));
+  UncertaintyOptions options;
+  options.add = 1;
+  options.candidates = "sphere:9";
+  const UncertaintyResult read =
+      Map({0}, options, {"views={colmap: sparse, images: ., masks: .}"});
+  ASSERT_EQ(3u, read.inputs.views.size());
+  EXPECT_EQ(listed.texels.observed_views, read.texels.observed_views);
+  for (size_t i = 0; i < read.texels.maps.entropy.size(); ++i) {
+    EXPECT_NEAR(listed.texels.maps.entropy[i], read.texels.maps.entropy[i],
+                1e-5);
+  }
+  // Candidates of a model, too.
+  options.candidates = dir_->File("sparse");
+  EXPECT_EQ(3u, Map({0}, options).next->candidates.size());
+  WriteBytes(dir_->File("sparse/cameras.txt"), "1 OPENCV 32 32 9 9 0 0 0 0\n");
+  EXPECT_NE(std::string::npos,
+            Error(ProblemOf({0}, {"views={colmap: sparse, images: .}"}))
+                .find("cameras.txt"));
+}
+
+// A sphere hides no light from itself, a torus some in its hole.
+TEST_F(MapUncertaintyTest, ShadowsLeaveOutWhatTheObjectHides) {
+  const std::string none = "uncertainty.shadows=none";
+  EXPECT_EQ(Map({0, 1}).texels.maps.entropy,
+            Map({0, 1}, {}, {none}).texels.maps.entropy);
+  const TriangleMesh torus = TorusMesh(48, 24, 0.7, 0.3);
+  MeshSpec mesh;
+  for (size_t i = 0; i < torus.vertices.size(); ++i) {
+    mesh.vertices.push_back(torus.vertices[i].cast<double>());
+    mesh.normals.push_back(torus.normals[i].cast<double>());
+  }
+  mesh.triangles = torus.triangles;
+  WriteBytes(dir_->File("ring.obj"), ObjBytes(mesh));
+  const std::string ring = "geometry={mesh: ring.obj}";
+  const UncertaintyResult mirror = Map({0, 1, 2, 3}, {}, {ring});
+  const UncertaintyResult open = Map({0, 1, 2, 3}, {}, {ring, none});
+  EXPECT_EQ(mirror.texels.observed_views, open.texels.observed_views);
+  int changed = 0, seen = 0;
+  for (size_t i = 0; i < mirror.texels.observed_views.size(); ++i) {
+    if (mirror.texels.observed_views[i] == 0) continue;
+    ++seen;
+    changed +=
+        mirror.texels.maps.entropy[3 * i] != open.texels.maps.entropy[3 * i];
+  }
+  EXPECT_GT(changed, 0);
+  EXPECT_LT(changed, seen);
+}
+
+TEST_F(MapUncertaintyTest, PriorsCountWhereNothingIsSeen) {
+  for (const char* evaluator : {"angular", "spectrum"}) {
+    const UncertaintyResult result =
+        Map({0}, {},
+            {"uncertainty.prior=materials",
+             std::string("uncertainty.evaluator=") + evaluator});
+    for (size_t i = 0; i < result.texels.observed_views.size(); ++i) {
+      if (result.texels.observed_views[i] > 0) continue;
+      EXPECT_LT(result.texels.maps.entropy[3 * i], 0.95f);
+      EXPECT_GT(result.texels.maps.entropy[3 * i], 0.2f);
+    }
+  }
+}
+
+// Transparent pixels are outside, as those that a mask leaves out.
+TEST_F(MapUncertaintyTest, AlphaOfAPngIsItsMask) {
+  const Image render = ReadExr(dir_->File("a.exr")).value();
+  const Mask mask = ReadMask(dir_->File("a.png")).value();
+  for (const bool with_alpha : {false, true}) {
+    PngSpec png;
+    png.width = png.height = 32;
+    png.type = with_alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB;
+    for (int y = 0; y < 32; ++y) {
+      for (int x = 0; x < 32; ++x) {
+        for (int c = 0; c < 3; ++c) {
+          png.rows += static_cast<char>(static_cast<int>(
+              std::clamp(40.0f * render.At(x, y)[c], 0.0f, 250.0f)));
+        }
+        if (with_alpha) {
+          png.rows += static_cast<char>(
+              mask.inside[static_cast<size_t>(y) * 32 + x] != 0 ? 255 : 0);
+        }
+      }
+    }
+    WriteBytes(dir_->File(with_alpha ? "cut.png" : "whole.png"), PngBytes(png));
+  }
+  const auto map = [&](const std::string& files) {
+    return Map({0}, {},
+               {"views=[{name: a, " + files + ", " + CameraText(0) + "}]"});
+  };
+  const UncertaintyResult masked = map("file: whole.png, mask: a.png");
+  const UncertaintyResult cut = map("file: cut.png");
+  EXPECT_EQ(masked.texels.observed_views, cut.texels.observed_views);
+  EXPECT_EQ(masked.texels.maps.entropy, cut.texels.maps.entropy);
+  EXPECT_GT(cut.texels.CountObserved(), 100);
 }
 
 // A mesh without texture coordinates gets charts, between which the picture

@@ -197,12 +197,16 @@ std::vector<int> TexelObserver::ViewsAbove(
   return seen;
 }
 
+Eigen::Vector3d TexelObserver::RayStart(const SurfaceTexel& texel) const {
+  return texel.position + offset_ * texel.normal.cast<double>();
+}
+
 void TexelObserver::ObserveTexel(const SurfaceTexel& texel, int row,
                                  TexelObservations* out) const {
   std::vector<Eigen::Vector3f> directions;
   const std::vector<int> above = ViewsAbove(texel, &directions);
   const Eigen::Vector3f n = texel.normal;
-  const Eigen::Vector3d start = texel.position + offset_ * n.cast<double>();
+  const Eigen::Vector3d start = RayStart(texel);
   std::vector<Eigen::Vector3f> rays;
   for (const int k : above) rays.push_back(directions[k]);
   if (options_.shadowed_light) {

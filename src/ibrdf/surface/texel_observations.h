@@ -60,6 +60,8 @@ class TexelObserver {
   // silhouettes, pixels beside one that sees nothing or that is farther or
   // nearer than the surface explains.
   const Mask& usable(int view) const { return views_[view].samples; }
+  // Just above the surface, where rays from a texel begin.
+  Eigen::Vector3d RayStart(const SurfaceTexel& texel) const;
 
   // Of atlas().texels [begin, end).
   TexelObservations Observe(int64_t begin, int64_t end) const;

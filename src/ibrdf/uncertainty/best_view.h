@@ -11,7 +11,9 @@
 namespace ibrdf {
 
 struct BestViewOptions {
-  SpectrumOptions spectrum;
+  // sigma: half of what maps of entropy take. A search may be surer than its
+  // model is right: what counts is which view tells more (experiments/entropy).
+  SpectrumOptions spectrum = WithSigma(0.025);
   // With fewer photographs all parameters are taken as equally probable, as in
   // the published code.
   int trusted_views = 10;
@@ -25,6 +27,13 @@ struct BestViewOptions {
   bool published_mask = false;
 
   Status Check() const;
+
+ private:
+  static SpectrumOptions WithSigma(double sigma) {
+    SpectrumOptions options;
+    options.sigma = sigma;
+    return options;
+  }
 };
 
 // Greedy search, Wiersma et al. 2025, Eq. 13. Thread-compatible.

@@ -1,16 +1,13 @@
-#include "experiments/entropy/statistics.h"
+#include "ibrdf/solvers/entropy_study/statistics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
-
-double Mean(const std::vector<double>& x) {
-  return std::accumulate(x.begin(), x.end(), 0.0) /
-         static_cast<double>(x.size());
-}
 
 std::vector<double> Ranks(const std::vector<double>& x) {
   std::vector<size_t> order(x.size());
@@ -30,6 +27,11 @@ std::vector<double> Ranks(const std::vector<double>& x) {
 }
 
 }  // namespace
+
+double Mean(const std::vector<double>& x) {
+  return std::accumulate(x.begin(), x.end(), 0.0) /
+         static_cast<double>(x.size());
+}
 
 double Pearson(const std::vector<double>& x, const std::vector<double>& y) {
   const double mx = Mean(x), my = Mean(y);
@@ -81,8 +83,8 @@ TTest PairedTTest(const std::vector<double>& x, const std::vector<double>& y) {
   const double df = n - 1.0;
   const double scale =
       std::exp(std::lgamma(0.5 * (df + 1.0)) - std::lgamma(0.5 * df)) /
-      std::sqrt(df * 3.14159265358979323846);
-  const double from = std::atan(std::abs(t)), to = 1.57079632679;
+      std::sqrt(df * kPi);
+  const double from = std::atan(std::abs(t)), to = 0.5 * kPi;
   constexpr int kSteps = 2000;
   double tail = 0.0;
   for (int i = 0; i <= kSteps; ++i) {

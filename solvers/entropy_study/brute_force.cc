@@ -1,4 +1,4 @@
-#include "experiments/entropy/brute_force.h"
+#include "ibrdf/solvers/entropy_study/brute_force.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "ibrdf/base/parallel_for.h"
-#include "ibrdf/base/pi.h"
 
 namespace ibrdf {
 namespace {
@@ -20,7 +19,7 @@ std::vector<double> MeanSquares(const StudyScene& scene,
                                 int c) {
   std::vector<double> sums(kCells, 0.0);
   double seen = 0.0;
-  const double white = scene.samples.irradiance[3 * texel + c] / kPi;
+  const double white = scene.matte[3 * texel + c];
   for (const int view : views) {
     const size_t at =
         static_cast<size_t>(texel) * scene.samples.num_views + view;
@@ -51,7 +50,7 @@ double Radiance(const StudyScene& scene, size_t at, int c, int i, double Ks,
 
 double LaplaceEntropy(const StudyScene& scene, const std::vector<int>& views,
                       int texel, int c, int cell, double sharpness) {
-  const double white = scene.samples.irradiance[3 * texel + c] / kPi;
+  const double white = scene.matte[3 * texel + c];
   const int i = cell / (kSteps * kSteps);
   const int low = std::max(0, i - 1);
   const int high = std::min(kBruteRoughnesses - 1, i + 1);
@@ -79,7 +78,8 @@ double LaplaceEntropy(const StudyScene& scene, const std::vector<int>& views,
 }  // namespace
 
 BruteForce EvaluateBruteForce(const StudyScene& scene,
-                              const std::vector<int>& views, double sharpness) {
+                              const std::vector<int>& views, double sharpness,
+                              int num_threads) {
   std::vector<int> used = views;
   if (used.empty()) {
     used.resize(scene.samples.num_views);
@@ -90,7 +90,7 @@ BruteForce EvaluateBruteForce(const StudyScene& scene,
   out.entropy.resize(3 * texels);
   out.error.resize(3 * texels);
   out.laplace.resize(3 * texels);
-  ParallelFor(texels, 0, [&](int64_t texel, int) {
+  ParallelFor(texels, num_threads, [&](int64_t texel, int) {
     const StudyMaterial& m = scene.materials[texel];
     for (int c = 0; c < 3; ++c) {
       std::vector<double> x =

@@ -4,6 +4,9 @@
 
 namespace ibrdf {
 
+// Of one value or more.
+double Mean(const std::vector<double>& x);
+
 double Pearson(const std::vector<double>& x, const std::vector<double>& y);
 // Pearson of ranks; equals have the mean of theirs.
 double Spearman(const std::vector<double>& x, const std::vector<double>& y);

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "experiments/entropy/study_scene.h"
+#include "ibrdf/solvers/entropy_study/study_scene.h"
 
 namespace ibrdf {
 
@@ -17,8 +17,12 @@ struct BruteForce {
 };
 
 // p is proportional to exp(-mse / sharpness), the mean of squares over views.
-// views: those that count; empty: all.
+// views: those that count; empty: all. num_threads <= 0: all.
 BruteForce EvaluateBruteForce(const StudyScene& scene,
-                              const std::vector<int>& views, double sharpness);
+                              const std::vector<int>& views, double sharpness,
+                              int num_threads);
+
+// The studies' sharpness, in units of the map's mean radiance, squared.
+inline constexpr double kBruteForceSharpness = 1e-2;
 
 }  // namespace ibrdf

@@ -1,0 +1,24 @@
+// How far a posterior lets a BRDF's slices move.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/solvers/estimation/brdf_slice.h"
+
+namespace ibrdf {
+
+// Three slices with the interval from the 5th to the 95th percentile of `count`
+// samples of N(parameters, covariance), at each angle by itself: over theta_h
+// at theta_d = 0 and 45 degrees, and over theta_d at theta_h = 0, all at phi_d
+// = 90 degrees. Empty where no sample is finite.
+std::vector<BrdfSlice> ReflectanceBand(const LobeFactory& lobes,
+                                       const std::vector<double>& parameters,
+                                       const std::vector<double>& covariance,
+                                       int count, uint64_t seed);
+
+// By interpolation between the order statistics; share in [0, 1]. values: one
+// or more, finite.
+double Quantile(std::vector<double> values, double share);
+
+}  // namespace ibrdf
