@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -34,20 +35,18 @@ class Search {
   // Ranks the materials and refines the best; false where none explains the
   // image.
   bool RankAndRefine() {
-    const size_t stages = options_.coarse_stages.size();
-    if (!TakeBest(
-            {{LightHyperparameters(), {}}, {LightHyperparameters::Harsh(), {}}},
-            options_.coarse_stages.front().most)) {
-      return false;
+    const std::vector<SearchStage>& stages = options_.coarse_stages;
+    Rank({{LightHyperparameters(), {}}, {LightHyperparameters::Harsh(), {}}});
+    for (ModelSearch& search : searches_) {
+      TakeBest(stages.front().most, &search);
     }
-    for (size_t k = 0; k < stages; ++k) {
-      const SearchStage& stage = options_.coarse_stages[k];
-      KeepBest(stage.most);
-      // Under the light that the best has found others may explain the image.
-      if (k == 1 && options_.ranked_anew > 0) {
-        TakeBest({BestLight()}, options_.ranked_anew);
+    if (NumCandidates() == 0) return false;
+    for (size_t k = 0; k < stages.size(); ++k) {
+      for (ModelSearch& search : searches_) {
+        search.KeepCandidates(stages[k].most);
       }
-      if (!Refine("", stage.iterations)) return false;
+      if (k == 1 && options_.ranked_anew > 0) RankAnew();
+      if (!Refine("", stages[k].iterations)) return false;
       const ModelSearch& best = Best();
       Report("refine " + std::to_string(NumCandidates()), best.best_cost(),
              best.best_misfit());
@@ -55,7 +54,9 @@ class Search {
     return true;
   }
 
-  // Compares the candidates at the fine resolution and finishes the best.
+  // Compares the candidates of all models at the fine resolution and finishes
+  // the best. Coarse costs say little of a model of plainer shapes, which
+  // begins badly and may end best: each model's best is compared.
   void FinishBest() {
     if (options_.fine_iterations == 0 || options_.Stopped()) return;
     DropBeyond(options_.coarse_margin, 1);
@@ -91,47 +92,52 @@ class Search {
     if (options_.report) options_.report(stage, cost, misfit);
   }
 
-  // The light of the best candidate.
-  LightGuess BestLight() const {
-    const ModelSearch* best = nullptr;
-    for (const ModelSearch& search : searches_) {
-      if (search.candidates().empty()) continue;
-      if (best == nullptr ||
-          search.candidates().front().cost < best->candidates().front().cost) {
-        best = &search;
-      }
-    }
-    return best->LightAt(best->candidates().front());
+  // Each model's materials under these lights.
+  void Rank(const std::vector<LightGuess>& lights) {
+    for (ModelSearch& search : searches_) search.Rank(lights);
+    ReportRanking();
   }
 
-  // Ranks all materials under these lights and makes the rankings' best
-  // candidates, in turns, the best ranking first. False where no material
-  // explains the image.
-  bool TakeBest(const std::vector<LightGuess>& lights, int most) {
-    for (ModelSearch& search : searches_) search.Rank(lights);
-    std::vector<std::pair<ModelSearch*, const Ranking*>> rankings;
-    size_t count = 0;
+  // Each model's materials under the light of its best candidate: others may
+  // explain the image there.
+  void RankAnew() {
     for (ModelSearch& search : searches_) {
+      if (search.candidates().empty()) continue;
+      search.Rank({search.LightAt(search.candidates().front())});
+      TakeBest(options_.ranked_anew, &search);
+    }
+    ReportRanking();
+  }
+
+  void ReportRanking() const {
+    const MaterialUnderLight* best = nullptr;
+    size_t count = 0;
+    for (const ModelSearch& search : searches_) {
       for (const Ranking& ranking : search.rankings()) {
-        rankings.emplace_back(&search, &ranking);
+        const MaterialUnderLight& first = ranking.front();
+        if (best == nullptr || first.cost < best->cost) best = &first;
       }
       count += search.num_materials();
     }
+    if (!std::isfinite(best->cost)) return;
+    Report("rank " + std::to_string(count) + " materials", best->cost,
+           best->misfit);
+  }
+
+  // Makes the best of a model's rankings candidates, in turns, the best ranking
+  // first.
+  static void TakeBest(int most, ModelSearch* search) {
+    std::vector<const Ranking*> rankings;
+    for (const Ranking& r : search->rankings()) rankings.push_back(&r);
     std::stable_sort(rankings.begin(), rankings.end(),
-                     [](const auto& a, const auto& b) {
-                       return a.second->front().cost < b.second->front().cost;
+                     [](const Ranking* a, const Ranking* b) {
+                       return a->front().cost < b->front().cost;
                      });
-    const MaterialUnderLight& first = rankings.front().second->front();
-    if (!std::isfinite(first.cost)) return false;
-    Report("rank " + std::to_string(count) + " materials", first.cost,
-           first.misfit);
     for (int k = 0; k < most; ++k) {
-      const auto& [search, ranking] = rankings[k % rankings.size()];
-      for (const MaterialUnderLight& ranked : *ranking) {
+      for (const MaterialUnderLight& ranked : *rankings[k % rankings.size()]) {
         if (!std::isfinite(ranked.cost) || search->Take(ranked)) break;
       }
     }
-    return true;
   }
 
   size_t NumCandidates() const {
@@ -142,38 +148,21 @@ class Search {
     return count;
   }
 
-  // Costs of all candidates, ascending.
-  std::vector<double> Costs() const {
-    std::vector<double> costs;
+  // Drops the candidates whose costs are not within the margin of the lowest of
+  // all models, but for the best few of each.
+  void DropBeyond(double margin, size_t least_of_model) {
+    double lowest = std::numeric_limits<double>::infinity();
     for (const ModelSearch& search : searches_) {
-      for (const ModelSearch::Candidate& c : search.candidates()) {
-        costs.push_back(c.cost);
-      }
+      if (search.candidates().empty()) continue;
+      lowest = std::min(lowest, search.candidates().front().cost);
     }
-    std::sort(costs.begin(), costs.end());
-    return costs;
-  }
-
-  // Drops what costs more, but for the best few of each model.
-  void DropAbove(double cost, size_t least_of_model) {
     for (ModelSearch& search : searches_) {
       const auto& all = search.candidates();
-      const auto below = static_cast<size_t>(
-          std::count_if(all.begin(), all.end(),
-                        [&](const auto& c) { return c.cost <= cost; }));
-      search.KeepCandidates(std::max(below, least_of_model));
+      const auto within = static_cast<size_t>(std::count_if(
+          all.begin(), all.end(),
+          [&](const auto& c) { return c.cost <= lowest + margin; }));
+      search.KeepCandidates(std::max(within, least_of_model));
     }
-  }
-  // A model of simpler shapes begins badly and may yet end best.
-  void KeepBest(size_t most) {
-    const std::vector<double> costs = Costs();
-    if (costs.size() <= most) return;
-    DropAbove(costs[most - 1],
-              (most + 2 * searches_.size() - 1) / (2 * searches_.size()));
-  }
-  // Drops those whose costs are not within the margin of the lowest.
-  void DropBeyond(double margin, size_t least_of_model) {
-    DropAbove(Costs().front() + margin, least_of_model);
   }
 
   // Whole refinements of all candidates in parallel. False where none comes to

@@ -71,10 +71,11 @@ struct ReflectanceSearchResult {
   std::vector<double> variance_left_by_degree;
 };
 
-// The materials of all models compete for each stage of the search. The result
-// of every model that has an optimum at the finest resolution reached, in the
-// models' order; the covariance is of the best one's alone. kInvalidInput where
-// no point can be used, kNoImprovement where no material explains the image.
+// Candidates of each model are found by themselves; at the finest resolution
+// those of all models compete. The result of every model that has an optimum at
+// the finest resolution reached, in the models' order; the covariance is of the
+// best one's alone. kInvalidInput where no point can be used, kNoImprovement
+// where no material explains the image.
 StatusOr<std::vector<ReflectanceSearchResult>> SearchReflectances(
     const std::vector<SearchedModel>& models,
     const std::vector<ShadingPoint>& points, const Observations& observed,

@@ -14,6 +14,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/brdf/table_lobes.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/marginal/model_search.h"
 #include "tests/marginal/marginal_testing.h"
 
 namespace ibrdf {
@@ -27,6 +28,7 @@ class ReflectanceSearchTest : public MarginalTest {
     options.screen = options.coarse = options.fine = resolution_;
     options.kept = 3;
     options.coarse_stages = {{3, 1}, {2, 3}};
+    options.ranked_anew = 0;
     options.fine_iterations = 4;
     options.num_threads = 1;
     return options;
@@ -288,7 +290,7 @@ TEST_F(ReflectanceSearchTest, ModelsWithoutCompetitionFindWhatEachFindsAlone) {
   }
 }
 
-// Each stage goes on with the best of all models.
+// At the fine resolution the candidates of all models compete.
 TEST_F(ReflectanceSearchTest, CandidatesOfAllModelsCompete) {
   const NeuralBrdfModel other = SmoothTinyModel(4, 7);
   const MaterialPrior priors[] = {JointMaterialPrior(model_, 2, 0.5),
@@ -298,7 +300,8 @@ TEST_F(ReflectanceSearchTest, CandidatesOfAllModelsCompete) {
       {FlowLobes::Factory(other, 2, 1), &priors[1]}};
   ReflectanceSearchOptions options = Options();
   options.kept = 4;
-  options.coarse_stages = {{6, 2}, {1, 2}};
+  options.coarse_stages = {{3, 2}, {2, 2}};
+  options.coarse_margin = options.margin = 0.0;
   options.fine.map_width *= 2;
   options.fine.map_height *= 2;
   std::vector<std::string> refined;
@@ -308,20 +311,73 @@ TEST_F(ReflectanceSearchTest, CandidatesOfAllModelsCompete) {
   const StatusOr<std::vector<ReflectanceSearchResult>> found =
       SearchReflectances(models, points_, MakeObservations(radiance_), options);
   ASSERT_TRUE(found.ok()) << found.status().message();
-  // The model of the one that is left.
-  ASSERT_EQ(1u, found->size());
-  const ReflectanceSearchResult& left = found->front();
-  EXPECT_EQ(1, std::count_if(left.candidates.begin(), left.candidates.end(),
-                             [](const MaterialCandidate& c) {
-                               return std::isfinite(c.cost);
-                             }));
-  const std::vector<std::string> stages = {
-      "rank " +
-          std::to_string(priors[0].materials.size() +
-                         priors[1].materials.size()) +
-          " materials",
-      "refine 6", "refine 1", "finish " + left.initial_guess};
-  EXPECT_EQ(stages, refined);
+  // Each model's best has been tried at the fine resolution, and no other.
+  ASSERT_EQ(2u, found->size());
+  for (const ReflectanceSearchResult& result : *found) {
+    EXPECT_EQ(1,
+              std::count_if(result.candidates.begin(), result.candidates.end(),
+                            [](const MaterialCandidate& c) {
+                              return std::isfinite(c.cost);
+                            }));
+  }
+  ASSERT_GE(refined.size(), 4u);
+  EXPECT_EQ("rank 8 materials", refined[0]);
+  EXPECT_EQ("refine 6", refined[1]);
+  EXPECT_EQ("refine 4", refined[2]);
+  const ReflectanceSearchResult& best =
+      (*found)[0].cost < (*found)[1].cost ? (*found)[0] : (*found)[1];
+  EXPECT_EQ(std::vector<std::string>{"finish " + best.initial_guess},
+            std::vector<std::string>(refined.begin() + 3, refined.end()));
+}
+
+TEST_F(ReflectanceSearchTest, MaterialsAreRankedAnewUnderTheLightThatWasFound) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  ReflectanceSearchOptions options = Options();
+  options.kept = 4;
+  options.ranked_anew = 2;
+  std::vector<std::string> stages;
+  options.report = [&](const std::string& stage, double, double) {
+    stages.push_back(stage);
+  };
+  const StatusOr<ReflectanceSearchResult> found =
+      SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
+                        MakeObservations(radiance_), options);
+  ASSERT_TRUE(found.ok()) << found.status().message();
+  ASSERT_GT(stages.size(), 4u);
+  EXPECT_EQ("rank 4 materials", stages[0]);
+  EXPECT_EQ("refine 3", stages[1]);
+  EXPECT_EQ("rank 4 materials", stages[2]);
+  // The best two of the first stage and the two that joined.
+  EXPECT_EQ("refine 4", stages[3]);
+}
+
+// Hyperparameters and directional lights are those of the guess.
+TEST_F(ReflectanceSearchTest, RankingTakesTheLightThatItIsTold) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  const SearchedModel model = {FlowLobes::Factory(model_, 2, 1), &prior};
+  const ReflectanceSearchOptions options = Options();
+  const Observations observed = MakeObservations(radiance_);
+  ModelSearch search(model, points_, observed, kDirectionalLights, options);
+  search.Rank({{LightHyperparameters(), {}}});
+  ASSERT_TRUE(search.Take(search.rankings()[0][0]));
+  EXPECT_FALSE(search.Take(search.rankings()[0][0]));
+  ASSERT_TRUE(
+      search.Join({search.Refine(search.candidates()[0], 2)}, "", false));
+  const LightGuess light = search.LightAt(search.candidates()[0]);
+  ASSERT_EQ(4, light.offsets.size());
+  EXPECT_GT(light.offsets.norm(), 0.0);
+  search.Rank({light});
+  const SearchLevel level(model.lobes, prior, points_, observed, options.coarse,
+                          kDirectionalLights, options);
+  ASSERT_FALSE(search.rankings()[0].empty());
+  for (const MaterialUnderLight& ranked : search.rankings()[0]) {
+    Eigen::VectorXd parameters(14 + 4);
+    parameters << prior.materials[ranked.material].parameters, light.offsets;
+    double misfit = 0.0;
+    EXPECT_EQ(level.Rank(parameters, light.hyperparameters, &misfit),
+              ranked.cost);
+    EXPECT_EQ(misfit, ranked.misfit);
+  }
 }
 
 TEST_F(ReflectanceSearchTest, ModelThatExplainsNothingLeavesTheRace) {
