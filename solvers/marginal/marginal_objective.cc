@@ -103,7 +103,8 @@ Eigen::MatrixXd MarginalObjective::Information(const double* y) const {
   const Eigen::Index n = prior_->num_parameters(), all = NumParameters();
   const Eigen::Index first_scale = reflectance_->num_parameters();
   const Eigen::VectorXd parameters = ParametersOf(y);
-  if (information_calls_++ % kHyperparameterSteps == 0) {
+  const int steps = prior_->materials.size() > 1 ? kHyperparameterSteps : 1;
+  if (information_calls_++ % steps == 0) {
     of_hyperparameters_.resize(0, 0);
   }
   Eigen::MatrixXd information = reflectance_->Information(

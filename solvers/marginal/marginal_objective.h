@@ -35,7 +35,8 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   // gradient was called last: prior, wall and MarginalReflectance::Information.
   // Positive definite; empty where there is none. The block of the
   // hyperparameters hardly changes from step to step: it is made anew at every
-  // kHyperparameterSteps-th call, the first among them.
+  // kHyperparameterSteps-th call, the first among them. Under a known
+  // reflectance, one material, there is little else to find: at every call.
   static constexpr int kHyperparameterSteps = 4;
   Eigen::MatrixXd Information(const double* y) const;
 
