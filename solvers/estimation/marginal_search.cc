@@ -50,11 +50,19 @@ void AddPaint(const FirstPaint& first, ReflectanceSearchOptions* o) {
   o->process.directional_light_chroma_variance *= kPaintedLightChroma;
 }
 
+// The setup's unknown reflectance, for a search with these options.
 SearchedModel ModelOf(const SolveSetup& setup,
                       const ReflectanceSearchOptions& o) {
   return {FlowLobes::Factory(*setup.problem->model, setup.lobes->layout(),
                              setup.problem->num_threads),
           &setup.materials, BounceGainOf(setup, o.fine)};
+}
+
+// The same of a known reflectance. known: KnownMaterial's prior.
+SearchedModel KnownModel(const SolveSetup& setup, const MaterialPrior& known,
+                         const ReflectanceSearchOptions& o) {
+  return {TableLobes::Factory(*setup.problem->known_brdf), &known,
+          BounceGainOf(setup, o.fine)};
 }
 
 // A search's result at the materials' mean level.
@@ -128,10 +136,8 @@ LightPosterior EstimateLightPosterior(const SolveSetup& setup,
   o.covariance = false;
   const MaterialPrior known =
       KnownMaterial(ToEigen(TableLobes::KnownParameters()));
-  const StatusOr<ReflectanceSearchResult> found =
-      SearchReflectance({TableLobes::Factory(*problem.known_brdf), &known,
-                         BounceGainOf(setup, o.fine)},
-                        problem.points, SearchedPixels(setup), o);
+  const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
+      KnownModel(setup, known, o), problem.points, SearchedPixels(setup), o);
   return found.ok() ? LightOf(*found, 0.0) : LightPosterior();
 }
 
@@ -145,12 +151,7 @@ double CoarseEvidence(const SolveSetup& setup, SolveContext* context,
   const MaterialPrior known =
       KnownMaterial(ToEigen(TableLobes::KnownParameters()));
   const SearchedModel model =
-      setup.lobes_unknown()
-          ? SearchedModel{FlowLobes::Factory(*problem.model,
-                                             setup.lobes->layout(),
-                                             problem.num_threads),
-                          &setup.materials}
-          : SearchedModel{TableLobes::Factory(*problem.known_brdf), &known};
+      setup.lobes_unknown() ? ModelOf(setup, o) : KnownModel(setup, known, o);
   const StatusOr<ReflectanceSearchResult> found =
       SearchReflectance(model, problem.points, SearchedPixels(setup), o);
   return found.ok() ? found->cost : std::numeric_limits<double>::infinity();

@@ -42,7 +42,7 @@ std::vector<Optimum> WeightedOptima(const std::vector<ModelOptima>& models) {
   return optima;
 }
 
-// At the level of its model's materials.
+// The optimum's table, at the level of its model's materials.
 MerlTable TableOf(const Optimum& optimum,
                   const std::vector<ModelOptima>& models) {
   const ModelOptima& of = models[optimum.model];

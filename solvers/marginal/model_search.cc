@@ -129,7 +129,7 @@ void ModelSearch::Sharpen() {
 }
 
 bool ModelSearch::Join(std::vector<LocalOptimum> optima,
-                       const std::string& what, bool report) {
+                       const std::string& what) {
   CHECK_EQ(optima.size(), candidates_.size());
   std::vector<Candidate> reached;
   for (size_t k = 0; k < optima.size(); ++k) {
@@ -149,7 +149,7 @@ bool ModelSearch::Join(std::vector<LocalOptimum> optima,
     material.parameters = ToVector(objective.LobesOf(optimum.y.data()));
     material.light_level =
         level_->LightLevel(reached.back().parameters, optimum.mode);
-    if (report && options_.report) {
+    if (!what.empty() && options_.report) {
       options_.report(what + material.name, optimum.cost, optimum.value.misfit);
     }
     // With the noise taken anew an optimum may cost more than before.
@@ -168,7 +168,7 @@ bool ModelSearch::Join(std::vector<LocalOptimum> optima,
 }
 
 void ModelSearch::TakeBouncesOut() {
-  if (!model_.bounce_gain || !has_optimum()) return;
+  if (!model_.bounce_gain) return;
   for (int round = 0; round < options_.bounce_iterations && !options_.Stopped();
        ++round) {
     const std::vector<double> gain =
@@ -182,7 +182,7 @@ void ModelSearch::TakeBouncesOut() {
     std::swap(level_, next);
     std::vector<LocalOptimum> optima(1);
     optima[0] = Refine(candidates_[0], options_.fine_iterations);
-    if (!Join(std::move(optima), "bounces ", true)) {
+    if (!Join(std::move(optima), "bounces ")) {
       std::swap(level_, next);
       return;
     }

@@ -59,30 +59,30 @@ class ModelSearch {
 
   // What follows refines at the fine resolution.
   void Sharpen();
-  // Of a candidate at the present resolution, any thread.
+  // Refines a candidate at the present resolution; any thread may call it.
   LocalOptimum Refine(const Candidate& candidate, int iterations) const {
     return level_->Refine(candidate.parameters, candidate.hyperparameters,
                           iterations);
   }
   // Refinements of all candidates, in order: those that came to something take
   // their places, the best first. False where none did, which leaves all as it
-  // was. `report`: where each ended, by its name behind `what`.
-  bool Join(std::vector<LocalOptimum> optima, const std::string& what,
-            bool report);
+  // was. The end of each is reported under its name behind `what`; empty: not.
+  bool Join(std::vector<LocalOptimum> optima, const std::string& what);
 
   // Takes what the object throws on itself out of the image.
   void TakeBouncesOut();
 
   size_t num_materials() const { return materials_.size(); }
   bool has_optimum() const { return best_level_ != nullptr; }
-  // Of the best optimum's map; 0: there is none.
+  // Texels of the best optimum's map; 0: there is none.
   int num_texels() const {
     return has_optimum() ? best_level_->reflectance().likelihood().num_texels()
                          : 0;
   }
   double best_cost() const { return best_.cost; }
   double best_misfit() const { return best_.value.misfit; }
-  // Of the best optimum. covariance: of its parameters, too.
+  // The best optimum; it must have one. covariance: with that of its
+  // parameters.
   ReflectanceSearchResult Result(bool covariance);
 
  private:

@@ -183,7 +183,7 @@ class Search {
                 });
     bool any = false;
     for (size_t m = 0; m < searches_.size(); ++m) {
-      if (searches_[m].Join(std::move(optima[m]), what, !what.empty())) {
+      if (searches_[m].Join(std::move(optima[m]), what)) {
         any = true;
       }
     }

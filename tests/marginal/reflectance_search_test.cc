@@ -259,27 +259,32 @@ TEST_F(ReflectanceSearchTest, WiderMarginsNeverEndAtAHigherCost) {
   EXPECT_GT(change, 0.0);
 }
 
+class TwoModelsTest : public ReflectanceSearchTest {
+ protected:
+  const NeuralBrdfModel other_ = SmoothTinyModel(4, 7);
+  const MaterialPrior prior_ = JointMaterialPrior(model_, 2, 0.5);
+  const MaterialPrior of_other_ = JointMaterialPrior(other_, 2, 0.5);
+  const std::vector<SearchedModel> models_ = {
+      {FlowLobes::Factory(model_, 2, 1), &prior_},
+      {FlowLobes::Factory(other_, 2, 1), &of_other_}};
+};
+
 // Where nothing is dropped the models do not meet.
-TEST_F(ReflectanceSearchTest, ModelsWithoutCompetitionFindWhatEachFindsAlone) {
-  const NeuralBrdfModel other = SmoothTinyModel(4, 7);
-  const MaterialPrior priors[] = {JointMaterialPrior(model_, 2, 0.5),
-                                  JointMaterialPrior(other, 2, 0.5)};
-  const std::vector<SearchedModel> models = {
-      {FlowLobes::Factory(model_, 2, 1), &priors[0]},
-      {FlowLobes::Factory(other, 2, 1), &priors[1]}};
+TEST_F(TwoModelsTest, ModelsWithoutCompetitionFindWhatEachFindsAlone) {
   ReflectanceSearchOptions options = Options();
   options.kept = 100;
   options.coarse_stages = {{100, 1}, {100, 2}};
   options.coarse_margin = options.margin = 1e9;
   const StatusOr<std::vector<ReflectanceSearchResult>> both =
-      SearchReflectances(models, points_, MakeObservations(radiance_), options);
+      SearchReflectances(models_, points_, MakeObservations(radiance_),
+                         options);
   ASSERT_TRUE(both.ok()) << both.status().message();
   ASSERT_EQ(2u, both->size());
   const size_t best = (*both)[0].cost < (*both)[1].cost ? 0 : 1;
   for (size_t m = 0; m < 2; ++m) {
     const ReflectanceSearchResult& found = (*both)[m];
     const ReflectanceSearchResult alone =
-        SearchReflectance(models[m], points_, MakeObservations(radiance_),
+        SearchReflectance(models_[m], points_, MakeObservations(radiance_),
                           options)
             .value();
     EXPECT_EQ(m, found.model);
@@ -291,13 +296,7 @@ TEST_F(ReflectanceSearchTest, ModelsWithoutCompetitionFindWhatEachFindsAlone) {
 }
 
 // At the fine resolution the candidates of all models compete.
-TEST_F(ReflectanceSearchTest, CandidatesOfAllModelsCompete) {
-  const NeuralBrdfModel other = SmoothTinyModel(4, 7);
-  const MaterialPrior priors[] = {JointMaterialPrior(model_, 2, 0.5),
-                                  JointMaterialPrior(other, 2, 0.5)};
-  const std::vector<SearchedModel> models = {
-      {FlowLobes::Factory(model_, 2, 1), &priors[0]},
-      {FlowLobes::Factory(other, 2, 1), &priors[1]}};
+TEST_F(TwoModelsTest, CandidatesOfAllModelsCompete) {
   ReflectanceSearchOptions options = Options();
   options.kept = 4;
   options.coarse_stages = {{3, 2}, {2, 2}};
@@ -309,7 +308,8 @@ TEST_F(ReflectanceSearchTest, CandidatesOfAllModelsCompete) {
     refined.push_back(stage);
   };
   const StatusOr<std::vector<ReflectanceSearchResult>> found =
-      SearchReflectances(models, points_, MakeObservations(radiance_), options);
+      SearchReflectances(models_, points_, MakeObservations(radiance_),
+                         options);
   ASSERT_TRUE(found.ok()) << found.status().message();
   // Each model's best has been tried at the fine resolution, and no other.
   ASSERT_EQ(2u, found->size());
@@ -361,8 +361,7 @@ TEST_F(ReflectanceSearchTest, RankingTakesTheLightThatItIsTold) {
   search.Rank({{LightHyperparameters(), {}}});
   ASSERT_TRUE(search.Take(search.rankings()[0][0]));
   EXPECT_FALSE(search.Take(search.rankings()[0][0]));
-  ASSERT_TRUE(
-      search.Join({search.Refine(search.candidates()[0], 2)}, "", false));
+  ASSERT_TRUE(search.Join({search.Refine(search.candidates()[0], 2)}, ""));
   const LightGuess light = search.LightAt(search.candidates()[0]);
   ASSERT_EQ(4, light.offsets.size());
   EXPECT_GT(light.offsets.norm(), 0.0);

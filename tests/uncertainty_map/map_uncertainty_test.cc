@@ -103,6 +103,17 @@ class MapUncertaintyTest : public ::testing::Test {
     return *std::move(result);
   }
 
+  static void WriteTorus(const std::string& file) {
+    const TriangleMesh torus = TorusMesh(48, 24, 0.7, 0.3);
+    MeshSpec mesh;
+    for (size_t i = 0; i < torus.vertices.size(); ++i) {
+      mesh.vertices.push_back(torus.vertices[i].cast<double>());
+      mesh.normals.push_back(torus.normals[i].cast<double>());
+    }
+    mesh.triangles = torus.triangles;
+    WriteBytes(dir_->File(file), ObjBytes(mesh));
+  }
+
   static std::string Error(const StatusOr<Problem>& problem,
                            const UncertaintyOptions& options = {}) {
     if (!problem.ok()) return problem.status().message();
@@ -335,14 +346,7 @@ TEST_F(MapUncertaintyTest, ShadowsLeaveOutWhatTheObjectHides) {
   const std::string none = "uncertainty.shadows=none";
   EXPECT_EQ(Map({0, 1}).texels.maps.entropy,
             Map({0, 1}, {}, {none}).texels.maps.entropy);
-  const TriangleMesh torus = TorusMesh(48, 24, 0.7, 0.3);
-  MeshSpec mesh;
-  for (size_t i = 0; i < torus.vertices.size(); ++i) {
-    mesh.vertices.push_back(torus.vertices[i].cast<double>());
-    mesh.normals.push_back(torus.normals[i].cast<double>());
-  }
-  mesh.triangles = torus.triangles;
-  WriteBytes(dir_->File("ring.obj"), ObjBytes(mesh));
+  WriteTorus("ring.obj");
   const std::string ring = "geometry={mesh: ring.obj}";
   const UncertaintyResult mirror = Map({0, 1, 2, 3}, {}, {ring});
   const UncertaintyResult open = Map({0, 1, 2, 3}, {}, {ring, none});
@@ -408,14 +412,7 @@ TEST_F(MapUncertaintyTest, AlphaOfAPngIsItsMask) {
 // A mesh without texture coordinates gets charts, between which the picture
 // shows no surface.
 TEST_F(MapUncertaintyTest, MeshesHaveChartsAndPixelsShowTheirTexels) {
-  const TriangleMesh torus = TorusMesh(48, 24, 0.7, 0.3);
-  MeshSpec mesh;
-  for (size_t i = 0; i < torus.vertices.size(); ++i) {
-    mesh.vertices.push_back(torus.vertices[i].cast<double>());
-    mesh.normals.push_back(torus.normals[i].cast<double>());
-  }
-  mesh.triangles = torus.triangles;
-  WriteBytes(dir_->File("torus.obj"), ObjBytes(mesh));
+  WriteTorus("torus.obj");
   const UncertaintyResult result =
       Map({0, 3}, {},
           {"geometry={mesh: torus.obj}", "texture={width: 256, height: 256}"});

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "ibrdf/base/gauss_legendre.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/uncertainty/cosine_lobe.h"
 
 namespace ibrdf {
 namespace {
@@ -15,23 +15,6 @@ constexpr int kOrder = 10;
 constexpr int kPartsWide = 24, kPartsHigh = 12;
 // Maps are made as coarse before they are cut into parts.
 constexpr int kMapWidth = 256, kMapHeight = 128;
-
-// What the clamped cosine leaves of degree l: 2 pi int_0^1 z P_l(z) dz, with
-// P_l(z) = sqrt(4 pi / (2 l + 1)) Y_l0.
-std::vector<double> CosineFactors(const HarmonicBasis& basis) {
-  std::vector<double> nodes, weights, Y(basis.count()),
-      out(basis.order() + 1, 0.0);
-  GaussLegendre(16, &nodes, &weights);
-  for (size_t k = 0; k < nodes.size(); ++k) {
-    const double z = nodes[k];
-    basis.Evaluate({0.0, z, std::sqrt(1.0 - z * z)}, Y.data());
-    for (int l = 0; l <= basis.order(); ++l) {
-      out[l] += 2.0 * kPi * weights[k] * z * Y[HarmonicIndex(l, 0)] *
-                std::sqrt(4.0 * kPi / (2.0 * l + 1.0));
-    }
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -42,9 +25,11 @@ TexelIrradiance::TexelIrradiance(const Scene& scene, const Image& map,
       basis_(kOrder),
       irradiance_(HarmonicProjection(kOrder, map.height, map.width)
                       .Project(map.rgb.data())) {
-  const std::vector<double> factors = CosineFactors(basis_);
+  // The cosine is a zonal harmonic about each normal: it scales a degree.
+  const std::vector<double> cosine = CosineLobe(basis_);
   for (int l = 0; l <= kOrder; ++l) {
-    irradiance_.middleRows(l * l, 2 * l + 1) *= factors[l];
+    irradiance_.middleRows(l * l, 2 * l + 1) *=
+        cosine[l] * std::sqrt(4.0 * kPi / (2.0 * l + 1.0));
   }
   if (shadowed_) parts_ = PartsOf(ResizeMap(map, kMapHeight, kMapWidth));
 }

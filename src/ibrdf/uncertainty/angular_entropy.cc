@@ -8,12 +8,12 @@
 #include <limits>
 #include <utility>
 
-#include "ibrdf/base/gauss_legendre.h"
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/base/simd_dispatch.h"
 #include "ibrdf/base/to_float.h"
 #include "ibrdf/uncertainty/angular_kernels.h"
+#include "ibrdf/uncertainty/cosine_lobe.h"
 #include "ibrdf/uncertainty/parameter_prior.h"
 
 namespace ibrdf {
@@ -26,22 +26,6 @@ constexpr double kLargestDistance = 1e30;
 constexpr double kSingular = 1e-10;
 // Light whose square is less tells nothing, and quotients by it overflow.
 constexpr double kNoLight = 1e-20;
-
-// int max(cos, 0) Y_l0 of each degree: irradiance of harmonics in the frame of
-// the normal.
-std::vector<double> CosineLobe(const HarmonicBasis& basis) {
-  std::vector<double> nodes, weights, Y(basis.count()),
-      out(basis.order() + 1, 0.0);
-  GaussLegendre(16, &nodes, &weights);
-  for (size_t k = 0; k < nodes.size(); ++k) {
-    const double z = nodes[k];
-    basis.Evaluate({0.0, z, std::sqrt(1.0 - z * z)}, Y.data());
-    for (int l = 0; l <= basis.order(); ++l) {
-      out[l] += 2.0 * kPi * weights[k] * z * Y[HarmonicIndex(l, 0)];
-    }
-  }
-  return out;
-}
 
 // The mean over views of (y - Kd D - Ks x)^2, as a function of Kd and Ks.
 struct Quadratic {
