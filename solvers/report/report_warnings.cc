@@ -120,7 +120,7 @@ std::string UncertainWarning(const Solution& solution) {
          "scale).";
 }
 
-// A curve in words: aces, gamma 0.52 (known to some 10 %).
+// A curve in words: aces, gamma 0.52 (known to some 10 % at best).
 std::string CurveWords(const CurveEstimate& estimate) {
   const ResponseDefinition& curve = estimate.curve;
   std::string words = NameOf(curve.kind);
@@ -128,15 +128,24 @@ std::string CurveWords(const CurveEstimate& estimate) {
   words += std::string(", ") + ParameterOf(curve.kind)->name + " " +
            ShortNumber(*curve.parameter);
   if (std::isfinite(estimate.log_parameter_std)) {
-    words += " (known to " + ErrorInWords(estimate.log_parameter_std) + ")";
+    words +=
+        " (known to " + ErrorInWords(estimate.log_parameter_std) + " at best)";
   }
   return words;
 }
 
-std::string CurveWarning(const std::vector<CurveEstimate>& curves) {
+// Pale, plain objects under known light have had another gamma's gloss with
+// far more evidence than the true one's.
+std::string CurveWarning(const SolvedProblem& solved) {
+  const std::vector<CurveEstimate>& curves = solved.solution.curves;
   if (curves.empty()) return "";
   std::string text =
       "The response curve was estimated: " + CurveWords(curves.front()) + ".";
+  if (solved.problem.kind != ProblemKind::kIllumination) {
+    text +=
+        " Another gloss may explain the image by another curve: if the curve "
+        "is known, say so (image.response).";
+  }
   for (size_t k = 1; k < curves.size(); ++k) {
     if (!(curves[k].cost < kRivalCost)) continue;
     text +=
@@ -191,7 +200,7 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
        {StatusWarning(solved.solution.status), TimeWarning(solved),
         MisfitWarning(solved), ViewWarning(solved), PixelWarning(solved),
         UnlitWarning(solved), StrayLightWarning(solved), PaintWarning(solved),
-        FewPixelsWarning(solved), CurveWarning(solved.solution.curves),
+        FewPixelsWarning(solved), CurveWarning(solved),
         UncertainWarning(solved.solution),
         RivalWarning(solved.solution.alternatives)}) {
     if (!warning.empty()) warnings.push_back(std::move(warning));

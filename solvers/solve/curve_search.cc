@@ -22,10 +22,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // of a family's line.
 constexpr double kReach = 2.0;
 constexpr int kPoints = 5;
-constexpr int kRefinements = 5;
-// A vertex that is no further from the lowest point, in lengths of the line, is
-// not looked at.
-constexpr double kSettledMove = 5e-3;
+constexpr int kRefinements = 3;
+// A parameter is settled to this share of its prior's deviation: costs of two
+// searches so near differ by some nats of chance.
+constexpr double kSettled = 0.08;
 // Of the time that remains, at most.
 constexpr double kTimeShare = 0.6;
 // Under known light: outer iterations of a search, for one curve; scales of the
@@ -33,6 +33,7 @@ constexpr double kTimeShare = 0.6;
 constexpr int kKnownLightIterations = 30;
 constexpr double kLeastScale = 2e-3, kMostScale = 0.5;
 constexpr int kScalePoints = 12, kScaleRefinements = 3;
+constexpr double kSettledScale = 0.03;  // of its logarithm
 constexpr double kDarkest = 1e-100;
 
 // -log of the probability of the codes, their noise Laplacian in log radiance
@@ -66,7 +67,7 @@ double KnownLightCost(const SolveSetup& setup, SolveContext* context) {
                          std::exp(log_b));
       },
       std::log(kLeastScale), std::log(kMostScale), kScalePoints,
-      kScaleRefinements);
+      kScaleRefinements, kSettledScale);
   return codes.value + end.reflectance_prior;
 }
 
@@ -112,8 +113,8 @@ CurveEstimate BestOfFamily(
   const LineMinimum minimum = MinimiseOnLine(
       [&](double u) { return cost(CurveAt(family, u)) + 0.5 * u * u; },
       std::max(-kReach, DeviationsOf(family, range.least)),
-      std::min(kReach, DeviationsOf(family, range.most)), kPoints,
-      kRefinements);
+      std::min(kReach, DeviationsOf(family, range.most)), kPoints, kRefinements,
+      kSettled);
   best.curve = CurveAt(family, minimum.at);
   best.cost = minimum.value;
   if (minimum.curvature > 0.0) {
@@ -146,7 +147,8 @@ Parabola Through(const double* x, const double* f) {
 }  // namespace
 
 LineMinimum MinimiseOnLine(const std::function<double(double)>& f, double low,
-                           double high, int count, int refinements) {
+                           double high, int count, int refinements,
+                           double settled) {
   std::map<double, double> values;
   const auto add = [&](double x) {
     const double value = f(x);
@@ -177,7 +179,7 @@ LineMinimum MinimiseOnLine(const std::function<double(double)>& f, double low,
     minimum.curvature = parabola.curvature;
     const double next = std::clamp(parabola.vertex, low, high);
     const double move = std::abs(next - minimum.at);
-    if (k == refinements || move <= kSettledMove * (high - low)) break;
+    if (k == refinements || move <= settled) break;
     add(next);
   }
   return minimum;

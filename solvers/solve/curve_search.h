@@ -32,12 +32,14 @@ InverseProblem WithCurve(const InverseProblem& problem,
 
 // The lowest point of a function on [low, high]: values at `count` points in
 // equal steps, then up to `refinements` points at the vertex of the parabola
-// through the lowest and its neighbours. Infinite values are passed over.
+// through the lowest and its neighbours, until it is within `settled` of the
+// lowest. Infinite values are passed over.
 struct LineMinimum {
   double at = 0.0, value = 0.0;
   double curvature = 0.0;  // second derivative there; 0: the ends are lowest
 };
 LineMinimum MinimiseOnLine(const std::function<double(double)>& f, double low,
-                           double high, int count, int refinements);
+                           double high, int count, int refinements,
+                           double settled);
 
 }  // namespace ibrdf

@@ -351,6 +351,31 @@ TEST(ResultWarnings, NameEachCause) {
          "a.png: clipped");
 }
 
+TEST(ResultWarnings, GlossCanHideAnotherCurve) {
+  Example example;
+  CurveEstimate aces, power;
+  aces.curve = {ResponseKind::kAces, 0.5, {}};
+  aces.log_parameter_std = 0.1;
+  power.curve = {ResponseKind::kPower, 2.2, {}};
+  power.cost = 1.0;
+  example.solution.curves = {aces, power};
+  const std::string told =
+      "The response curve was estimated: aces, gamma 0.5 (known to some 10 % "
+      "at best).";
+  const std::string rival =
+      " The image's codes do not tell it from power, p 2.2.";
+  EXPECT_EQ(
+      std::vector<std::string>{
+          told +
+          " Another gloss may explain the image by another curve: if the "
+          "curve is known, say so (image.response)." +
+          rival},
+      ResultWarnings(example.Solved()));
+  example.problem.kind = ProblemKind::kIllumination;
+  EXPECT_EQ(std::vector<std::string>{told + rival},
+            ResultWarnings(example.Solved()));
+}
+
 TEST(ResultWarnings, EffectsAreANoteOfTheReportAlone) {
   Example example;
   EXPECT_EQ("", EffectsNote(example.Solved()));
