@@ -51,6 +51,17 @@ struct MarginalGradient {
   std::array<double, LightHyperparameters::kCount> hyperparameters = {};
 };
 
+// What data say of n parameters and of the light around a mode, to first order
+// (log L_o moves by G d + J l): a normal distribution.
+struct LinearPosterior {
+  Eigen::MatrixXd information;  // of the parameters, G^T A^-1 G [n]^2
+  // Of the light at fixed parameters: K - K J^T A^-1 J K [3 * sources]^2.
+  RowMatrix light_covariance;
+  // By how much the light's mean falls as parameters rise: K J^T A^-1 G
+  // [3 * sources][n].
+  RowMatrix light_slope;
+};
+
 struct MarginalValue {
   bool ok = false;    // false: not finite, or no mode was found
   double cost = 0.0;  // -log p(image | reflectance), nats, up to a constant
@@ -126,6 +137,19 @@ class MarginalLikelihood {
       const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
       const LightHyperparameters& hyperparameters, const LightMode& mode,
       const RowMatrix& G, Eigen::MatrixXd* of_hyperparameters = nullptr) const;
+
+  // The same and the light's part, without hyperparameters; G: as
+  // Information's. Its matrices are empty where A is not positive definite.
+  // CHECKs that there is no paint.
+  LinearPosterior Linearised(const std::array<RowMatrix, 3>& matrices,
+                             const DataErrors& errors,
+                             const LightHyperparameters& hyperparameters,
+                             const LightMode& mode, const RowMatrix& G) const;
+
+  // J of a channel [points][sources] under the light of `mode`, whatever the
+  // data say; without paint.
+  std::array<RowMatrix, 3> LightJacobian(
+      const std::array<RowMatrix, 3>& matrices, const LightMode& mode) const;
 
   // sigma^2 and what the map's coarse texels cannot hold: light inside a texel
   // shows where a lobe changes within it,

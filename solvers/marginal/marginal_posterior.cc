@@ -32,6 +32,56 @@ Eigen::MatrixXd MarginalLikelihood::Information(
   return information;
 }
 
+LinearPosterior MarginalLikelihood::Linearised(
+    const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
+    const LightHyperparameters& hyperparameters, const LightMode& mode,
+    const RowMatrix& G) const {
+  CHECK(!has_paint());
+  CHECK_EQ(G.rows(), Eigen::Index{3} * num_points_);
+  const Given given = GivenBy(matrices, errors, hyperparameters);
+  const Point point = At(given, mode.level, mode.l);
+  const auto linear = Linearise(given, point, DataAt(given, point));
+  if (linear == nullptr) return {};
+  // K, a column at a time.
+  const Eigen::Index n = Eigen::Index{3} * num_sources(),
+                     rows = Eigen::Index{3} * num_points_;
+  LinearPosterior out;
+  out.light_covariance.resize(n, n);
+  RowMatrix transposed(n, rows);  // K J^T, columns scaled as rows of J
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd column =
+        ApplyCovariance(given.light, Eigen::VectorXd::Unit(n, i));
+    out.light_covariance.row(i) = column.transpose();
+    transposed.row(i) =
+        linear->row_scale.cwiseProduct(ApplyJacobian(*linear, column))
+            .transpose();
+  }
+  // A = B B^T; JK and G times B^-1.
+  const auto factor = linear->factor.triangularView<Eigen::Lower>();
+  const RowMatrix JK = factor.solve(RowMatrix(transposed.transpose()));
+  const RowMatrix whitened =
+      factor.solve(RowMatrix(linear->row_scale.asDiagonal() * G));
+  out.information.noalias() = whitened.transpose() * whitened;
+  out.light_slope.noalias() = JK.transpose() * whitened;
+  RowMatrix known;
+  Multiply(RowMatrix(JK.transpose()), JK, &known);
+  out.light_covariance -= known;
+  return out;
+}
+
+std::array<RowMatrix, 3> MarginalLikelihood::LightJacobian(
+    const std::array<RowMatrix, 3>& matrices, const LightMode& mode) const {
+  const Eigen::Index n = num_sources(), P = num_points_;
+  const Eigen::VectorXd L = Radiance(mode.level, mode.l);
+  const Eigen::VectorXd L_o = Transported(matrices, L);
+  std::array<RowMatrix, 3> jacobian;
+  for (int c = 0; c < 3; ++c) {
+    jacobian[c] = L_o.segment(c * P, P).cwiseInverse().asDiagonal() *
+                  matrices[c] * L.segment(c * n, n).asDiagonal();
+  }
+  return jacobian;
+}
+
 RowMatrix MarginalLikelihood::CovarianceByBand(
     const Light& light, const Linearisation& linear,
     const std::array<RowMatrix, 3>& rough, int band) const {

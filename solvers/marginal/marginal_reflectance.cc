@@ -520,4 +520,21 @@ Eigen::MatrixXd MarginalReflectance::Information(
       errors, hyperparameters, mode, G, of_hyperparameters);
 }
 
+LogRadianceSlopes MarginalReflectance::Slopes(const double* parameters,
+                                              double sigma,
+                                              const LightMode& mode) const {
+  const Fields fields = Tabulate(parameters, true);
+  const DirectionalLightResponses directional_lights =
+      DirectionalLights(parameters);
+  const std::array<RowMatrix, 3> matrices = Coloured(
+      parameters,
+      ShapeMatrices(directional_lights, fields, 1 + lobes_->code_size()));
+  LogRadianceSlopes out;
+  out.by_light = likelihood_->LightJacobian(matrices, mode);
+  out.by_parameters =
+      LogRadianceJacobian(parameters, fields, directional_lights, mode);
+  out.noise = likelihood_->NoiseVariance(matrices, sigma, mode);
+  return out;
+}
+
 }  // namespace ibrdf

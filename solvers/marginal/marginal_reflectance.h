@@ -24,6 +24,13 @@ struct MarginalResolution {
   std::shared_ptr<const Visibility> visibility = nullptr;  // of the points
 };
 
+// How the log radiance of bins moves, and how well it is measured.
+struct LogRadianceSlopes {
+  std::array<RowMatrix, 3> by_light;  // J of a channel [bins][sources]
+  RowMatrix by_parameters;            // G [3 * bins][parameters]
+  Eigen::VectorXd noise;              // D [3 * bins]
+};
+
 // Parameters: the lobes' as LobeModel's, then of each directional light where
 // it is (MovedDirectionalLight's offsets). Immutable but for what its callers
 // keep; may be used from several threads.
@@ -75,6 +82,11 @@ class MarginalReflectance {
       const double* parameters, const DataErrors& errors,
       const LightHyperparameters& hyperparameters, const LightMode& mode,
       Eigen::MatrixXd* of_hyperparameters = nullptr) const;
+
+  // At these parameters under the light of `mode`, whatever the image shows.
+  // sigma: as NoiseVariance's. Without paint.
+  LogRadianceSlopes Slopes(const double* parameters, double sigma,
+                           const LightMode& mode) const;
 
   // The matrices T_c of parameters, and those of what paint scales (MattePart
   // of each lobe); empty ones without paint.
