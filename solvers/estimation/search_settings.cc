@@ -111,10 +111,7 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
   ReflectanceSearchOptions o;
   o.num_threads = problem.num_threads;
   for (MarginalResolution* resolution : {&o.screen, &o.coarse, &o.fine}) {
-    resolution->visibility = problem.transport.visibility;
-    resolution->quadrature =
-        AtLevel(resolution->quadrature, problem.solver.quadrature);
-    LimitBins(problem.sheet.views.size(), &resolution->bins);
+    AdaptResolution(problem, problem.sheet.views.size(), resolution);
   }
   o.should_stop = context->StopAfter(share);
   LimitIterations(problem.solver.max_iterations, &o);
@@ -129,6 +126,14 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
     context->Report(entry);
   };
   return o;
+}
+
+void AdaptResolution(const InverseProblem& problem, size_t views,
+                     MarginalResolution* resolution) {
+  resolution->visibility = problem.transport.visibility;
+  resolution->quadrature =
+      AtLevel(resolution->quadrature, problem.solver.quadrature);
+  LimitBins(views, &resolution->bins);
 }
 
 BounceGain BounceGainOf(const SolveSetup& setup,

@@ -14,6 +14,12 @@ namespace ibrdf {
 ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
                                        SolveContext* context);
 
+// A resolution of a search for the problem as if it had so many photographs:
+// what the object hides of the light, the level of the quadrature, and bins,
+// which several views share.
+void AdaptResolution(const InverseProblem& problem, size_t views,
+                     MarginalResolution* resolution);
+
 // SearchedModel::bounce_gain of a search whose finest resolution this is; empty
 // where the object throws no light on itself. The setup must outlive it.
 BounceGain BounceGainOf(const SolveSetup& setup,

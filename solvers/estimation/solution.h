@@ -14,6 +14,7 @@
 #include "ibrdf/solvers/estimation/brdf_slice.h"
 #include "ibrdf/solvers/estimation/material_ranking.h"
 #include "ibrdf/solvers/priors/determined_directions.h"
+#include "ibrdf/solvers/priors/light_process.h"
 #include "ibrdf/solvers/problem/inverse_problem.h"
 
 namespace ibrdf {
@@ -84,6 +85,10 @@ struct Solution : MaterialSolution {
   std::vector<CurveEstimate> curves;
   // Labelled materials, by ShadingPoint::material. Empty: no labels.
   std::vector<MaterialSolution> materials;
+  // What the search found of the light's prior, and its directional lights,
+  // unit; where there was none, as it begins.
+  LightHyperparameters light_hyperparameters = LightHyperparameters::Average();
+  std::vector<Eigen::Vector3d> directional_lights;
   // Standard deviation of log radiance given the reflectance, at the
   // resolution of the search; empty where there was none or its end was not
   // kept.

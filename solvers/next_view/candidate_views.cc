@@ -1,4 +1,4 @@
-#include "ibrdf/solvers/uncertainty_map/candidate_views.h"
+#include "ibrdf/solvers/next_view/candidate_views.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include "ibrdf/base/format.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/solvers/problem/load_views.h"
+#include "ibrdf/uncertainty/best_view.h"
 
 namespace ibrdf {
 namespace {
@@ -18,24 +19,6 @@ constexpr char kOption[] = "command line: --candidates";
 constexpr double kFovDegrees = 30.0;
 // Of the distance at which all of the surface is just seen.
 constexpr double kMargin = 1.1;
-
-struct Ball {
-  Eigen::Vector3d centre;
-  double radius;
-};
-
-Ball BallAround(const SurfaceAtlas& atlas) {
-  Eigen::Vector3d low = atlas.texels[0].position, high = low;
-  for (const SurfaceTexel& texel : atlas.texels) {
-    low = low.cwiseMin(texel.position);
-    high = high.cwiseMax(texel.position);
-  }
-  Ball ball{0.5 * (low + high), 0.0};
-  for (const SurfaceTexel& texel : atlas.texels) {
-    ball.radius = std::max(ball.radius, (texel.position - ball.centre).norm());
-  }
-  return ball;
-}
 
 // A pinhole that looks at `centre` from `from`.
 Eigen::Matrix4d LookAt(const Eigen::Vector3d& from,
@@ -59,20 +42,19 @@ struct SphereLens {
   double distance = 0.0;
 };
 
-SphereLens LensOf(const std::vector<PhotographedView>& views,
-                  const Ball& ball) {
+SphereLens LensOf(const CandidateSetting& setting) {
+  const std::vector<SizedCamera>& views = setting.photographs;
   SphereLens out;
-  out.view.width = views[0].radiance.width;
-  out.view.height = views[0].radiance.height;
+  out.view.width = views[0].width;
+  out.view.height = views[0].height;
   int pinholes = 0;
-  for (const PhotographedView& view : views) {
+  for (const SizedCamera& view : views) {
     if (view.camera.type != CameraType::kPerspective) continue;
-    out.distance += (AxesOf(view.camera).centre - ball.centre).norm();
+    out.distance += (AxesOf(view.camera).centre - setting.centre).norm();
     if (pinholes++ > 0) continue;
-    out.view.width = view.radiance.width;
-    out.view.height = view.radiance.height;
-    const PixelGrid grid =
-        PixelGridOf(view.camera, view.radiance.width, view.radiance.height);
+    out.view.width = view.width;
+    out.view.height = view.height;
+    const PixelGrid grid = PixelGridOf(view.camera, view.width, view.height);
     out.view.focal = grid.side.cwiseInverse();
     out.view.centre = grid.centre;
   }
@@ -84,14 +66,13 @@ SphereLens LensOf(const std::vector<PhotographedView>& views,
   const double side = std::min(out.view.width, out.view.height);
   out.view.focal.setConstant(0.5 * side / std::tan(half));
   out.view.centre = {0.5 * out.view.width, 0.5 * out.view.height};
-  out.distance = kMargin * ball.radius / std::sin(half);
+  out.distance = kMargin * setting.radius / std::sin(half);
   return out;
 }
 
 std::vector<CalibratedView> SphereCandidates(int count,
-                                             const UncertaintyInputs& inputs) {
-  const Ball ball = BallAround(inputs.surface.atlas);
-  const SphereLens lens = LensOf(inputs.views, ball);
+                                             const CandidateSetting& setting) {
+  const SphereLens lens = LensOf(setting);
   const double golden = kPi * (3.0 - std::sqrt(5.0));
   std::vector<CalibratedView> out;
   for (int i = 0; i < count; ++i) {
@@ -102,16 +83,25 @@ std::vector<CalibratedView> SphereCandidates(int count,
     CalibratedView view = lens.view;
     view.name = view.image = Format("candidate_%04d", i);
     view.world_from_camera =
-        LookAt(ball.centre + lens.distance * direction, ball.centre);
+        LookAt(setting.centre + lens.distance * direction, setting.centre);
     out.push_back(std::move(view));
   }
   return out;
 }
 
+// Where a camera stands, as a direction from the surface.
+Eigen::Vector3d StandOf(const Camera& camera, const Eigen::Vector3d& middle) {
+  const CameraAxes axes = AxesOf(camera);
+  if (camera.type == CameraType::kOrthographic) {
+    return axes.world_from_camera.col(2);
+  }
+  return (axes.centre - middle).normalized();
+}
+
 }  // namespace
 
 StatusOr<std::vector<CalibratedView>> LoadCandidates(
-    const std::string& text, const UncertaintyInputs& inputs, UpAxis up) {
+    const std::string& text, const CandidateSetting& setting, UpAxis up) {
   const std::string sphere = "sphere:";
   const std::string range = " from 1 to " + std::to_string(kMostCandidates);
   if (text.rfind(sphere, 0) == 0) {
@@ -125,7 +115,7 @@ StatusOr<std::vector<CalibratedView>> LoadCandidates(
       return InvalidInput(kOption, "expected sphere:N with N" + range +
                                        ", found '" + text + "'");
     }
-    return SphereCandidates(count, inputs);
+    return SphereCandidates(count, setting);
   }
   const bool colmap = std::filesystem::is_directory(text);
   StatusOr<std::vector<CalibratedView>> views =
@@ -150,6 +140,40 @@ StatusOr<SizedCamera> CandidateCamera(const CalibratedView& candidate,
   if (!camera.ok()) return camera.status();
   out.camera = *camera;
   return out;
+}
+
+std::vector<int> FarthestCandidates(
+    const std::vector<CalibratedView>& candidates,
+    const std::vector<SizedCamera>& photographs, const Eigen::Vector3d& middle,
+    int count) {
+  std::vector<Eigen::Vector3d> stands;
+  std::vector<int> photographed;
+  for (const SizedCamera& view : photographs) {
+    photographed.push_back(static_cast<int>(stands.size()));
+    stands.push_back(StandOf(view.camera, middle));
+  }
+  for (const CalibratedView& candidate : candidates) {
+    stands.push_back(
+        (candidate.world_from_camera.topRightCorner<3, 1>() - middle)
+            .normalized());
+  }
+  const int num_photographed = static_cast<int>(photographed.size());
+  std::vector<int> taken =
+      FarthestPoints(stands, photographed, num_photographed + count);
+  taken.erase(taken.begin(), taken.begin() + num_photographed);
+  for (int& view : taken) view -= num_photographed;
+  return taken;
+}
+
+std::string NextViewsText(const std::vector<CalibratedView>& candidates,
+                          const std::vector<int>& chosen, UpAxis up) {
+  std::vector<CalibratedView> views;
+  for (const int i : chosen) {
+    views.push_back(candidates[i]);
+    Eigen::Matrix4d& pose = views.back().world_from_camera;
+    pose = Turned(pose, YUpFrom(up).transpose());
+  }
+  return TransformsText(views);
 }
 
 }  // namespace ibrdf

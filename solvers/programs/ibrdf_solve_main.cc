@@ -16,6 +16,8 @@
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/io/problem_reference.h"
 #include "ibrdf/solvers/effects/describe_plan.h"
+#include "ibrdf/solvers/next_view/informative_views.h"
+#include "ibrdf/solvers/next_view/next_view_candidates.h"
 #include "ibrdf/solvers/optim/blas_memory.h"
 #include "ibrdf/solvers/photograph_check/check_words.h"
 #include "ibrdf/solvers/problem/load_object.h"
@@ -66,6 +68,8 @@ struct SolveFlags {
   ProblemFlags problem;  // its `out` and `overrides` in either case
   bool explain = false;  // print the effects, solve nothing
   bool check = false;    // print and draw the look before, solve nothing
+  int add = 0;           // further views to choose
+  std::string candidates = "sphere:100";  // LoadCandidates
 
   const std::string& folder() const { return problem.out; }
 };
@@ -108,6 +112,7 @@ Status WriteBefore(const AskedProblem& asked, const PhotographedObject& object,
     const std::vector<std::string> results =
         ResultPaths(asked.problem, object, folder);
     paths.insert(paths.end(), results.begin(), results.end());
+    if (flags.add > 0) paths.push_back(folder + "/" + kNextViewsFile);
   }
   std::vector<NamedFile> photographs;
   for (const SheetView& view : object.sheet.views) {
@@ -147,8 +152,36 @@ SolveProgress PrintedProgress(bool quiet) {
   };
 }
 
+// The views that were asked for; unset where nobody asked. What keeps them from
+// being chosen is a warning of the problem.
+StatusOr<std::optional<InformativeViews>> ChooseViews(
+    const std::optional<NextViewCandidates>& candidates,
+    const Solution& solution, int count, InverseProblem* inverse) {
+  std::optional<InformativeViews> out;
+  if (!candidates.has_value()) return out;
+  StatusOr<InformativeViews> next =
+      ChooseInformativeViews(*inverse, solution, *candidates, count);
+  if (next.ok()) {
+    out = *std::move(next);
+  } else if (next.status().code() == StatusCode::kNoImprovement) {
+    inverse->warnings.push_back(next.status().message());
+  } else {
+    return next.status();
+  }
+  return out;
+}
+
+void PrintNextViews(const InformativeViews& next) {
+  for (size_t k = 0; k < next.chosen.size(); ++k) {
+    std::printf("next view: %s, adds %.2f nats to %.1f\n",
+                next.candidates[next.chosen[k]].name.c_str(), next.gains[k],
+                next.information);
+  }
+}
+
 // Solves, writes the results and prints their metrics.
 Status SolveAndWrite(const Problem& problem, const Truth& truth,
+                     const std::optional<NextViewCandidates>& candidates,
                      InverseProblem inverse, const SolveFlags& flags) {
   const std::string& folder = flags.folder();
   const StatusOr<Solution> estimate = SolveInverseRendering(
@@ -158,10 +191,15 @@ Status SolveAndWrite(const Problem& problem, const Truth& truth,
     inverse = WithCurve(inverse, estimate->curves.front().curve);
   }
   inverse = WithModelOf(*estimate, std::move(inverse));
+  const StatusOr<std::optional<InformativeViews>> next =
+      ChooseViews(candidates, *estimate, flags.add, &inverse);
+  if (!next.ok()) return next.status();
   const StatusOr<ResultMetrics> metrics =
       MeasureResult(inverse, truth, *estimate);
   if (!metrics.ok()) return metrics.status();
-  const SolvedProblem solved{problem, inverse, truth, *estimate, *metrics};
+  const SolvedProblem solved{problem,  inverse,
+                             truth,    *estimate,
+                             *metrics, next->has_value() ? &**next : nullptr};
   IBRDF_RETURN_IF_ERROR(WriteResults(solved, folder));
   PrintWarnings(ResultWarnings(solved));
   if (!flags.common.quiet) {
@@ -171,6 +209,7 @@ Status SolveAndWrite(const Problem& problem, const Truth& truth,
     for (const std::string& sentence : MakeVerdict(solved).Sentences()) {
       std::printf("%s\n", sentence.c_str());
     }
+    if (next->has_value()) PrintNextViews(**next);
     std::printf("results in %s; look at %s/report.html\n", folder.c_str(),
                 folder.c_str());
   }
@@ -185,6 +224,14 @@ Status Solve(const SolveFlags& flags) {
   StatusOr<PhotographedObject> object =
       LoadPhotographedObject(problem, flags.common.threads);
   if (!object.ok()) return object.status();
+  // Before a file is written or time is spent.
+  std::optional<NextViewCandidates> candidates;
+  if (flags.add > 0) {
+    StatusOr<NextViewCandidates> loaded = LoadNextViewCandidates(
+        problem, *object, flags.candidates, flags.common.threads);
+    if (!loaded.ok()) return loaded.status();
+    candidates = *std::move(loaded);
+  }
   if (flags.check || !flags.common.quiet) PrintLook(*asked, *object);
   if (!flags.explain) {
     IBRDF_RETURN_IF_ERROR(WriteBefore(*asked, *object, flags));
@@ -215,7 +262,7 @@ Status Solve(const SolveFlags& flags) {
   IBRDF_RETURN_IF_ERROR(ReserveBlasMemory(flags.common.threads));
   inverse->seconds_spent = clock.Seconds();
   inverse->seconds_reserved = PredictWriteSeconds(*inverse);
-  return SolveAndWrite(problem, *truth, *std::move(inverse), flags);
+  return SolveAndWrite(problem, *truth, candidates, *std::move(inverse), flags);
 }
 
 void AddProblemFlags(CLI::App* app, SolveFlags* flags) {
@@ -241,6 +288,16 @@ void AddProblemFlags(CLI::App* app, SolveFlags* flags) {
                   "e.g. --set solver.seconds=30")
       ->expected(1)
       ->take_all();
+  app->add_option("--add", flags->add,
+                  "joint problems: number of further views to choose, into "
+                  "next_views.json")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  app->add_option("--candidates", flags->candidates,
+                  "what they are chosen from: sphere:N cameras about the "
+                  "object, a file of transforms (.json), or a folder of "
+                  "COLMAP's model")
+      ->capture_default_str();
   app->add_flag("--check", flags->check,
                 "look at photograph, mask and shape: numbers, warnings and "
                 "check.png; solve nothing");

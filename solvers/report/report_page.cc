@@ -113,6 +113,32 @@ std::string GaugeSection(const InverseProblem& inverse) {
           "\n");
 }
 
+// Which photographs to take next, and what they would add.
+std::string NextViewsSection(const InformativeViews* next) {
+  if (next == nullptr || next->chosen.empty()) return "";
+  Rows rows;
+  for (size_t k = 0; k < next->chosen.size(); ++k) {
+    const CalibratedView& view = next->candidates[next->chosen[k]];
+    const Eigen::Vector3d from = view.world_from_camera.topRightCorner<3, 1>();
+    rows.push_back({view.name,
+                    "[" + ShortNumber(from.x()) + ", " + ShortNumber(from.y()) +
+                        ", " + ShortNumber(from.z()) + "]",
+                    ShortNumber(next->gains[k])});
+  }
+  return HtmlSection(
+      "Which photographs to take next",
+      HtmlElement(
+          "p",
+          "Of " + std::to_string(next->candidates.size()) +
+              " candidates these would tell the most of codes and colours, "
+              "with the unknown light integrated out, each beside those above "
+              "it. What the photographs say now is " +
+              Format("%.1f", next->information) +
+              " nats beyond the prior. Places are in the library's world, y "
+              "up; next_views.json has the cameras.") +
+          "\n" + HtmlTable({"candidate", "stands at", "adds (nats)"}, rows));
+}
+
 std::string PlotSection(const std::vector<TraceEntry>& trace) {
   const std::vector<LinePlot> plots = TracePlots(trace);
   if (plots.empty()) return "";
@@ -145,6 +171,7 @@ StatusOr<std::string> ReportPage(const SolvedProblem& solved,
   }
   body += PosteriorSection(solved.inverse, solved.solution);
   body += LightPosteriorSection(solved.solution);
+  body += NextViewsSection(solved.next_views);
   body += MetricsSection(solved.metrics, kind);
   if (kind == ProblemKind::kJoint) body += GaugeSection(solved.inverse);
   body += PlotSection(solved.solution.trace);

@@ -168,17 +168,23 @@ std::string AlternativesInWords(const std::vector<Alternative>& alternatives) {
          "\n";
 }
 
-std::string SlicesInWords(const std::vector<BrdfSlice>& slices) {
+std::string SlicesInWords(const std::vector<BrdfSlice>& slices,
+                          bool light_unknown) {
   if (slices.empty()) return "";
   return HtmlElement("h3", "Slices of the BRDF") + "\n" +
          HtmlElement(
              "p",
-             "Lines are the estimate. Nine tenths of the reflectances that are "
-             "sampled from the posterior at this optimum lie in the band, at "
-             "each angle by itself. In a joint problem no image tells the "
-             "level, which makes most of the width. What lobes cannot render "
-             "is not in it. The numbers are in result.json "
-             "(posterior.slices).") +
+             std::string("Lines are the estimate. Nine tenths of the "
+                         "reflectances that are sampled from the posterior at "
+                         "this optimum lie in the band, at each angle by "
+                         "itself") +
+                 (light_unknown
+                      ? ", each after the scale by channel that brings it "
+                        "nearest to the estimate: under an unknown light no "
+                        "image tells the level, and the band is of the shape. "
+                      : ". ") +
+                 "What lobes cannot render is not in it. The numbers are in "
+                 "result.json (posterior.slices).") +
          "\n" + HtmlPlots(SlicePlots(slices));
 }
 
@@ -191,8 +197,9 @@ std::string PosteriorSection(const InverseProblem& inverse,
          HtmlElement("h2", "How well the reflectance is known") + "\n" +
          LobesInWords(SummariseLobes(inverse, solution)) +
          DeterminedInWords(solution) + ExpectedErrorInWords(solution) +
-         SlicesInWords(solution.slices) + ModelsInWords(solution) +
-         AlternativesInWords(solution.alternatives) + "</section>\n";
+         SlicesInWords(solution.slices, !inverse.known_map.has_value()) +
+         ModelsInWords(solution) + AlternativesInWords(solution.alternatives) +
+         "</section>\n";
 }
 
 std::string LightPosteriorSection(const Solution& solution) {

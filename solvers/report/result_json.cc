@@ -295,6 +295,29 @@ Json ViewsJson(const SolvedProblem& solved) {
   return views;
 }
 
+// Which photographs to take next; empty where none were chosen.
+Json NextViewsJson(const InformativeViews* next) {
+  if (next == nullptr) return Json::object();
+  Json chosen = Json::array(), farthest = Json::array(), all = Json::array();
+  for (size_t k = 0; k < next->chosen.size(); ++k) {
+    chosen.push_back({{"candidate", next->candidates[next->chosen[k]].name},
+                      {"gain_nats", next->gains[k]}});
+  }
+  for (const int i : next->farthest) {
+    farthest.push_back(next->candidates[i].name);
+  }
+  for (size_t i = 0; i < next->candidates.size(); ++i) {
+    all.push_back({{"candidate", next->candidates[i].name},
+                   {"gain_nats", next->first_gains[i]}});
+  }
+  return {{"from", next->from},
+          {"information_nats", next->information},
+          {"chosen", std::move(chosen)},
+          {"farthest_points", std::move(farthest)},
+          {"as_the_next_one", std::move(all)},
+          {"seconds", next->seconds}};
+}
+
 std::string Text(const Json& document) {
   // Paths need not be UTF-8.
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -327,6 +350,7 @@ std::string ResultJson(const SolvedProblem& solved,
                {"pixels_used", solution.pixels_used},
                {"pixels_of_object", inverse.points.size()},
                {"views", ViewsJson(solved)},
+               {"next_views", NextViewsJson(solved.next_views)},
                {"variation", ReflectanceVariationName(VariationOf(solution))},
                {"dark_pixels", DarkPixelsJson(solved)},
                {"likelihood",

@@ -3,6 +3,7 @@
 #pragma once
 #include "ibrdf/io/problem.h"
 #include "ibrdf/solvers/estimation/solution.h"
+#include "ibrdf/solvers/next_view/informative_views.h"
 #include "ibrdf/solvers/problem/inverse_problem.h"
 #include "ibrdf/solvers/problem/truth.h"
 #include "ibrdf/solvers/report/result_metrics.h"
@@ -16,6 +17,8 @@ struct SolvedProblem {
   const Truth& truth;
   const Solution& solution;
   const ResultMetrics& metrics;  // MeasureResult of these
+  // Which photographs to take next; null: nobody asked, or nothing says.
+  const InformativeViews* next_views = nullptr;
 };
 
 }  // namespace ibrdf

@@ -6,6 +6,7 @@
 #include "ibrdf/io/merl.h"
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/png.h"
+#include "ibrdf/solvers/next_view/candidate_views.h"
 #include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/material_summary.h"
 #include "ibrdf/solvers/report/report_figures.h"
@@ -24,7 +25,8 @@ constexpr double kWriteSecondsPerMegapixel = 2.0;
 
 // Left by an earlier run, the first would speak for what a run that is cut off
 // leaves, and the others be taken for results of this one.
-std::vector<std::string> EarlierNames(const Solution& solution) {
+std::vector<std::string> EarlierNames(const SolvedProblem& solved) {
+  const Solution& solution = solved.solution;
   std::vector<std::string> names = {"result.json", "report.html", "brdf.png"};
   if (solution.brdf.raw.empty()) {
     names.insert(names.end(), {"brdf.binary", "brdf.json"});
@@ -39,6 +41,7 @@ std::vector<std::string> EarlierNames(const Solution& solution) {
     names.insert(names.end(), PaintFiles().begin(), PaintFiles().end());
   }
   if (solution.materials.empty()) names.emplace_back("labels.png");
+  if (solved.next_views == nullptr) names.emplace_back(kNextViewsFile);
   return names;
 }
 
@@ -141,10 +144,16 @@ std::vector<std::string> ResultPaths(const Problem& problem,
 
 Status WriteResults(const SolvedProblem& solved, const std::string& folder) {
   IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
-  RemoveEarlier(solved.problem, folder, EarlierNames(solved.solution));
+  RemoveEarlier(solved.problem, folder, EarlierNames(solved));
   IBRDF_RETURN_IF_ERROR(WriteReflectance(solved, folder));
   IBRDF_RETURN_IF_ERROR(WriteMaterials(solved, folder));
   IBRDF_RETURN_IF_ERROR(WriteRadiance(solved, folder));
+  if (solved.next_views != nullptr) {
+    IBRDF_RETURN_IF_ERROR(WriteFileAtomically(
+        folder + "/" + kNextViewsFile,
+        NextViewsText(solved.next_views->candidates, solved.next_views->chosen,
+                      solved.problem.geometry.up)));
+  }
   const ResultPreviewInput preview = PreviewInput(solved);
   const StatusOr<ResultPanels> panels = MakeResultPanels(preview);
   if (!panels.ok()) return panels.status();

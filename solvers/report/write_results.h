@@ -20,10 +20,11 @@ std::vector<std::string> ResultPaths(const Problem& problem,
 
 // Writes brdf.binary, brdf.json, illumination.exr, illumination_log_std.exr
 // and illumination_variance_left.exr (where a search found them), render.exr,
-// residual.exr, the PNG previews, result.json and, last, report.html into
-// `folder`, making it; each file whole or absent. Images are the sheet's where
-// there are several views, and each view's are in views/NAME. The .exr maps are
-// in the problem's output frame, those of pictures in the frame camera.
+// residual.exr, the PNG previews, next_views.json (where some were chosen),
+// result.json and, last, report.html into `folder`, making it; each file whole
+// or absent. Images are the sheet's where there are several views, and each
+// view's are in views/NAME. The .exr maps are in the problem's output frame,
+// those of pictures in the frame camera.
 // result.json and report.html of an earlier run go first: where one is, all
 // else is of its run.
 Status WriteResults(const SolvedProblem& solved, const std::string& folder);

@@ -47,6 +47,18 @@ std::vector<SliceNodes> Slices() {
   return out;
 }
 
+// Multiplies a sample's channels by the scale that brings them nearest to the
+// estimate.
+void Align(const LobeDistance& level, const std::vector<double>& estimate,
+           const std::vector<double>& sample, BrdfGrid* grid) {
+  const Eigen::Array3d scale =
+      level.MeanDifference(estimate, level.LogValues(sample)).exp();
+  const size_t nodes = grid->values.size() / 3;
+  for (size_t i = 0; i < grid->values.size(); ++i) {
+    grid->values[i] *= static_cast<float>(scale[static_cast<int>(i / nodes)]);
+  }
+}
+
 }  // namespace
 
 double Quantile(std::vector<double> values, double share) {
@@ -61,12 +73,16 @@ double Quantile(std::vector<double> values, double share) {
 std::vector<BrdfSlice> ReflectanceBand(const LobeFactory& lobes,
                                        const std::vector<double>& parameters,
                                        const std::vector<double>& covariance,
-                                       int count, uint64_t seed) {
+                                       int count, uint64_t seed,
+                                       const LobeDistance* level) {
   const std::unique_ptr<const LobeModel> model = lobes(kSliceGrid);
+  const std::vector<double> found =
+      level != nullptr ? level->LogValues(parameters) : std::vector<double>();
   std::vector<BrdfGrid> grids;
   for (const std::vector<double>& sample :
        SampleReflectances(*model, parameters, covariance, count, seed)) {
     BrdfGrid grid = model->Grid(sample.data());
+    if (level != nullptr) Align(*level, found, sample, &grid);
     if (std::all_of(grid.values.begin(), grid.values.end(),
                     [](float f) { return std::isfinite(f); })) {
       grids.push_back(std::move(grid));

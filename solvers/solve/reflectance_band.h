@@ -5,6 +5,7 @@
 
 #include "ibrdf/brdf/lobe_model.h"
 #include "ibrdf/solvers/estimation/brdf_slice.h"
+#include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
 
@@ -15,7 +16,8 @@ namespace ibrdf {
 std::vector<BrdfSlice> ReflectanceBand(const LobeFactory& lobes,
                                        const std::vector<double>& parameters,
                                        const std::vector<double>& covariance,
-                                       int count, uint64_t seed);
+                                       int count, uint64_t seed,
+                                       const LobeDistance* level = nullptr);
 
 // By interpolation between the order statistics; share in [0, 1]. values: one
 // or more, finite.

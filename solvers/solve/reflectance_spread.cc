@@ -72,6 +72,18 @@ double LobeDistance::Aligned(const std::vector<double>& a,
   return std::sqrt(squares / 3.0);
 }
 
+Eigen::Array3d LobeDistance::MeanDifference(
+    const std::vector<double>& a, const std::vector<double>& b) const {
+  CHECK_EQ(3 * weights_.size(), a.size());
+  CHECK_EQ(a.size(), b.size());
+  Eigen::Array3d mean = Eigen::Array3d::Zero();
+  for (size_t i = 0; i < a.size(); ++i) {
+    mean[static_cast<int>(i / weights_.size())] +=
+        weights_[i % weights_.size()] * (a[i] - b[i]);
+  }
+  return mean;
+}
+
 double ReflectanceSpread(const LobeDistance& distance,
                          const std::vector<double>& parameters,
                          const std::vector<double>& covariance, int draws,

@@ -1,5 +1,6 @@
 // How far apart the reflectances are that a posterior deems probable.
 #pragma once
+#include <Eigen/Core>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,9 @@ class LobeDistance {
   // The distance of two such.
   double Aligned(const std::vector<double>& a,
                  const std::vector<double>& b) const;
+  // Mean of a less b, by channel: the log of the best scale of b.
+  Eigen::Array3d MeanDifference(const std::vector<double>& a,
+                                const std::vector<double>& b) const;
 
  private:
   std::unique_ptr<const LobeModel> lobes_;

@@ -17,6 +17,8 @@ namespace {
 
 constexpr int kSpreadSamples = 64;
 constexpr int kBandSamples = 200;
+// The level of a band's sample needs no more nodes.
+constexpr BrdfGridShape kLevelGrid = {18, 8, 8};
 // The time of a summary over that of a transport of all pixels, which it builds
 // and renders by; and that of the table and the samples of the posterior.
 constexpr double kSummaryPerTransport = 1.4;
@@ -154,8 +156,10 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
       FindDeterminedDirections(setup.materials, out.lobe_covariance);
   out.ranking = reflectance.ranking;
   if (covariance.size() > 0) {
-    out.slices = ReflectanceBand(factory, lobes, out.lobe_covariance,
-                                 kBandSamples, problem.seed);
+    const LobeDistance level(factory, kLevelGrid);
+    out.slices =
+        ReflectanceBand(factory, lobes, out.lobe_covariance, kBandSamples,
+                        problem.seed, setup.light_unknown() ? &level : nullptr);
   }
   // How spreads stand to errors was measured where the light is unknown.
   if (covariance.size() > 0 && setup.light_unknown()) {
@@ -207,6 +211,8 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
     solution.reflectance() = SummariseReflectance(
         setup, estimate.iterate.state.lobes, estimate.reflectance);
   }
+  solution.light_hyperparameters = estimate.reflectance.light.hyperparameters;
+  solution.directional_lights = estimate.reflectance.light.directional_lights;
   solution.map_std = estimate.reflectance.light.log_std;
   solution.map_variance_left = estimate.reflectance.light.variance_left;
   solution.map_variance_left_by_degree =

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "ibrdf/base/stopwatch.h"
-#include "ibrdf/solvers/uncertainty_map/candidate_views.h"
+#include "ibrdf/solvers/next_view/candidate_views.h"
 
 namespace ibrdf {
 namespace {
@@ -61,8 +61,8 @@ StatusOr<UncertaintyResult> MapUncertainty(const Problem& problem,
   if (!inputs.ok()) return inputs.status();
   std::vector<CalibratedView> candidates;
   if (options.add > 0) {
-    StatusOr<std::vector<CalibratedView>> loaded =
-        LoadCandidates(options.candidates, *inputs, problem.geometry.up);
+    StatusOr<std::vector<CalibratedView>> loaded = LoadCandidates(
+        options.candidates, SettingOf(*inputs), problem.geometry.up);
     if (!loaded.ok()) return loaded.status();
     candidates = *std::move(loaded);
   }

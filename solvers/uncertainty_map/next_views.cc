@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ibrdf/geometry/camera.h"
-#include "ibrdf/solvers/uncertainty_map/candidate_views.h"
+#include "ibrdf/solvers/next_view/candidate_views.h"
 #include "ibrdf/solvers/uncertainty_map/texel_entropy.h"
 #include "ibrdf/uncertainty/best_view.h"
 
@@ -136,40 +136,16 @@ StatusOr<TexelSamples> AllViews(const UncertaintyInputs& inputs,
                    {inputs.mean_radiance, inputs.prefilter_alpha, nullptr});
 }
 
-// Where a camera stands, as a direction from the surface.
-Eigen::Vector3d StandOf(const Camera& camera, const Eigen::Vector3d& middle) {
-  const CameraAxes axes = AxesOf(camera);
-  if (camera.type == CameraType::kOrthographic) {
-    return axes.world_from_camera.col(2);
-  }
-  return (axes.centre - middle).normalized();
-}
-
-std::vector<int> FarthestCandidates(
-    const UncertaintyInputs& inputs,
-    const std::vector<CalibratedView>& candidates, int count) {
+std::vector<int> FarthestFrom(const UncertaintyInputs& inputs,
+                              const std::vector<CalibratedView>& candidates,
+                              int count) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const SurfaceTexel& texel : inputs.surface.atlas.texels) {
     middle += texel.position;
   }
   middle /= static_cast<double>(inputs.surface.atlas.texels.size());
-  std::vector<Eigen::Vector3d> stands;
-  std::vector<int> photographed;
-  for (const PhotographedView& view : inputs.views) {
-    photographed.push_back(static_cast<int>(stands.size()));
-    stands.push_back(StandOf(view.camera, middle));
-  }
-  for (const CalibratedView& candidate : candidates) {
-    stands.push_back(
-        (candidate.world_from_camera.topRightCorner<3, 1>() - middle)
-            .normalized());
-  }
-  const int num_photographed = static_cast<int>(photographed.size());
-  std::vector<int> taken =
-      FarthestPoints(stands, photographed, num_photographed + count);
-  taken.erase(taken.begin(), taken.begin() + num_photographed);
-  for (int& view : taken) view -= num_photographed;
-  return taken;
+  return FarthestCandidates(candidates, SettingOf(inputs).photographs, middle,
+                            count);
 }
 
 BestViewOptions SearchOptionsOf(const UncertaintySpec& spec) {
@@ -228,7 +204,7 @@ StatusOr<NextViews> ChooseNextViews(const UncertaintyInputs& inputs,
     out.chosen.push_back(view - num_photographed);
     search.Add(view, false);
   }
-  out.farthest = FarthestCandidates(inputs, candidates, count);
+  out.farthest = FarthestFrom(inputs, candidates, count);
   out.candidates = std::move(candidates);
   return out;
 }

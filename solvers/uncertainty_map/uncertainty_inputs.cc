@@ -1,5 +1,6 @@
 #include "ibrdf/solvers/uncertainty_map/uncertainty_inputs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -36,6 +37,26 @@ StatusOr<UncertaintyInputs> LoadUncertaintyInputs(const Problem& problem,
   out.irradiance = std::make_shared<const TexelIrradiance>(
       out.surface.scene, *map,
       problem.uncertainty.shadows == EntropyShadows::kMirror);
+  return out;
+}
+
+CandidateSetting SettingOf(const UncertaintyInputs& inputs) {
+  CandidateSetting out;
+  const std::vector<SurfaceTexel>& texels = inputs.surface.atlas.texels;
+  Eigen::Vector3d low = texels[0].position, high = low;
+  for (const SurfaceTexel& texel : texels) {
+    low = low.cwiseMin(texel.position);
+    high = high.cwiseMax(texel.position);
+  }
+  out.centre = 0.5 * (low + high);
+  out.radius = 0.0;
+  for (const SurfaceTexel& texel : texels) {
+    out.radius = std::max(out.radius, (texel.position - out.centre).norm());
+  }
+  for (const PhotographedView& view : inputs.views) {
+    out.photographs.push_back(
+        {view.camera, view.radiance.width, view.radiance.height});
+  }
   return out;
 }
 

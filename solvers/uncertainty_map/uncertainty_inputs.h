@@ -7,6 +7,7 @@
 #include "ibrdf/base/status.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/io/problem.h"
+#include "ibrdf/solvers/next_view/candidate_views.h"
 #include "ibrdf/solvers/problem/load_scene.h"
 #include "ibrdf/solvers/problem/photographed_views.h"
 #include "ibrdf/surface/texel_irradiance.h"
@@ -28,5 +29,8 @@ struct UncertaintyInputs {
 // first. Refuses black light.
 StatusOr<UncertaintyInputs> LoadUncertaintyInputs(const Problem& problem,
                                                   int num_threads);
+
+// What candidates for further views are placed by.
+CandidateSetting SettingOf(const UncertaintyInputs& inputs);
 
 }  // namespace ibrdf

@@ -10,6 +10,7 @@
 #include "ibrdf/io/exr.h"
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/png.h"
+#include "ibrdf/solvers/next_view/candidate_views.h"
 #include "ibrdf/solvers/uncertainty_map/surface_pictures.h"
 #include "ibrdf/solvers/uncertainty_map/uncertainty_json.h"
 #include "ibrdf/solvers/uncertainty_map/uncertainty_page.h"
@@ -21,7 +22,6 @@ namespace fs = std::filesystem;
 constexpr int kLargestPicture = 8192;
 // Views with photograph and entropy on the page.
 constexpr size_t kShownViews = 6;
-constexpr char kNextViewsFile[] = "next_views.json";
 
 std::string InFolder(const std::string& folder, const std::string& name) {
   return (fs::path(folder) / name).string();
@@ -91,19 +91,6 @@ StatusOr<std::vector<TexelRows>> WriteViews(const UncertaintyResult& result,
   return shown;
 }
 
-// In the world of the problem's files.
-Status WriteNextViews(const NextViews& next, UpAxis up,
-                      const std::string& out_dir) {
-  std::vector<CalibratedView> chosen;
-  for (const int i : next.chosen) {
-    chosen.push_back(next.candidates[i]);
-    Eigen::Matrix4d& pose = chosen.back().world_from_camera;
-    pose = Turned(pose, YUpFrom(up).transpose());
-  }
-  return WriteFileAtomically(InFolder(out_dir, kNextViewsFile),
-                             TransformsText(chosen));
-}
-
 }  // namespace
 
 Status WriteUncertainty(const Problem& problem,
@@ -118,8 +105,10 @@ Status WriteUncertainty(const Problem& problem,
   if (!views.ok()) return views.status();
   RemoveEarlier(problem, out_dir, {kNextViewsFile});
   if (result->next) {
-    IBRDF_RETURN_IF_ERROR(
-        WriteNextViews(*result->next, problem.geometry.up, out_dir));
+    IBRDF_RETURN_IF_ERROR(WriteFileAtomically(
+        InFolder(out_dir, kNextViewsFile),
+        NextViewsText(result->next->candidates, result->next->chosen,
+                      problem.geometry.up)));
   }
   result->stages.push_back({"pictures", watch.Seconds()});
   IBRDF_RETURN_IF_ERROR(

@@ -114,6 +114,57 @@ TEST_F(ReflectanceBandTest, HoldsTheEstimateAtItsAngles) {
   EXPECT_EQ(slices[0].high[2][0], slices[2].high[2][0]);
 }
 
+// A posterior of which the level alone is unknown has a wide band, and one of
+// no width once samples are brought to the estimate's level.
+TEST_F(ReflectanceBandTest, LevelIsTakenOutWhereNoImageTellsIt) {
+  const auto n = static_cast<Eigen::Index>(parameters_.size());
+  Eigen::VectorXd level = Eigen::VectorXd::Zero(n);
+  const MutableLobeMixture colours = lobes_->Mixture(level.data());
+  for (int k = 0; k < lobes_->num_lobes(); ++k) {
+    for (int c = 0; c < 3; ++c) colours.log_colour(k)[c] = 0.3 + 0.1 * c;
+  }
+  const Eigen::MatrixXd C = level * level.transpose();
+  const std::vector<double> covariance(C.data(), C.data() + C.size());
+  const LobeDistance distance(factory_, {18, 8, 8});
+  const auto width = [&](const LobeDistance* align) {
+    double widest = 0.0;
+    for (const BrdfSlice& slice :
+         ReflectanceBand(factory_, parameters_, covariance, 200, 7, align)) {
+      for (int c = 0; c < 3; ++c) {
+        for (size_t i = 0; i < slice.degrees.size(); ++i) {
+          widest =
+              std::max(widest, std::log(slice.high[c][i] / slice.low[c][i]));
+        }
+      }
+    }
+    return widest;
+  };
+  // 2 * 1.64 deviations of the widest channel, 0.5.
+  EXPECT_NEAR(1.64, width(nullptr), 0.25);
+  EXPECT_LT(width(&distance), 1e-3);
+}
+
+// Shape is kept: each aligned sample has the estimate's mean log value.
+TEST_F(ReflectanceBandTest, AlignedBandHoldsTheEstimateAndIsNarrower) {
+  const LobeDistance distance(factory_, {18, 8, 8});
+  const std::vector<double> covariance = Covariance(0.02);
+  const std::vector<BrdfSlice> free =
+      ReflectanceBand(factory_, parameters_, covariance, 200, 7);
+  const std::vector<BrdfSlice> aligned =
+      ReflectanceBand(factory_, parameters_, covariance, 200, 7, &distance);
+  ASSERT_EQ(free.size(), aligned.size());
+  double free_sum = 0.0, aligned_sum = 0.0;
+  for (size_t s = 0; s < free.size(); ++s) {
+    for (size_t i = 0; i < free[s].degrees.size(); ++i) {
+      EXPECT_EQ(free[s].value[0][i], aligned[s].value[0][i]);
+      EXPECT_LT(aligned[s].low[0][i], aligned[s].high[0][i]);
+      free_sum += std::log(free[s].high[0][i] / free[s].low[0][i]);
+      aligned_sum += std::log(aligned[s].high[0][i] / aligned[s].low[0][i]);
+    }
+  }
+  EXPECT_LT(aligned_sum, free_sum);
+}
+
 TEST_F(ReflectanceBandTest, OfNothingUnknownHasNoWidth) {
   for (const BrdfSlice& slice : ReflectanceBand(
            factory_, parameters_,

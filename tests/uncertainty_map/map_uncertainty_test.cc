@@ -17,7 +17,7 @@
 #include "ibrdf/io/png.h"
 #include "ibrdf/io/problem_file.h"
 #include "ibrdf/solvers/forward/render_scene.h"
-#include "ibrdf/solvers/uncertainty_map/candidate_views.h"
+#include "ibrdf/solvers/next_view/candidate_views.h"
 #include "ibrdf/solvers/uncertainty_map/surface_pictures.h"
 #include "ibrdf/solvers/uncertainty_map/write_uncertainty.h"
 #include "tests/support/markup.h"

@@ -392,6 +392,11 @@ void Scene::Occluded(const Eigen::Vector3d& position,
 
 bool Scene::CastsShadows() const { return impl_->kind == Impl::Kind::kMesh; }
 
+BoundingBall Scene::Bounds() const {
+  CHECK(impl_->kind != Impl::Kind::kNormalMap);
+  return {impl_->center, impl_->radius};
+}
+
 const Image& Scene::normal_map() const { return impl_->normals; }
 
 }  // namespace ibrdf

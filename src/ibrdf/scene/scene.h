@@ -50,6 +50,11 @@ struct SurfaceHit {
 // and 1 at +y.
 Eigen::Vector2f SphereTexture(const Eigen::Vector3d& direction);
 
+struct BoundingBall {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+};
+
 // Geometry that rays can be cast at. Immutable; safe to share between threads;
 // copies share the geometry.
 class Scene {
@@ -91,6 +96,9 @@ class Scene {
   // Whether the geometry may hide light from itself: meshes. The sphere is
   // convex, and a normal map has no position.
   bool CastsShadows() const;
+
+  // About a sphere or mesh; CHECKs that it is no normal map.
+  BoundingBall Bounds() const;
 
   // The normal map; empty for other geometry.
   const Image& normal_map() const;
