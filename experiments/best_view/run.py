@@ -103,7 +103,7 @@ class Case:
         (self.folder / f"views/{name}").symlink_to(source.resolve())
 
     def solve(self, names, add):
-        """result.json of a joint estimate from some views."""
+        """result.json of a joint estimate from some views; of an earlier run, if there is one."""
         for name in names:
             self.render(name)
         tag = "_".join(names)
@@ -121,13 +121,16 @@ class Case:
                    "--out", out, "--quiet", "--threads", str(self.args.threads)]
         if add:
             command += ["--add", "1", "--candidates", self.folder / "candidates.json"]
+        seconds = out / "wall.txt"
+        if seconds.exists():
+            return {**json.loads((out / "result.json").read_text()), "wall": float(seconds.read_text())}
         start = time.time()
         done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
         if done.returncode not in (0, 3):
             raise SystemExit(f"{out}: {done.stderr}")
-        result = json.loads((out / "result.json").read_text())
-        result["wall"] = round(time.time() - start, 1)
-        return result
+        wall = round(time.time() - start, 1)
+        seconds.write_text(f"{wall}\n")
+        return {**json.loads((out / "result.json").read_text()), "wall": wall}
 
 
 def run(case, seed, rows):
@@ -169,7 +172,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, required=True)
     parser.add_argument("--cases", required=True, help="material:map:shape, comma between")
     parser.add_argument("--candidates", type=int, default=12)
-    parser.add_argument("--random", type=int, default=2, help="random second views of a case")
+    parser.add_argument("--random", type=int, default=1, help="random second views of a case")
     parser.add_argument("--size", type=int, default=48, help="pixels a side")
     parser.add_argument("--seconds", type=float, default=900)
     parser.add_argument("--threads", type=int, default=1)
@@ -177,10 +180,9 @@ def main():
     args.bin, args.data, args.maps, args.meshes, args.models, args.out = (
         p.resolve() for p in (args.bin, args.data, args.maps, args.meshes, args.models, args.out))
     args.out.mkdir(parents=True, exist_ok=True)
-    with open(args.out / "results.csv", "a", newline="") as file:
+    with open(args.out / "results.csv", "w", newline="") as file:
         table = csv.DictWriter(file, COLUMNS)
-        if file.tell() == 0:
-            table.writeheader()
+        table.writeheader()
 
         def rows(row):
             table.writerow(row)

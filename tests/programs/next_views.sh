@@ -66,6 +66,7 @@ grep -v '^camera' scene.yaml >from_next.yaml
 [ -e again/views/back/render.exr ] || fail "no render of the view"
 
 # A run that chooses nothing leaves no cameras of an earlier one.
-"${solve}" --quiet --problem joint.yaml --out out
+"${solve}" --quiet --problem joint.yaml --out out --set problem=illumination \
+  --set 'reflectance={known: {cook_torrance: {diffuse: 0.3, specular: 0.5, roughness: 0.3, f0: 0.05}}}'
 [ ! -e out/next_views.json ] || fail "next_views.json of another run"
 grep -q '"next_views": {}' out/result.json || fail "views of nobody's asking"

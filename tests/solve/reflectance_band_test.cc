@@ -10,6 +10,7 @@
 #include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/geometry/half_diff.h"
+#include "ibrdf/solvers/solve/reflectance_samples.h"
 #include "tests/support/solver_testing.h"
 
 namespace ibrdf {
@@ -144,25 +145,41 @@ TEST_F(ReflectanceBandTest, LevelIsTakenOutWhereNoImageTellsIt) {
   EXPECT_LT(width(&distance), 1e-3);
 }
 
-// Shape is kept: each aligned sample has the estimate's mean log value.
-TEST_F(ReflectanceBandTest, AlignedBandHoldsTheEstimateAndIsNarrower) {
+// The slow reference: the same samples, each scaled as the metrics do it, by
+// the mean log difference of whole tables.
+TEST_F(ReflectanceBandTest, AlignsSamplesAsTheMetricsDo) {
+  constexpr int kSamples = 12;
+  const std::vector<double> covariance = Covariance(0.05);
   const LobeDistance distance(factory_, {18, 8, 8});
-  const std::vector<double> covariance = Covariance(0.02);
-  const std::vector<BrdfSlice> free =
-      ReflectanceBand(factory_, parameters_, covariance, 200, 7);
-  const std::vector<BrdfSlice> aligned =
-      ReflectanceBand(factory_, parameters_, covariance, 200, 7, &distance);
-  ASSERT_EQ(free.size(), aligned.size());
-  double free_sum = 0.0, aligned_sum = 0.0;
-  for (size_t s = 0; s < free.size(); ++s) {
-    for (size_t i = 0; i < free[s].degrees.size(); ++i) {
-      EXPECT_EQ(free[s].value[0][i], aligned[s].value[0][i]);
-      EXPECT_LT(aligned[s].low[0][i], aligned[s].high[0][i]);
-      free_sum += std::log(free[s].high[0][i] / free[s].low[0][i]);
-      aligned_sum += std::log(aligned[s].high[0][i] / aligned[s].low[0][i]);
+  const std::vector<BrdfSlice> slices = ReflectanceBand(
+      factory_, parameters_, covariance, kSamples, 7, &distance);
+  const MerlTable estimate = lobes_->ToMerl(parameters_.data());
+  const auto grid_lobes = factory_({40, 13, 2});
+  std::vector<double> values[3];
+  for (const std::vector<double>& sample :
+       SampleReflectances(*lobes_, parameters_, covariance, kSamples, 7)) {
+    const MerlTable table = lobes_->ToMerl(sample.data());
+    const BrdfGrid grid = grid_lobes->Grid(sample.data());
+    for (int c = 0; c < 3; ++c) {
+      double sum = 0.0, count = 0.0;
+      for (int bin = 0; bin < kMerlBins; ++bin) {
+        if (!(estimate.Raw(0, bin) > 0.0)) continue;
+        sum += std::log((estimate.Raw(c, bin) + 1e-6) /
+                        (table.Raw(c, bin) + 1e-6));
+        count += 1.0;
+      }
+      values[c].push_back(std::log(grid.Evaluate(0.0, 0.0, kPi / 2)[c]) +
+                          sum / count);
     }
   }
-  EXPECT_LT(aligned_sum, free_sum);
+  for (int c = 0; c < 3; ++c) {
+    const double low = Quantile(values[c], 0.05);
+    const double high = Quantile(values[c], 0.95);
+    EXPECT_GT(high - low, 0.1);  // else nothing is compared
+    // Scales from a coarse grid and from 90x90x180 bins.
+    EXPECT_NEAR(low, std::log(slices[2].low[c][0]), 0.02) << c;
+    EXPECT_NEAR(high, std::log(slices[2].high[c][0]), 0.02) << c;
+  }
 }
 
 TEST_F(ReflectanceBandTest, OfNothingUnknownHasNoWidth) {
