@@ -139,8 +139,8 @@ def run(case, seed, rows):
     gains = {c["candidate"]: c["gain_nats"] for c in chosen["as_the_next_one"]}
     seconds = [("chosen", chosen["chosen"][0]["candidate"]),
                ("farthest", chosen["farthest_points"][0])]
-    # The worst of the ranking shows what the ranking is worth.
-    seconds.append(("least", min(gains, key=gains.get)))
+    if case.args.least:
+        seconds.append(("least", min(gains, key=gains.get)))
     generator = random.Random(seed)
     rest = sorted(set(gains) - {name for _, name in seconds})
     seconds += [("random", name) for name in generator.sample(rest, case.args.random)]
@@ -173,6 +173,7 @@ def main():
     parser.add_argument("--cases", required=True, help="material:map:shape, comma between")
     parser.add_argument("--candidates", type=int, default=12)
     parser.add_argument("--random", type=int, default=1, help="random second views of a case")
+    parser.add_argument("--least", action="store_true", help="the view of the least gain, too")
     parser.add_argument("--size", type=int, default=48, help="pixels a side")
     parser.add_argument("--seconds", type=float, default=900)
     parser.add_argument("--threads", type=int, default=1)

@@ -53,12 +53,6 @@ MarginalReflectance ReflectanceOn(const std::vector<ShadingPoint>& points,
                              estimated.directional_lights);
 }
 
-LogRadianceSlopes Whitened(LogRadianceSlopes slopes,
-                           const Estimated& estimated) {
-  slopes.by_parameters = RowMatrix(slopes.by_parameters * estimated.whitening);
-  return slopes;
-}
-
 // Finds the light's mode as well. Empty where there is none.
 LinearPosterior PosteriorOfPhotographs(const SolveSetup& setup,
                                        const Solution& solution,
@@ -99,9 +93,22 @@ LinearPosterior PosteriorOfPhotographs(const SolveSetup& setup,
   return posterior;
 }
 
-// The points that bins keep, numbered from 0.
-std::vector<ShadingPoint> Binned(const std::vector<ShadingPoint>& points,
-                                 const NormalBinOptions& options) {
+// Candidates whose lobes are tabulated once: a transport of all would not fit
+// into memory.
+constexpr size_t kCandidatesAtOnce = 8;
+
+// The points of candidates [begin, end) that bins keep, numbered from 0; view:
+// the candidate's number less begin.
+std::vector<ShadingPoint> BinnedPoints(
+    const std::vector<std::vector<ShadingPoint>>& candidates, size_t begin,
+    size_t end, const NormalBinOptions& options) {
+  std::vector<ShadingPoint> points;
+  for (size_t k = begin; k < end; ++k) {
+    for (ShadingPoint point : candidates[k]) {
+      point.view = static_cast<int>(k - begin);
+      points.push_back(point);
+    }
+  }
   const Observations any =
       MakeObservations(std::vector<double>(3 * points.size(), 1.0));
   std::vector<ShadingPoint> kept = BinByNormal(points, any, options).points;
@@ -111,23 +118,58 @@ std::vector<ShadingPoint> Binned(const std::vector<ShadingPoint>& points,
   return kept;
 }
 
-// Without rows where the candidate sees nothing.
-LogRadianceSlopes SlopesOf(const std::vector<ShadingPoint>& points,
-                           const Scene& scene, const Estimated& estimated) {
+// The rows of bins [first, last) of so many.
+LogRadianceSlopes RowsOf(const LogRadianceSlopes& all, Eigen::Index first,
+                         Eigen::Index last) {
+  const Eigen::Index P = all.by_light[0].rows(), count = last - first;
+  LogRadianceSlopes out;
+  out.by_parameters.resize(3 * count, all.by_parameters.cols());
+  out.noise.resize(3 * count);
+  for (int c = 0; c < 3; ++c) {
+    out.by_light[c] = all.by_light[c].middleRows(first, count);
+    out.by_parameters.middleRows(c * count, count) =
+        all.by_parameters.middleRows(c * P + first, count);
+    out.noise.segment(c * count, count) =
+        all.noise.segment(c * P + first, count);
+  }
+  return out;
+}
+
+// Slopes of candidates from `begin` on, some at once; one that sees nothing has
+// no rows.
+void FindSlopes(const NextViewCandidates& candidates, size_t begin,
+                const Estimated& estimated,
+                std::vector<LogRadianceSlopes>* slopes) {
+  const size_t end =
+      std::min(begin + kCandidatesAtOnce, candidates.points.size());
   MarginalResolution resolution = estimated.resolution;
-  const std::vector<ShadingPoint> kept = Binned(points, resolution.bins);
-  if (kept.empty()) return {};
+  resolution.bins.most_bins = 0;  // the limit is of one photograph more
+  const std::vector<ShadingPoint> kept =
+      BinnedPoints(candidates.points, begin, end, resolution.bins);
+  if (kept.empty()) return;
   if (resolution.visibility != nullptr) {
     VisibilityOptions rays;
     rays.num_threads = 1;
-    resolution.visibility = std::make_shared<Visibility>(scene, kept, rays);
+    resolution.visibility =
+        std::make_shared<Visibility>(candidates.scene, kept, rays);
   }
   const Observations any =
       MakeObservations(std::vector<double>(3 * kept.size(), 1.0));
-  return Whitened(
-      ReflectanceOn(kept, any, resolution, estimated, 1)
-          .Slopes(estimated.parameters.data(), estimated.sigma, estimated.mode),
-      estimated);
+  const MarginalReflectance reflectance =
+      ReflectanceOn(kept, any, resolution, estimated, 1);
+  LogRadianceSlopes all = reflectance.Slopes(estimated.parameters.data(),
+                                             estimated.sigma, estimated.mode);
+  all.by_parameters = RowMatrix(all.by_parameters * estimated.whitening);
+  // Bins of a view come one after the other.
+  const NormalBins& bins = reflectance.bins();
+  for (int first = 0, last = 0; first < bins.num_bins(); first = last) {
+    const int view = bins.points[bins.first[first]].view;
+    while (last < bins.num_bins() &&
+           bins.points[bins.first[last]].view == view) {
+      ++last;
+    }
+    (*slopes)[begin + view] = RowsOf(all, first, last);
+  }
 }
 
 // Greedy; fills first_gains, chosen and gains.
@@ -198,10 +240,12 @@ StatusOr<InformativeViews> ChooseInformativeViews(
   out.candidates = candidates.views;
   out.information = information.information();
   std::vector<LogRadianceSlopes> slopes(candidates.views.size());
-  ParallelFor(static_cast<int64_t>(slopes.size()), problem.num_threads,
-              [&](int64_t i, int) {
-                slopes[i] =
-                    SlopesOf(candidates.points[i], candidates.scene, estimated);
+  const size_t groups =
+      (slopes.size() + kCandidatesAtOnce - 1) / kCandidatesAtOnce;
+  ParallelFor(static_cast<int64_t>(groups), problem.num_threads,
+              [&](int64_t group, int) {
+                FindSlopes(candidates, group * kCandidatesAtOnce, estimated,
+                           &slopes);
               });
   count = std::min(count, static_cast<int>(slopes.size()));
   Choose(slopes, count, problem.num_threads, &information, &out);
