@@ -6,10 +6,10 @@
 // parameters the Fisher information G^T A^-1 G (MarginalLikelihood). Another
 // photograph adds rows to G and J. Its values are not needed: to first order
 // information depends on them by the estimate alone (MacKay, "Information-Based
-// Objective Functions for Active Data Selection", Neural Computation 4(4), 1992,
-// Sec. 4). The light that the first photographs left unknown is
-// what the next one's rows share with theirs, so it is kept as a covariance,
-// and rows are added as in a Kalman filter.
+// Objective Functions for Active Data Selection", Neural Computation 4(4),
+// 1992). The light that the first photographs left unknown is what the next
+// one's rows share with theirs, so it is kept as a covariance, and rows are
+// added as in a Kalman filter.
 #pragma once
 #include <Eigen/Core>
 
