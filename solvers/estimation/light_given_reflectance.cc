@@ -111,8 +111,10 @@ Status EstimateProcessMap(const SolveSetup& setup, MapSize size,
   SetReference(setup, estimate);
   Report("constant map", setup, *estimate, context);
   if (posterior.mode.num_texels() > 0) {
+    // It takes far less than an iteration, and where no time is left for one
+    // this is the map that the search has found.
     LogMapFitOptions o;
-    o.should_stop = context->StopAfter(kProcessShare / 2);
+    o.should_stop = [context] { return context->Interrupted(); };
     FitLogMap(posterior.mode.Resized(size), o,
               estimate->iterate.light.map.get(),
               &estimate->iterate.state.light);
