@@ -23,8 +23,9 @@ std::vector<float> Noise(uint64_t seed) {
 
 double Correlation(const float* a, const float* b) {
   double sum = 0.0;
-  for (int t = 0; t < kNoiseTexels; ++t)
+  for (int t = 0; t < kNoiseTexels; ++t) {
     sum += double{a[t]} * b[t] / kNoiseTexels;
+  }
   return sum;
 }
 
@@ -34,8 +35,9 @@ TEST(NaturalNoise, ChannelsAreStandardizedAndDiffer) {
   for (int a = 0; a < kChannels; ++a) {
     const float* channel = &noise[size_t{kNoiseTexels} * a];
     double mean = 0.0;
-    for (int t = 0; t < kNoiseTexels; ++t)
+    for (int t = 0; t < kNoiseTexels; ++t) {
       mean += double{channel[t]} / kNoiseTexels;
+    }
     EXPECT_NEAR(0.0, mean, 1e-5);
     EXPECT_NEAR(1.0, Correlation(channel, channel), 1e-4);
     // Smooth draws have few degrees of freedom, so that two may be alike by

@@ -20,8 +20,9 @@ class LoadLabelsTest : public ::testing::Test {
  protected:
   LoadLabelsTest() {
     for (float& v : radiance_.rgb) v = 1.0f;
-    for (int i = 0; i < kLabelsSize * kLabelsSize; ++i)
+    for (int i = 0; i < kLabelsSize * kLabelsSize; ++i) {
       Set(i, 7.0f, 7.0f, 7.0f);
+    }
   }
   void Set(int pixel, float r, float g, float b) {
     float* const rgb = &labels_.rgb[size_t{3} * pixel];
