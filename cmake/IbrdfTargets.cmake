@@ -152,6 +152,9 @@ function(ibrdf_add_tests folder)
                              ${PROJECT_SOURCE_DIR}/src)
   target_compile_definitions(${name} PRIVATE
     IBRDF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  # Four files: most folders have four to eight, and both cores stay busy.
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${IBRDF_UNITY_BUILD}
+                        UNITY_BUILD_BATCH_SIZE 4)
   ibrdf_precompile_headers(${name} tests <Eigen/Dense> <gtest/gtest.h>)
   gtest_discover_tests(${name} TEST_PREFIX ${folder}/ DISCOVERY_TIMEOUT 60
                        PROPERTIES ${arg_PROPERTIES})

@@ -8,17 +8,18 @@
 
 #include "ibrdf/light/procedural_sky.h"
 #include "ibrdf/render/scene_probe.h"
+#include "tests/approximation/all_points.h"
 #include "tests/support/render_testing.h"
 
 namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-constexpr BrdfGridShape kGrid = {36, 16, 12};
+constexpr BrdfGridShape kGaussianGrid = {36, 16, 12};
 
 GaussianOptions Options(int num_threads = 0) {
   GaussianOptions options;
-  options.grid = kGrid;
+  options.grid = kGaussianGrid;
   options.num_threads = num_threads;
   return options;
 }
@@ -56,14 +57,8 @@ GaussianColours RandomAmplitudes(size_t count, unsigned seed) {
   return a;
 }
 
-std::vector<ShadingPoint> AllPoints() {
-  std::vector<ShadingPoint> points = SpherePoints(8);
-  for (const ShadingPoint& p : PolarAndGrazingPoints()) points.push_back(p);
-  return points;
-}
-
 TEST(GaussianTransport, WhiteFurnaceIsOneAtEveryPoint) {
-  const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kGrid);
+  const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kGaussianGrid);
   for (const double e :
        ByGaussians(PolarAndGrazingPoints(), grid, ConstantMap(16, 32, 1.0f))) {
     EXPECT_NEAR(1.0, e, 1e-5);
@@ -72,7 +67,7 @@ TEST(GaussianTransport, WhiteFurnaceIsOneAtEveryPoint) {
 
 // A Lambertian surface under one Gaussian, against a sum over its directions.
 TEST(GaussianTransport, LambertUnderOneGaussianMatchesBruteForce) {
-  const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kGrid);
+  const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kGaussianGrid);
   const std::vector<ShadingPoint> points = AllPoints();
   const Eigen::Vector3d axis = Eigen::Vector3d(0.3, 0.5, 0.8).normalized();
   const Eigen::Vector3d t = axis.unitOrthogonal(), b = axis.cross(t);
@@ -124,7 +119,7 @@ TEST(GaussianTransport, AgreesWithTransport) {
       {"glossy smooth", Glossy(0.1, 0.5, 20), SmoothMap(32, 64), 2e-3},
       {"glossy soft", Glossy(0.1, 0.5, 20), soft, 3e-3}};
   for (const Case& test : cases) {
-    const BrdfGrid grid = BrdfGrid::FromFunction(test.brdf, kGrid);
+    const BrdfGrid grid = BrdfGrid::FromFunction(test.brdf, kGaussianGrid);
     const double error = MeanAbsLogRatio(ByGaussians(points, grid, test.map),
                                          Direct(points, grid, test.map));
     EXPECT_LT(error, test.error) << test.name;
@@ -137,7 +132,7 @@ TEST(GaussianTransport, TheFunctionAndItsGridAgree) {
   const GaussianColours a = RandomAmplitudes(lobes.size(), 3).cwiseAbs();
   const GaussianTransport transport(lobes, Options());
   const BrdfFunction brdf = Lambertian(0.5);
-  const BrdfGrid grid = BrdfGrid::FromFunction(brdf, kGrid);
+  const BrdfGrid grid = BrdfGrid::FromFunction(brdf, kGaussianGrid);
   std::vector<double> by_grid(3 * points.size()), by_function(by_grid.size());
   transport.Render(points, transport.Tabulate(grid), a, by_grid.data());
   transport.Render(points, transport.Tabulate(brdf), a, by_function.data());
@@ -152,7 +147,7 @@ TEST(GaussianTransport, BothGradientsAreTransposes) {
   const GaussianTransport transport(lobes, Options());
   std::mt19937 rng(4);
   std::normal_distribution<float> g;
-  BrdfGrid grid(kGrid);
+  BrdfGrid grid(kGaussianGrid);
   for (float& v : grid.values) v = g(rng);
   GaussianColours a = RandomAmplitudes(lobes.size(), 6);
   a.row(1).setZero();
@@ -184,7 +179,8 @@ TEST(GaussianTransport, GradientsMatchFiniteDifferences) {
   GaussianOptions options = Options();
   options.view_angles = 6;
   const GaussianTransport transport(lobes, options);
-  const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGrid);
+  const BrdfGrid grid =
+      BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGaussianGrid);
   const GaussianTransport::Tables tables = transport.Tabulate(grid);
   GaussianColours a = RandomAmplitudes(lobes.size(), 8);
   a.row(0).setZero();
@@ -238,7 +234,8 @@ TEST(GaussianTransport, MapGradientGoesThroughTheFit) {
   const Image map = RandomMap(8, 16, 3);
   const GaussianLight light(map);
   const GaussianTransport transport(light.lobes(), Options());
-  const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGrid);
+  const BrdfGrid grid =
+      BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGaussianGrid);
   const GaussianTransport::Tables tables = transport.Tabulate(grid);
   std::vector<double> adjoint(3 * points.size(), 0.0);
   for (size_t k = 0; k < adjoint.size(); ++k) adjoint[k] = std::cos(1.0 + k);
@@ -269,7 +266,8 @@ TEST(GaussianTransport, SameBitsForAnyNumberOfThreads) {
   const std::vector<ShadingPoint> points = AllPoints();
   const std::vector<SphericalGaussian> lobes = LobesOfEverySharpness();
   const GaussianColours a = RandomAmplitudes(lobes.size(), 2);
-  const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGrid);
+  const BrdfGrid grid =
+      BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGaussianGrid);
   const std::vector<double> adjoint(3 * points.size(), 0.7);
   const int threads[] = {1, 2, 8};
   std::vector<double> L_o[3];

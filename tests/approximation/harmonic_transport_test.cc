@@ -13,12 +13,12 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-constexpr BrdfGridShape kGrid = {36, 16, 12};
+constexpr BrdfGridShape kHarmonicGrid = {36, 16, 12};
 
 HarmonicOptions Order(int order) {
   HarmonicOptions options;
   options.order = order;
-  options.grid = kGrid;
+  options.grid = kHarmonicGrid;
   return options;
 }
 
@@ -32,7 +32,7 @@ std::vector<double> ByHarmonics(const std::vector<ShadingPoint>& points,
 }
 
 TEST(HarmonicTransport, WhiteFurnaceIsOneAtEveryOrderAndPoint) {
-  const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kGrid);
+  const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kHarmonicGrid);
   const std::vector<ShadingPoint> points = PolarAndGrazingPoints();
   for (const int order : {0, 2, 8}) {
     for (const double e :
@@ -54,7 +54,7 @@ TEST(HarmonicTransport, LambertUnderALinearMapMatchesTheClosedForm) {
     }
   }
   const std::vector<ShadingPoint> points = PolarAndGrazingPoints();
-  const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kGrid);
+  const BrdfGrid grid = BrdfGrid::FromFunction(Lambertian(1.0), kHarmonicGrid);
   const std::vector<double> L_o = ByHarmonics(points, grid, map, 2);
   for (size_t i = 0; i < points.size(); ++i) {
     const double cosine = points[i].normal.cast<double>().dot(u);
@@ -95,7 +95,7 @@ TEST(HarmonicTransport, ConvergesToTransport) {
       {Glossy(0.1, 0.5, 20), SmoothMap(32, 64), 8, 5e-3},
       {Glossy(0.1, 0.5, 20), Blurred(RandomMap(8, 16, 2), 32, 64), 16, 1e-2}};
   for (const Case& test : cases) {
-    const BrdfGrid grid = BrdfGrid::FromFunction(test.brdf, kGrid);
+    const BrdfGrid grid = BrdfGrid::FromFunction(test.brdf, kHarmonicGrid);
     const std::vector<double> direct = Direct(points, grid, test.map);
     const double coarse =
         MeanAbsLogRatio(ByHarmonics(points, grid, test.map, 1), direct);
@@ -112,7 +112,7 @@ TEST(HarmonicTransport, BothGradientsAreTransposes) {
   const HarmonicTransport transport(points, 8, 16, Order(5));
   std::mt19937 rng(4);
   std::normal_distribution<float> g;
-  BrdfGrid grid(kGrid);
+  BrdfGrid grid(kHarmonicGrid);
   for (float& v : grid.values) v = g(rng);
   std::vector<float> map(3 * 8 * 16), by_map(map.size());
   for (float& v : map) v = g(rng);
@@ -136,7 +136,8 @@ TEST(HarmonicTransport, BothGradientsAreTransposes) {
 
 TEST(HarmonicTransport, SameBitsForAnyNumberOfThreads) {
   const std::vector<ShadingPoint> points = PolarAndGrazingPoints();
-  const BrdfGrid grid = BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kGrid);
+  const BrdfGrid grid =
+      BrdfGrid::FromFunction(Glossy(0.1, 0.5, 20), kHarmonicGrid);
   const Image map = RandomMap(8, 16, 2);
   const std::vector<double> adjoint(3 * points.size(), 0.7);
   std::vector<double> L_o[2];
@@ -162,7 +163,7 @@ TEST(HarmonicTransport, PredictsItsErrorByOrder) {
   const HarmonicTransport probe(points, 16, 32, Order(20));
   for (const BrdfFunction& brdf : {Lambertian(0.5), Glossy(0.1, 0.5, 20)}) {
     for (const Image& map : {SmoothMap(16, 32), RandomMap(16, 32, 5)}) {
-      const BrdfGrid grid = BrdfGrid::FromFunction(brdf, kGrid);
+      const BrdfGrid grid = BrdfGrid::FromFunction(brdf, kHarmonicGrid);
       const std::vector<double> predicted =
           probe.PredictLogErrors(grid, map.rgb.data());
       const std::vector<double> full = ByHarmonics(points, grid, map, 20);

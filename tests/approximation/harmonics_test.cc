@@ -13,7 +13,7 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-std::vector<Eigen::Vector3d> Directions(int random) {
+std::vector<Eigen::Vector3d> AxesAndRandomDirections(int random) {
   std::vector<Eigen::Vector3d> out = {
       Eigen::Vector3d::UnitX(),
       Eigen::Vector3d::UnitY(),
@@ -38,7 +38,7 @@ Eigen::VectorXd Evaluate(const HarmonicBasis& basis, const Eigen::Vector3d& u) {
 
 TEST(HarmonicBasis, FirstOnesAreAsInTheBooks) {
   const HarmonicBasis basis(2);
-  for (const Eigen::Vector3d& u : Directions(20)) {
+  for (const Eigen::Vector3d& u : AxesAndRandomDirections(20)) {
     const Eigen::VectorXd Y = Evaluate(basis, u);
     // As polynomials (Ramamoorthi and Hanrahan 2001), whose z is our +y.
     const double x = u.z(), y = u.x(), z = u.y();
@@ -58,7 +58,7 @@ TEST(HarmonicBasis, FirstOnesAreAsInTheBooks) {
 
 TEST(HarmonicBasis, AdditionTheoremHoldsAtHighDegreesAndPoles) {
   const HarmonicBasis basis(32);
-  for (const Eigen::Vector3d& u : Directions(20)) {
+  for (const Eigen::Vector3d& u : AxesAndRandomDirections(20)) {
     const Eigen::VectorXd Y = Evaluate(basis, u);
     for (int l = 0; l <= 32; ++l) {
       EXPECT_NEAR((2 * l + 1) / (4 * kPi),
@@ -125,14 +125,14 @@ TEST(HarmonicRotation, TurnsTheFunction) {
   const HarmonicBasis basis(order);
   const HarmonicRotation rotation(order);
   const HarmonicColours L = HarmonicColours::Random(basis.count(), 3);
-  for (const Eigen::Vector3d& pole : Directions(6)) {
+  for (const Eigen::Vector3d& pole : AxesAndRandomDirections(6)) {
     const Eigen::Vector3d zero =
         pole.cross(Eigen::Vector3d(0.3, -0.5, 0.9)).normalized();
     HarmonicColours turned = L;
     const HarmonicRotation::Pole at = HarmonicRotation::PoleAt(pole);
     rotation.ToPole(at, &turned);
     rotation.Turn(HarmonicRotation::AngleOf(at, zero), &turned);
-    for (const Eigen::Vector3d& u : Directions(6)) {
+    for (const Eigen::Vector3d& u : AxesAndRandomDirections(6)) {
       // Frame axes: +y is the pole, +z has phi = 0.
       const Eigen::Vector3d world =
           u.y() * pole + u.z() * zero + u.x() * pole.cross(zero);

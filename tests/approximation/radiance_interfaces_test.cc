@@ -10,6 +10,7 @@
 #include "ibrdf/approximation/harmonic_radiance.h"
 #include "ibrdf/render/reference_radiance.h"
 #include "ibrdf/transport/transport.h"
+#include "tests/approximation/all_points.h"
 #include "tests/support/render_testing.h"
 
 namespace ibrdf {
@@ -18,12 +19,6 @@ using namespace testing;  // NOLINT
 
 constexpr int kHeight = 16, kWidth = 32;
 constexpr BrdfGridShape kGrid = {24, 12, 8};
-
-std::vector<ShadingPoint> AllPoints() {
-  std::vector<ShadingPoint> points = SpherePoints(8);
-  for (const ShadingPoint& p : PolarAndGrazingPoints()) points.push_back(p);
-  return points;
-}
 
 // The transports of one scene.
 class LinearTransports : public ::testing::Test {

@@ -10,6 +10,7 @@
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
 #include "ibrdf/metrics/albedo.h"
+#include "tests/brdf/direction.h"
 #include "tests/support/small_flow.h"
 #include "tests/support/statistics.h"
 
@@ -17,11 +18,6 @@ namespace ibrdf {
 namespace {
 
 constexpr double kLevel = 1e-3;  // of tests with fixed seeds
-
-Eigen::Vector3d Direction(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-          std::cos(theta)};
-}
 
 CookTorrance Gloss(double roughness, double diffuse) {
   CookTorrance brdf;

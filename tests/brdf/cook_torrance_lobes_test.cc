@@ -12,21 +12,21 @@
 namespace ibrdf {
 namespace {
 
-constexpr BrdfGridShape kGrid{10, 6, 5};
+constexpr BrdfGridShape kCookTorranceGrid{10, 6, 5};
 
-CookTorrance Paint() {
+CookTorrance CookTorrancePaint() {
   return testing::ColouredPaint({0.2, 0.2, 0.2}, {0.3, 0.3, 0.3});
 }
 
 TEST(CookTorranceLobes, GridAndTableAreTheModels) {
-  const CookTorrance paint = Paint();
-  const CookTorranceLobes lobes(kGrid, 1);
+  const CookTorrance paint = CookTorrancePaint();
+  const CookTorranceLobes lobes(kCookTorranceGrid, 1);
   ASSERT_EQ(10, lobes.num_parameters());
   const std::vector<double> parameters = CookTorranceLobes::ToParameters(paint);
   ASSERT_EQ(10u, parameters.size());
   const BrdfGrid grid = lobes.Grid(parameters.data());
-  for (int i = 0; i < kGrid.num_nodes(); ++i) {
-    const Eigen::Vector3d a = kGrid.NodeAngles(i);
+  for (int i = 0; i < kCookTorranceGrid.num_nodes(); ++i) {
+    const Eigen::Vector3d a = kCookTorranceGrid.NodeAngles(i);
     const Eigen::Array3d f = paint.Evaluate(a[0], a[1], a[2]);
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(f[c], grid.Channel(c)[i], 1e-6 * f[c]);  // floats
@@ -48,8 +48,8 @@ TEST(CookTorranceLobes, GridAndTableAreTheModels) {
 
 // At ordinary points, a mirror's and beyond what any surface has.
 TEST(CookTorranceLobes, DerivativesMatchDifferences) {
-  const CookTorranceLobes lobes(kGrid, 2);
-  const size_t n = kGrid.num_nodes();
+  const CookTorranceLobes lobes(kCookTorranceGrid, 2);
+  const size_t n = kCookTorranceGrid.num_nodes();
   for (const double log_roughness : {-1.5, -5.0, 1.0, 7.0}) {
     for (const double logit_f0 : {-3.0, 0.5, 12.0, -30.0}) {
       std::vector<double> x(10, 0.4);
@@ -69,7 +69,8 @@ TEST(CookTorranceLobes, DerivativesMatchDifferences) {
       }
       for (int d = 0; d < 2; ++d) {
         for (size_t i = 0; i < n; ++i) {
-          const Eigen::Vector3d a = kGrid.NodeAngles(static_cast<int>(i));
+          const Eigen::Vector3d a =
+              kCookTorranceGrid.NodeAngles(static_cast<int>(i));
           const auto at = [&](double t) {
             CookTorranceLog p(-1000.0, 0.0, log_roughness, logit_f0);
             p[2 + d] += t;
@@ -88,7 +89,7 @@ TEST(CookTorranceLobes, DerivativesMatchDifferences) {
 }
 
 TEST(CookTorranceLobes, ExtremeParametersStayFinite) {
-  const CookTorranceLobes lobes(kGrid, 1);
+  const CookTorranceLobes lobes(kCookTorranceGrid, 1);
   for (const double extreme : {1e3, -1e3}) {
     const std::vector<double> x(10, extreme);
     std::vector<float> fields;
@@ -102,7 +103,7 @@ TEST(CookTorranceLobes, ExtremeParametersStayFinite) {
     }
   }
   // Colours that are no light's have parameters, too.
-  CookTorrance black = Paint();
+  CookTorrance black = CookTorrancePaint();
   black.diffuse.setZero();
   black.specular.setZero();
   black.f0.setOnes();

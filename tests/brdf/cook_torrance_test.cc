@@ -8,14 +8,10 @@
 #include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/geometry/half_diff.h"
+#include "tests/brdf/direction.h"
 
 namespace ibrdf {
 namespace {
-
-Eigen::Vector3d Direction(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-          std::cos(theta)};
-}
 
 Eigen::Array3d Between(const CookTorrance& brdf, const Eigen::Vector3d& wi,
                        const Eigen::Vector3d& wo) {

@@ -7,14 +7,10 @@
 
 #include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
+#include "tests/brdf/direction.h"
 
 namespace ibrdf {
 namespace {
-
-Eigen::Vector3d Direction(double theta, double phi) {
-  return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-          std::cos(theta)};
-}
 
 Eigen::Array3d Between(const Disney& brdf, const Eigen::Vector3d& wi,
                        const Eigen::Vector3d& wo) {
@@ -22,7 +18,7 @@ Eigen::Array3d Between(const Disney& brdf, const Eigen::Vector3d& wi,
   return brdf.Evaluate(a.theta_h, a.theta_d, a.phi_d);
 }
 
-Disney Paint() {
+Disney DisneyPaint() {
   Disney brdf;
   brdf.base = {0.8, 0.3, 0.05};
   brdf.roughness = 0.35;
@@ -32,7 +28,7 @@ Disney Paint() {
 }
 
 TEST(Disney, IsReciprocal) {
-  const Disney brdf = Paint();
+  const Disney brdf = DisneyPaint();
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> theta(0.0, 1.5), phi(0.0, 2 * kPi);
   for (int i = 0; i < 200; ++i) {
@@ -46,7 +42,7 @@ TEST(Disney, IsReciprocal) {
 
 // Walter et al. 2007 and Burley 2012 as printed, from directions.
 TEST(Disney, MatchesTheTextbookFormula) {
-  const Disney brdf = Paint();
+  const Disney brdf = DisneyPaint();
   const Eigen::Vector3d wi = Direction(0.9, 0.3), wo = Direction(0.7, 2.9);
   const Eigen::Vector3d h = (wi + wo).normalized();
   const double alpha = brdf.roughness * brdf.roughness;
@@ -96,7 +92,7 @@ TEST(Disney, IsFiniteAtTheEdgesOfAnglesAndValues) {
 }
 
 TEST(Disney, LogParametersAreLogarithmsAndLogits) {
-  const Disney brdf = Paint();
+  const Disney brdf = DisneyPaint();
   const auto logit = [](double p) { return std::log(p / (1.0 - p)); };
   DisneyLog parameters;
   parameters << brdf.base.log().matrix(), logit(brdf.roughness),

@@ -11,19 +11,19 @@
 namespace ibrdf {
 namespace {
 
-constexpr BrdfGridShape kShape{12, 8, 6};
+constexpr BrdfGridShape kTableShape{12, 8, 6};
 
-BrdfGrid Paint() {
+BrdfGrid PaintTable() {
   return BrdfGrid::FromFunction(
       testing::ColouredPaint({0.2, 0.3, 0.1}, {0.3, 0.3, 0.3}).Function(),
-      kShape);
+      kTableShape);
 }
 
 TEST(TableLobes, AreTheTableAtTheNodesOfAnyGrid) {
-  const BrdfGrid paint = Paint();
+  const BrdfGrid paint = PaintTable();
   const std::vector<double> known = TableLobes::KnownParameters();
   for (const BrdfGridShape& shape :
-       {kShape, BrdfGridShape{7, 5, 4}, BrdfGridShape{30, 9, 1}}) {
+       {kTableShape, BrdfGridShape{7, 5, 4}, BrdfGridShape{30, 9, 1}}) {
     const auto lobes = TableLobes::Factory(paint)(shape);
     ASSERT_EQ(3, lobes->num_lobes());
     ASSERT_EQ(9, lobes->num_parameters());
@@ -41,19 +41,19 @@ TEST(TableLobes, AreTheTableAtTheNodesOfAnyGrid) {
 }
 
 TEST(TableLobes, ShapesAreTheSameWhateverTheParameters) {
-  const BrdfGrid paint = Paint();
-  const TableLobes lobes(paint, kShape);
+  const BrdfGrid paint = PaintTable();
+  const TableLobes lobes(paint, kTableShape);
   std::vector<float> fields, others;
   lobes.Tabulate(TableLobes::KnownParameters().data(), true, &fields);
   // No codes, so no derivatives.
-  ASSERT_EQ(size_t{3} * kShape.num_nodes(), fields.size());
+  ASSERT_EQ(size_t{3} * kTableShape.num_nodes(), fields.size());
   lobes.Tabulate(std::vector<double>(9, 2.0).data(), false, &others);
   EXPECT_EQ(fields, others);
   // A colour scales its own channel.
   std::vector<double> brighter = TableLobes::KnownParameters();
   brighter[4] += std::log(2.0);
   const BrdfGrid grid = lobes.Grid(brighter.data());
-  for (int i = 0; i < kShape.num_nodes(); i += 7) {
+  for (int i = 0; i < kTableShape.num_nodes(); i += 7) {
     EXPECT_NEAR(paint.Channel(0)[i], grid.Channel(0)[i],
                 1e-6 * paint.Channel(0)[i]);
     EXPECT_NEAR(2.0 * paint.Channel(1)[i], grid.Channel(1)[i],
@@ -62,9 +62,9 @@ TEST(TableLobes, ShapesAreTheSameWhateverTheParameters) {
 }
 
 TEST(TableLobes, MerlTableIsTheGrids) {
-  const BrdfGrid paint = Paint();
-  const MerlTable table =
-      TableLobes(paint, kShape).ToMerl(TableLobes::KnownParameters().data());
+  const BrdfGrid paint = PaintTable();
+  const MerlTable table = TableLobes(paint, kTableShape)
+                              .ToMerl(TableLobes::KnownParameters().data());
   const MerlTable expected =
       SampleMerl([&](double theta_h, double theta_d, double phi_d) {
         return paint.Evaluate(theta_h, theta_d, phi_d);

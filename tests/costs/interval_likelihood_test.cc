@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
+
+#include "tests/support/non_finite.h"
 
 namespace ibrdf {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // log of the probability by the error function in long double; good where the
 // difference is, in one tail at most 40 deviations out.

@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+
+#include "tests/support/non_finite.h"
 
 namespace ibrdf {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Midpoints of the density.
 double Slow(double low, double high, double mean, double b) {

@@ -4,13 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
+
+#include "tests/support/non_finite.h"
 
 namespace ibrdf {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A point of three channels: a code, a clipped one and a black one.
 Observations OnePoint() {

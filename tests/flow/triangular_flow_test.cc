@@ -16,8 +16,6 @@
 namespace ibrdf {
 namespace {
 
-using Reference = TriangularReference<double>;
-
 // Log densities of magnitude 40 are differences of heights that float rounds to
 // 4e-6, and derivatives are sums of some hundred rounded products.
 constexpr double kValueRounding = 1e-5;
@@ -36,8 +34,9 @@ struct Derivatives {
 };
 
 // Derivatives by x are of one side of a kink: `side` = 1 or -1.
-Derivatives Differentiate(const Reference& flow, const double* x,
-                          const std::vector<float>& code, int side) {
+Derivatives Differentiate(const TriangularReference<double>& flow,
+                          const double* x, const std::vector<float>& code,
+                          int side) {
   constexpr double kStep = 1e-7;
   const int n = static_cast<int>(code.size());
   std::vector<Dual> z;
@@ -111,8 +110,8 @@ class Judge {
 
  private:
   std::vector<float> code_;
-  Reference exact_;
-  std::vector<Reference> shifted_;
+  TriangularReference<double> exact_;
+  std::vector<TriangularReference<double>> shifted_;
   double point_shift_[3][3];
 };
 
@@ -204,7 +203,7 @@ class Objective {
 
   double At(const std::vector<double>& weights,
             const std::vector<double>& codes) const {
-    const Reference flow(shape_, weights.data());
+    const TriangularReference<double> flow(shape_, weights.data());
     double sum = 0.0;
     for (size_t i = 0; i < adjoint_.size(); ++i) {
       const int column = static_cast<int>(i) % x_.columns;

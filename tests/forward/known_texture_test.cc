@@ -20,7 +20,7 @@ namespace ibrdf {
 namespace {
 
 // Sums of floats, and textures of floats.
-constexpr double kRounding = 1e-6;
+constexpr double kTextureRounding = 1e-6;
 constexpr char kMaterial[] =
     "{base: [0.6, 0.4, 0.2], roughness: 0.45, metallic: 0.25, specular: 0.5}";
 
@@ -111,7 +111,7 @@ TEST_F(Textured, AConstantTextureIsTheMaterial) {
                               : set;
         const RenderedScene expected = Render(shape, kMaterial, plain);
         const RenderedScene found = Render(shape, constant_, plain);
-        EXPECT_LT(LargestRatio(found.image, expected.image), kRounding);
+        EXPECT_LT(LargestRatio(found.image, expected.image), kTextureRounding);
         EXPECT_EQ(expected.mask.inside, found.mask.inside);
       }
     }
@@ -166,7 +166,7 @@ TEST_F(Textured, AConstantMirrorIsTheMaterial) {
   const RenderedScene found = Render(
       torus_, "{base: base.exr, roughness: gloss.exr, metallic: 0.25}", set);
   EXPECT_EQ(expected.plan.lobe_rays, found.plan.lobe_rays);
-  EXPECT_LT(LargestRatio(found.image, expected.image), kRounding);
+  EXPECT_LT(LargestRatio(found.image, expected.image), kTextureRounding);
 }
 
 TEST_F(Textured, PngBaseColourIsSrgbAndTheRestIsLinear) {

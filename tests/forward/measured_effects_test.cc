@@ -14,7 +14,7 @@ using namespace testing;  // NOLINT
 class MeasuredEffects : public ::testing::Test {
  protected:
   MeasuredEffects() {
-    scene_.view.scene = Scene::FromMesh(TorusMesh(48, 24)).value();
+    scene_.view.scene = Scene::FromMesh(UnitTorusMesh(48, 24)).value();
     scene_.view.points =
         FindShadingPoints(scene_.view.scene, TorusCamera(), 16, 16, Mask(), 1)
             .value();

@@ -12,7 +12,7 @@
 namespace ibrdf {
 namespace {
 // Rounding of the two chains of double trigonometry.
-constexpr double kRounding = 1e-12;
+constexpr double kAngleRounding = 1e-12;
 
 // Distance of two values of phi_d on the circle of length pi.
 double PhiDistance(double a, double b) {
@@ -38,16 +38,16 @@ TEST(HalfDiff, AnglesSurviveTheRoundTripUpToGrazing) {
     if (a.theta_h < 1e-3) continue;  // phi_d is not defined at theta_h = 0
     Eigen::Vector3d wi, wo;
     FromHalfDiff(a, &wi, &wo);
-    EXPECT_NEAR(1.0, wi.norm(), kRounding);
-    EXPECT_NEAR(1.0, wo.norm(), kRounding);
-    EXPECT_GT(wi.z(), -kRounding);
-    EXPECT_GT(wo.z(), -kRounding);
+    EXPECT_NEAR(1.0, wi.norm(), kAngleRounding);
+    EXPECT_NEAR(1.0, wo.norm(), kAngleRounding);
+    EXPECT_GT(wi.z(), -kAngleRounding);
+    EXPECT_GT(wo.z(), -kAngleRounding);
     const HalfDiff b = ToHalfDiff(wi, wo);
     // phi_d's condition number is 1 / (sin theta_h sin theta_d) and the
     // half-vector's 1 / cos theta_d.
     const double tolerance =
-        kRounding / std::min({std::sin(a.theta_h), std::sin(a.theta_d),
-                              std::cos(a.theta_d)});
+        kAngleRounding / std::min({std::sin(a.theta_h), std::sin(a.theta_d),
+                                   std::cos(a.theta_d)});
     EXPECT_NEAR(a.theta_h, b.theta_h, tolerance);
     EXPECT_NEAR(a.theta_d, b.theta_d, tolerance);
     EXPECT_LT(PhiDistance(a.phi_d, b.phi_d), 100 * tolerance);
@@ -87,12 +87,12 @@ TEST(HalfDiff, DegeneratePairsStayInRange) {
         {z, x},
         {Direction(0.5, 0), Direction(0.5, kPi)}}) {
     const HalfDiff a = ToHalfDiff(wi, wo);
-    EXPECT_TRUE(a.theta_h >= 0 && a.theta_h <= kPi / 2 + kRounding);
-    EXPECT_TRUE(a.theta_d >= 0 && a.theta_d <= kPi / 2 + kRounding);
+    EXPECT_TRUE(a.theta_h >= 0 && a.theta_h <= kPi / 2 + kAngleRounding);
+    EXPECT_TRUE(a.theta_d >= 0 && a.theta_d <= kPi / 2 + kAngleRounding);
     EXPECT_TRUE(a.phi_d >= 0 && a.phi_d < kPi);
   }
   EXPECT_NEAR(0.5, ToHalfDiff(Direction(0.5, 0), Direction(0.5, kPi)).theta_d,
-              kRounding);
+              kAngleRounding);
 }
 
 TEST(HalfDiff, BoundIsWhereADirectionMeetsTheHorizon) {
@@ -100,7 +100,7 @@ TEST(HalfDiff, BoundIsWhereADirectionMeetsTheHorizon) {
     for (double phi_d = 0.0; phi_d < kPi; phi_d += 0.17) {
       Eigen::Vector3d wi, wo;
       FromHalfDiff({ThetaHBound(theta_d, phi_d), theta_d, phi_d}, &wi, &wo);
-      EXPECT_NEAR(0.0, std::min(wi.z(), wo.z()), kRounding);
+      EXPECT_NEAR(0.0, std::min(wi.z(), wo.z()), kAngleRounding);
     }
   }
 }

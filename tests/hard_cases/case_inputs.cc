@@ -21,6 +21,7 @@
 #include "ibrdf/solvers/forward/render_scene.h"
 #include "tests/hard_cases/case_exr.h"
 #include "tests/hard_cases/case_photographs.h"
+#include "tests/hard_cases/recipe_value.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/tiny_model.h"
@@ -30,11 +31,6 @@ namespace {
 
 Status Unknown(const std::string& what, const YAML::Node& node) {
   return InvalidInput("recipe", what + ": " + YAML::Dump(node));
-}
-
-template <typename T>
-T Get(const YAML::Node& node, const std::string& key, const T& otherwise) {
-  return node[key] ? node[key].as<T>() : otherwise;
 }
 
 float Value(const YAML::Node& node) {

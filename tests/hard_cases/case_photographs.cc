@@ -8,16 +8,12 @@
 #include "ibrdf/image/response_curve.h"
 #include "ibrdf/io/atomic_file.h"
 #include "ibrdf/io/file_extension.h"
+#include "tests/hard_cases/recipe_value.h"
 #include "tests/support/photo_files.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
 namespace {
-
-template <typename T>
-T Get(const YAML::Node& node, const std::string& key, const T& otherwise) {
-  return node[key] ? node[key].as<T>() : otherwise;
-}
 
 StatusOr<std::vector<uint16_t>> Encode(const YAML::Node& codes,
                                        const Image& image) {

@@ -13,7 +13,7 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-constexpr int kTexels = 8 * 16;
+constexpr int kModelTexels = 8 * 16;
 
 class IlluminationModelTest : public ::testing::TestWithParam<bool> {
  protected:
@@ -42,7 +42,7 @@ TEST_P(IlluminationModelTest, ShiftMovesEachChannelByItsOwnAmount) {
   const std::vector<float> after = Forward(p);
   for (int i = 0; i < model_->num_outputs(); ++i) {
     // Two roundings of numbers of size up to 10.
-    EXPECT_NEAR(before[i] + shift[i / kTexels], after[i], 4e-6);
+    EXPECT_NEAR(before[i] + shift[i / kModelTexels], after[i], 4e-6);
   }
 }
 
@@ -52,7 +52,7 @@ TEST_P(IlluminationModelTest, ConstantMapIsConstant) {
   ASSERT_EQ(model_->num_parameters(), static_cast<int>(p.size()));
   const std::vector<float> map = Forward(p);
   for (int i = 0; i < model_->num_outputs(); ++i) {
-    EXPECT_FLOAT_EQ(static_cast<float>(level[i / kTexels]), map[i]);
+    EXPECT_FLOAT_EQ(static_cast<float>(level[i / kModelTexels]), map[i]);
   }
 }
 

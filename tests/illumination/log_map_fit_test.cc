@@ -15,7 +15,7 @@ namespace {
 using namespace testing;  // NOLINT
 
 constexpr int kHeight = 8, kWidth = 16, kTexels = kHeight * kWidth;
-const LightHyperparameters kScales = LightHyperparameters::Average();
+const LightHyperparameters kHyperparameters = LightHyperparameters::Average();
 
 LogMap SmoothLogMap() {
   const Image map = SmoothMap(kHeight, kWidth);
@@ -65,9 +65,9 @@ double RmsError(const LogMap& target, const std::vector<float>& p,
 class LogMapFitTest : public ::testing::TestWithParam<bool> {
  protected:
   const std::unique_ptr<IlluminationModel> model_ =
-      GetParam()
-          ? MakeUnetIllumination(TinyUnetOptions())
-          : MakeProcessIllumination(kWidth, kHeight, LightProcess(), kScales);
+      GetParam() ? MakeUnetIllumination(TinyUnetOptions())
+                 : MakeProcessIllumination(kWidth, kHeight, LightProcess(),
+                                           kHyperparameters);
   std::vector<float> Start() const {
     const double level[3] = {0.2, 0.1, -0.5};
     return model_->ConstantMap(level);
@@ -138,14 +138,14 @@ INSTANTIATE_TEST_SUITE_P(Models, LogMapFitTest, ::testing::Bool(),
 // A linear model with a Gaussian prior: min over w of the cost is
 // 1/2 r^T (K + D)^-1 r, r = target - map at the start, D = 1 / weights.
 TEST(LogMapFitOfTheProcess, ReachesTheMinimumInClosedForm) {
-  const std::unique_ptr<IlluminationModel> model =
-      MakeProcessIllumination(kWidth, kHeight, LightProcess(), kScales);
+  const std::unique_ptr<IlluminationModel> model = MakeProcessIllumination(
+      kWidth, kHeight, LightProcess(), kHyperparameters);
   const LogMap target = SmoothLogMap();
   const double level[3] = {0.2, 0.1, -0.5};
   const std::vector<float> start = model->ConstantMap(level);
   const LightProcess process;
   const RowMatrix correlation =
-      LightCorrelation(kHeight, kWidth, process, kScales);
+      LightCorrelation(kHeight, kWidth, process, kHyperparameters);
   for (const double sigma : {0.05, 0.2}) {
     Eigen::MatrixXd covariance(3 * kTexels, 3 * kTexels);
     Eigen::VectorXd r(3 * kTexels);
@@ -177,8 +177,8 @@ TEST(LogMapFitOfTheProcess, ReachesTheMinimumInClosedForm) {
 // The prior holds each texel back by its own pull times sigma^2: less than the
 // root of a smooth map's prior cost, some 0.1 of sigma when that is small.
 TEST(LogMapFitOfTheProcess, FitsASmoothMapFarBelowSigma) {
-  const std::unique_ptr<IlluminationModel> model =
-      MakeProcessIllumination(kWidth, kHeight, LightProcess(), kScales);
+  const std::unique_ptr<IlluminationModel> model = MakeProcessIllumination(
+      kWidth, kHeight, LightProcess(), kHyperparameters);
   const LogMap target = SmoothLogMap();
   const double level[3] = {0.2, 0.1, -0.5};
   double before = 1.0;

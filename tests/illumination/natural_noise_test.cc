@@ -8,13 +8,14 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 32, kTexels = kWidth * kHeight;
+constexpr int kNoiseWidth = 64, kNoiseHeight = 32,
+              kNoiseTexels = kNoiseWidth * kNoiseHeight;
 constexpr int kChannels = 6;
 
 std::vector<float> Noise(uint64_t seed) {
   IlluminationUnetOptions options;
-  options.width = kWidth;
-  options.height = kHeight;
+  options.width = kNoiseWidth;
+  options.height = kNoiseHeight;
   options.noise_channels = kChannels;
   options.seed = seed;
   return NaturalNoise(options);
@@ -22,24 +23,29 @@ std::vector<float> Noise(uint64_t seed) {
 
 double Correlation(const float* a, const float* b) {
   double sum = 0.0;
-  for (int t = 0; t < kTexels; ++t) sum += double{a[t]} * b[t] / kTexels;
+  for (int t = 0; t < kNoiseTexels; ++t) {
+    sum += double{a[t]} * b[t] / kNoiseTexels;
+  }
   return sum;
 }
 
 TEST(NaturalNoise, ChannelsAreStandardizedAndDiffer) {
   const std::vector<float> noise = Noise(3);
-  ASSERT_EQ(size_t{kChannels} * kTexels, noise.size());
+  ASSERT_EQ(size_t{kChannels} * kNoiseTexels, noise.size());
   for (int a = 0; a < kChannels; ++a) {
-    const float* channel = &noise[size_t{kTexels} * a];
+    const float* channel = &noise[size_t{kNoiseTexels} * a];
     double mean = 0.0;
-    for (int t = 0; t < kTexels; ++t) mean += double{channel[t]} / kTexels;
+    for (int t = 0; t < kNoiseTexels; ++t) {
+      mean += double{channel[t]} / kNoiseTexels;
+    }
     EXPECT_NEAR(0.0, mean, 1e-5);
     EXPECT_NEAR(1.0, Correlation(channel, channel), 1e-4);
     // Smooth draws have few degrees of freedom, so that two may be alike by
     // chance, but not the same.
     for (int b = 0; b < a; ++b) {
-      EXPECT_LT(std::abs(Correlation(channel, &noise[size_t{kTexels} * b])),
-                0.9);
+      EXPECT_LT(
+          std::abs(Correlation(channel, &noise[size_t{kNoiseTexels} * b])),
+          0.9);
     }
   }
   EXPECT_EQ(noise, Noise(3));
@@ -72,19 +78,24 @@ TEST(NaturalNoise, NeighboursAreAlikeAcrossRowsAndTheSeam) {
   const std::vector<float> noise = Noise(5);
   double along = 0.0, down = 0.0, seam = 0.0;
   for (int k = 0; k < kChannels; ++k) {
-    const float* n = &noise[size_t{kTexels} * k];
-    const int row = kHeight / 2 - 4;
-    for (int c = 0; c + 1 < kWidth; ++c) {
-      along += std::pow(n[row * kWidth + c + 1] - n[row * kWidth + c], 2) /
-               ((kWidth - 1) * kChannels);
+    const float* n = &noise[size_t{kNoiseTexels} * k];
+    const int row = kNoiseHeight / 2 - 4;
+    for (int c = 0; c + 1 < kNoiseWidth; ++c) {
+      along +=
+          std::pow(n[row * kNoiseWidth + c + 1] - n[row * kNoiseWidth + c], 2) /
+          ((kNoiseWidth - 1) * kChannels);
     }
-    for (int c = 0; c < kWidth; ++c) {
-      down += std::pow(n[(row + 1) * kWidth + c] - n[row * kWidth + c], 2) /
-              (kWidth * kChannels);
+    for (int c = 0; c < kNoiseWidth; ++c) {
+      down +=
+          std::pow(n[(row + 1) * kNoiseWidth + c] - n[row * kNoiseWidth + c],
+                   2) /
+          (kNoiseWidth * kChannels);
     }
-    for (int r = 0; r < kHeight; ++r) {
-      seam += std::pow(n[r * kWidth] - n[r * kWidth + kWidth - 1], 2) /
-              (kHeight * kChannels);
+    for (int r = 0; r < kNoiseHeight; ++r) {
+      seam +=
+          std::pow(n[r * kNoiseWidth] - n[r * kNoiseWidth + kNoiseWidth - 1],
+                   2) /
+          (kNoiseHeight * kChannels);
     }
   }
   EXPECT_LT(std::max({along, down, seam}), 0.5);

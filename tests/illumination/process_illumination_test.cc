@@ -15,11 +15,12 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kHeight = 4, kWidth = 8, kTexels = kHeight * kWidth;
-constexpr int kSize = 3 * kTexels;
+constexpr int kProcessHeight = 4, kProcessWidth = 8,
+              kProcessTexels = kProcessHeight * kProcessWidth;
+constexpr int kSize = 3 * kProcessTexels;
 constexpr double kAmplitude = 1.5;
-const LightHyperparameters kScales = {std::log(kAmplitude),
-                                      {-1.0, 0.5, 0.2, -2.0}};
+const LightHyperparameters kProcessHyperparameters = {std::log(kAmplitude),
+                                                      {-1.0, 0.5, 0.2, -2.0}};
 constexpr double kFloat = 6e-8;  // half a unit in the last place, relative
 
 std::vector<float> Random(int size, unsigned seed) {
@@ -59,13 +60,16 @@ class ProcessIlluminationTest : public ::testing::TestWithParam<bool> {
   const LightProcess process_;
   // Beside the centres of two texels.
   const std::vector<Eigen::Vector3d> directional_lights_ =
-      GetParam() ? std::vector<Eigen::Vector3d>{MapDirection(1.55, 2.52,
-                                                             kHeight, kWidth),
-                                                MapDirection(2.6, 6.45, kHeight,
-                                                             kWidth)}
-                 : std::vector<Eigen::Vector3d>();
-  const std::unique_ptr<IlluminationModel> model_ = MakeProcessIllumination(
-      kWidth, kHeight, process_, kScales, directional_lights_);
+      GetParam()
+          ? std::vector<Eigen::Vector3d>{MapDirection(1.55, 2.52,
+                                                      kProcessHeight,
+                                                      kProcessWidth),
+                                         MapDirection(2.6, 6.45, kProcessHeight,
+                                                      kProcessWidth)}
+          : std::vector<Eigen::Vector3d>();
+  const std::unique_ptr<IlluminationModel> model_ =
+      MakeProcessIllumination(kProcessWidth, kProcessHeight, process_,
+                              kProcessHyperparameters, directional_lights_);
   const int num_parameters_ = model_->num_parameters();
 };
 
@@ -73,16 +77,16 @@ TEST_P(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
   ASSERT_EQ(kSize, model_->num_outputs());
   EXPECT_EQ(std::vector<float>(num_parameters_, 1.0f), model_->PriorStd());
   const std::vector<DirectionalLightTexel> near =
-      NearDirectionalLights(directional_lights_, kHeight, kWidth);
+      NearDirectionalLights(directional_lights_, kProcessHeight, kProcessWidth);
   ASSERT_EQ(directional_lights_.size(), near.size());
   ASSERT_EQ(kSize + 3 * static_cast<int>(near.size()), num_parameters_);
-  Eigen::VectorXd of_directional_lights = Eigen::VectorXd::Zero(kTexels);
+  Eigen::VectorXd of_directional_lights = Eigen::VectorXd::Zero(kProcessTexels);
   for (const DirectionalLightTexel& t : near)
     of_directional_lights[t.texel] = t.weight * t.weight;
   const Eigen::MatrixXd S = Jacobian();
   const Eigen::MatrixXd covariance = S * S.transpose();
-  const RowMatrix correlation =
-      LightCorrelation(kHeight, kWidth, process_, kScales);
+  const RowMatrix correlation = LightCorrelation(
+      kProcessHeight, kProcessWidth, process_, kProcessHyperparameters);
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
       Eigen::MatrixXd expected =
@@ -91,7 +95,8 @@ TEST_P(ProcessIlluminationTest, StandardNormalParametersHaveTheProcess) {
       expected.diagonal() +=
           process_.DirectionalLight()(c, d) * of_directional_lights;
       const Eigen::MatrixXd block =
-          covariance.block(c * kTexels, d * kTexels, kTexels, kTexels);
+          covariance.block(c * kProcessTexels, d * kProcessTexels,
+                           kProcessTexels, kProcessTexels);
       // |S_i| |S_j| times one rounding of each entry.
       EXPECT_LT((block - expected).cwiseAbs().maxCoeff(),
                 4 * kFloat * covariance.diagonal().maxCoeff())
@@ -147,7 +152,7 @@ TEST_P(ProcessIlluminationTest, ConstantMapIsConstantAtAnyLevel) {
       const std::vector<float> map = Forward(p);
       const Eigen::VectorXd rounding = Rounding(p, map);
       for (int i = 0; i < kSize; ++i) {
-        EXPECT_NEAR(rgb[i / kTexels], map[i], rounding[i]);
+        EXPECT_NEAR(rgb[i / kProcessTexels], map[i], rounding[i]);
       }
     }
   }
@@ -161,7 +166,8 @@ TEST_P(ProcessIlluminationTest, ShiftMovesEachChannelByItsOwnAmount) {
   const std::vector<float> from = Forward(before), to = Forward(after);
   const Eigen::VectorXd rounding = Rounding(before, from) + Rounding(after, to);
   for (int i = 0; i < kSize; ++i) {
-    EXPECT_NEAR(shift[i / kTexels], double{to[i]} - from[i], rounding[i]);
+    EXPECT_NEAR(shift[i / kProcessTexels], double{to[i]} - from[i],
+                rounding[i]);
   }
 }
 

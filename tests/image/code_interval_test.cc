@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "tests/image/reference_curve.h"
+#include "tests/support/non_finite.h"
 
 namespace ibrdf {
 namespace {
@@ -17,8 +17,6 @@ namespace {
 using testing::AllCurves;
 using testing::Curve;
 using testing::Describe;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Intervals are wider than half a code by 1e-9 of it.
 constexpr double kNear = 1e-8;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ibrdf/image/response_curve.h"
+#include "tests/support/non_finite.h"
 
 namespace ibrdf {
 namespace testing {
@@ -113,7 +114,6 @@ inline std::vector<ResponseDefinition> AllCurves() {
   const auto add = [&curves](ResponseKind kind, std::vector<double> values) {
     for (const double value : values) curves.push_back({kind, value, {}});
   };
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   add(ResponseKind::kPower, {0.2, 0.5, 1.0, 1.8, 2.2, 5.0});
   add(ResponseKind::kAces, {1e-4, 0.1, 0.42, 0.5, 1.0});
   add(ResponseKind::kReinhard, {1.0, 1.5, 4.0, 1e3, 1e6, kInfinity});

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "tests/image/reference_curve.h"
+#include "tests/support/non_finite.h"
 
 namespace ibrdf {
 namespace {
@@ -19,8 +19,6 @@ using testing::Describe;
 using testing::Number;
 using testing::ReferenceCurve;
 using testing::Slope;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Some operations of double precision.
 constexpr double kRounding = 2e-14;

@@ -14,8 +14,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <random>
 
+#include "tests/io/random_image.h"
 #include "tests/support/corruption.h"
 #include "tests/support/temp_dir.h"
 
@@ -24,14 +24,6 @@ namespace {
 
 // Round to nearest half: 11 significant bits.
 constexpr float kHalfRelativeError = 1.0f / 2048;
-
-Image RandomImage(int width, int height, uint32_t seed) {
-  std::mt19937 rng(seed);
-  std::lognormal_distribution<float> radiance(0.0f, 2.0f);
-  Image image(width, height);
-  for (float& v : image.rgb) v = radiance(rng);
-  return image;
-}
 
 void ExpectSameBits(const Image& a, const Image& b) {
   ASSERT_EQ(a.width, b.width);

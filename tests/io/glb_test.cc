@@ -16,12 +16,6 @@ namespace ibrdf {
 namespace {
 using Json = nlohmann::json;
 
-MeshSpec Tetrahedron() {
-  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-          {},
-          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-}
-
 // The tetrahedron's file, changed.
 std::string Changed(const std::function<void(Json*)>& change,
                     const MeshSpec& spec = Tetrahedron()) {
@@ -37,7 +31,7 @@ TriangleMesh Decoded(const std::string& bytes) {
   return mesh.ok() ? *mesh : TriangleMesh();
 }
 
-void ExpectRefused(const std::string& bytes, const std::string& says) {
+void ExpectGlbRefused(const std::string& bytes, const std::string& says) {
   const Status status = DecodeMesh("a.glb", bytes).status();
   EXPECT_EQ(StatusCode::kInvalidInput, status.code()) << says;
   EXPECT_EQ(0u, status.message().find("a.glb: ")) << status.message();
@@ -227,45 +221,46 @@ TEST(Glb, TheSceneSaysWhatIsThere) {
               json->erase("scenes");
               json->erase("nodes");
             }));
-  ExpectRefused(Changed([](Json* json) {
-                  (*json)["scenes"] = Json::array({Json::object()});
-                }),
-                "at least one face");
+  ExpectGlbRefused(Changed([](Json* json) {
+                     (*json)["scenes"] = Json::array({Json::object()});
+                   }),
+                   "at least one face");
   // Lines and points are left out.
-  ExpectRefused(Changed([](Json* json) {
-                  (*json)["meshes"][0]["primitives"][0]["mode"] = 1;
-                }),
-                "at least one face");
+  ExpectGlbRefused(Changed([](Json* json) {
+                     (*json)["meshes"][0]["primitives"][0]["mode"] = 1;
+                   }),
+                   "at least one face");
 }
 
 TEST(Glb, WhatIsNotReadIsRefusedByName) {
   for (const char* name :
        {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}) {
-    ExpectRefused(
+    ExpectGlbRefused(
         Changed([&](Json* json) { (*json)["extensionsRequired"] = {name}; }),
         name);
   }
-  ExpectRefused(Changed([](Json* json) {
-                  (*json)["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] =
-                      Json::object();
-                }),
-                "EXT_mesh_gpu_instancing");
-  ExpectRefused(Changed([](Json* json) { (*json)["nodes"][0]["skin"] = 0; }),
-                "nodes[0].skin: expected a mesh without a skeleton");
-  ExpectRefused(Changed([](Json* json) {
-                  (*json)["meshes"][0]["weights"] = {0, 0.5};
-                }),
-                "meshes[0].weights: expected a mesh without morphs");
+  ExpectGlbRefused(
+      Changed([](Json* json) {
+        (*json)["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] =
+            Json::object();
+      }),
+      "EXT_mesh_gpu_instancing");
+  ExpectGlbRefused(Changed([](Json* json) { (*json)["nodes"][0]["skin"] = 0; }),
+                   "nodes[0].skin: expected a mesh without a skeleton");
+  ExpectGlbRefused(Changed([](Json* json) {
+                     (*json)["meshes"][0]["weights"] = {0, 0.5};
+                   }),
+                   "meshes[0].weights: expected a mesh without morphs");
   Decoded(Changed([](Json* json) {
     (*json)["meshes"][0]["weights"] = {0, 0};
   }));
-  ExpectRefused(
+  ExpectGlbRefused(
       Changed([](Json* json) { (*json)["buffers"][0]["uri"] = "mesh.bin"; }),
       "buffers[0]: expected the buffer inside of the .glb");
-  ExpectRefused(Changed([](Json* json) {
-                  (*json)["accessors"][0]["sparse"] = Json::object();
-                }),
-                "accessors[0].sparse");
+  ExpectGlbRefused(Changed([](Json* json) {
+                     (*json)["accessors"][0]["sparse"] = Json::object();
+                   }),
+                   "accessors[0].sparse");
   EXPECT_EQ(
       "a.gltf: extension: expected .glb, glTF in one file with its buffer",
       DecodeMesh("a.gltf", "{}").status().message());
@@ -273,38 +268,38 @@ TEST(Glb, WhatIsNotReadIsRefusedByName) {
 
 TEST(Glb, BadContainersAreRefused) {
   const std::string bytes = GlbBytes(Tetrahedron());
-  ExpectRefused("", "expected \"glTF\"");
-  ExpectRefused("{\"asset\": 2}     ", "expected \"glTF\"");
+  ExpectGlbRefused("", "expected \"glTF\"");
+  ExpectGlbRefused("{\"asset\": 2}     ", "expected \"glTF\"");
   std::string damaged = bytes;
   damaged[4] = 1;
-  ExpectRefused(damaged, "expected version 2, found 1");
-  ExpectRefused(bytes.substr(0, bytes.size() - 4), "expected a length");
+  ExpectGlbRefused(damaged, "expected version 2, found 1");
+  ExpectGlbRefused(bytes.substr(0, bytes.size() - 4), "expected a length");
   damaged = bytes;
   damaged.replace(12, 4, std::string("\xff\xff\xff\x7f", 4));
-  ExpectRefused(damaged, "expected a first chunk JSON");
-  ExpectRefused(GlbOf("[]", ""), "JSON: expected a valid object");
-  ExpectRefused(GlbOf("{\"meshes\": [1e999]}", ""), "JSON");
-  ExpectRefused(GlbOf("{", ""), "JSON");
-  ExpectRefused(GlbOf(std::string(100000, '['), ""), "JSON");
+  ExpectGlbRefused(damaged, "expected a first chunk JSON");
+  ExpectGlbRefused(GlbOf("[]", ""), "JSON: expected a valid object");
+  ExpectGlbRefused(GlbOf("{\"meshes\": [1e999]}", ""), "JSON");
+  ExpectGlbRefused(GlbOf("{", ""), "JSON");
+  ExpectGlbRefused(GlbOf(std::string(100000, '['), ""), "JSON");
   const std::string deep(100, '['), ends(100, ']');
-  ExpectRefused(GlbOf("{\"extras\": " + deep + ends + "}", ""),
-                "at most 64 levels");
+  ExpectGlbRefused(GlbOf("{\"extras\": " + deep + ends + "}", ""),
+                   "at most 64 levels");
   // A buffer's chunk that ends behind the file.
   std::string buffer;
   const std::string json = GltfJsonOf(Tetrahedron(), &buffer).dump();
   damaged = GlbOf(json, buffer);
   damaged[damaged.size() - buffer.size() - 8] += 4;
-  ExpectRefused(damaged, "expected chunks that end inside");
+  ExpectGlbRefused(damaged, "expected chunks that end inside");
 }
 
 TEST(Glb, BadReferencesAndCountsAreRefused) {
   const auto refused = [](const char* pointer, const Json& value,
                           const std::string& says) {
     SCOPED_TRACE(std::string(pointer) + " = " + value.dump());
-    ExpectRefused(Changed([&](Json* json) {
-                    (*json)[Json::json_pointer(pointer)] = value;
-                  }),
-                  says);
+    ExpectGlbRefused(Changed([&](Json* json) {
+                       (*json)[Json::json_pointer(pointer)] = value;
+                     }),
+                     says);
   };
   refused("/scene", 1, "scene: ");
   refused("/scenes/0", 7, "scenes[0]: expected a map");
@@ -357,7 +352,7 @@ TEST(Glb, CoordinatesThatAreNotFinite) {
   GltfJsonOf(Tetrahedron(), &buffer);
   bytes.replace(bytes.size() - buffer.size(), 4,
                 std::string("\0\0\xc0\x7f", 4));
-  ExpectRefused(bytes, "primitives[0]: vertex 0: expected finite");
+  ExpectGlbRefused(bytes, "primitives[0]: vertex 0: expected finite");
 }
 
 // One mesh that many nodes place.
@@ -367,17 +362,17 @@ TEST(Glb, InstancesAreLimited) {
   spec.vertices.assign(4096, Eigen::Vector3d::Zero());
   spec.vertices[1].x() = spec.vertices[2].y() = 1;
   spec.triangles = {{0, 1, 2}};
-  ExpectRefused(Changed(
-                    [](Json* json) {
-                      Json& nodes = (*json)["nodes"];
-                      nodes = Json::array();
-                      for (int i = 0; i < 4097; ++i) {
-                        nodes.push_back({{"mesh", 0}});
-                      }
-                      json->erase("scenes");
-                    },
-                    spec),
-                "at most 16777216 vertices");
+  ExpectGlbRefused(Changed(
+                       [](Json* json) {
+                         Json& nodes = (*json)["nodes"];
+                         nodes = Json::array();
+                         for (int i = 0; i < 4097; ++i) {
+                           nodes.push_back({{"mesh", 0}});
+                         }
+                         json->erase("scenes");
+                       },
+                       spec),
+                   "at most 16777216 vertices");
 }
 
 TEST(Glb, DamagedFiles) {

@@ -16,8 +16,8 @@
 namespace ibrdf {
 namespace {
 
-void ExpectRefused(const std::string& bytes, const std::string& words,
-                   const PhotoOptions& options = {}) {
+void ExpectPhotoRefused(const std::string& bytes, const std::string& words,
+                        const PhotoOptions& options = {}) {
   const Status status = DecodePhoto("a.x", bytes, options).status();
   EXPECT_EQ(StatusCode::kInvalidInput, status.code()) << words;
   EXPECT_EQ(0u, status.message().find("a.x")) << status.message();
@@ -44,13 +44,13 @@ TEST(PhotoFile, TheContentChoosesTheFormat) {
 }
 
 TEST(PhotoFile, OtherFormatsAreNamed) {
-  ExpectRefused("", "an empty file");
-  ExpectRefused("this is not an image", "none of these");
-  ExpectRefused(std::string("\0\0\0\x18", 4) + "ftypheic....", "HEIC");
-  ExpectRefused("RIFF....WEBPVP8 ", "WebP");
-  ExpectRefused("GIF89a....", "GIF");
-  ExpectRefused("8BPS....", "Photoshop");
-  ExpectRefused(std::string("\0\0\0\x0c", 4) + "JXL ", "JPEG XL");
+  ExpectPhotoRefused("", "an empty file");
+  ExpectPhotoRefused("this is not an image", "none of these");
+  ExpectPhotoRefused(std::string("\0\0\0\x18", 4) + "ftypheic....", "HEIC");
+  ExpectPhotoRefused("RIFF....WEBPVP8 ", "WebP");
+  ExpectPhotoRefused("GIF89a....", "GIF");
+  ExpectPhotoRefused("8BPS....", "Photoshop");
+  ExpectPhotoRefused(std::string("\0\0\0\x0c", 4) + "JXL ", "JPEG XL");
   EXPECT_EQ(StatusCode::kInvalidInput,
             ReadPhoto("/nonexistent/a.png").status().code());
 }
@@ -58,7 +58,8 @@ TEST(PhotoFile, OtherFormatsAreNamed) {
 TEST(PhotoFile, LayersAreOfOpenExrAlone) {
   PhotoOptions options;
   options.layer = "beauty";
-  ExpectRefused(SmallPng(), "a.x: layer: expected OpenEXR, PNG files", options);
+  ExpectPhotoRefused(SmallPng(), "a.x: layer: expected OpenEXR, PNG files",
+                     options);
 }
 
 TEST(PhotoFile, NormalsAreThreeChannelsAndUpright) {
@@ -69,12 +70,12 @@ TEST(PhotoFile, NormalsAreThreeChannelsAndUpright) {
   grey.width = grey.height = 1;
   grey.type = PNG_COLOR_TYPE_GRAY;
   grey.rows = "a";
-  ExpectRefused(PngBytes(grey), "channels", options);
+  ExpectPhotoRefused(PngBytes(grey), "channels", options);
   PngSpec turned;
   turned.width = turned.height = 1;
   turned.rows = "abc";
   turned.after = {{"eXIf", ExifOfOrientation(6)}};
-  ExpectRefused(PngBytes(turned), "orientation", options);
+  ExpectPhotoRefused(PngBytes(turned), "orientation", options);
 }
 
 // Each orientation undoes that whose turn is the inverse.
@@ -141,11 +142,11 @@ TEST(PhotoFile, Pfm) {
   EXPECT_TRUE(grey->grey);
   EXPECT_EQ((std::vector<float>{4, 4, 4, 3, 3, 3}), grey->image.rgb);
   EXPECT_EQ(1u, grey->notes.size());  // of the scale
-  ExpectRefused("PF 0 2 -1\n", "size");
-  ExpectRefused("PF 2 99999999999 -1\n", "size");
-  ExpectRefused("PF 31000 31000 -1\n", "size");
-  ExpectRefused("PF 1 1 0\n" + std::string(12, '\0'), "scale");
-  ExpectRefused("PF 1 1 nan\n" + std::string(12, '\0'), "scale");
+  ExpectPhotoRefused("PF 0 2 -1\n", "size");
+  ExpectPhotoRefused("PF 2 99999999999 -1\n", "size");
+  ExpectPhotoRefused("PF 31000 31000 -1\n", "size");
+  ExpectPhotoRefused("PF 1 1 0\n" + std::string(12, '\0'), "scale");
+  ExpectPhotoRefused("PF 1 1 nan\n" + std::string(12, '\0'), "scale");
 }
 
 std::string Npy(const std::string& type, const std::string& shape,
@@ -199,20 +200,20 @@ TEST(PhotoFile, NpyOfEveryType) {
 
 TEST(PhotoFile, NpyRefusedByField) {
   const std::string six = "\1\2\3\4\5\6";
-  ExpectRefused(Npy(">f4", "(1, 1)", "abcd"), "descr");
-  ExpectRefused(Npy("<i4", "(1, 1)", "abcd"), "descr");
-  ExpectRefused(Npy("|O", "(1, 1)", "abcd"), "descr");
-  ExpectRefused(Npy("|u1", "(1, 2, 3)", six, "True"), "fortran_order");
-  ExpectRefused(Npy("|u1", "(6,)", six), "shape");
-  ExpectRefused(Npy("|u1", "(3, 1, 2)", six), "found [3, 1, 2]");
-  ExpectRefused(Npy("|u1", "(1, 1, 2, 3)", six), "shape");
-  ExpectRefused(Npy("|u1", "(0, 3)", ""), "size");
-  ExpectRefused(Npy("|u1", "(31000, 31000)", six), "size");
-  ExpectRefused(Npy("|u1", "(1, 2, 3)", six + "7"), "found 7");
-  ExpectRefused(Npy("|u1", "(-1, 6)", six), "header");
-  ExpectRefused(Npy("|u1", "(1, 6", six), "header");
-  ExpectRefused(Npy("|u1", "(1, 6), 'more': (1,)", six), "header");
-  ExpectRefused(Npy("|u1", "(1, 6)", six, "False", 4), "version");
+  ExpectPhotoRefused(Npy(">f4", "(1, 1)", "abcd"), "descr");
+  ExpectPhotoRefused(Npy("<i4", "(1, 1)", "abcd"), "descr");
+  ExpectPhotoRefused(Npy("|O", "(1, 1)", "abcd"), "descr");
+  ExpectPhotoRefused(Npy("|u1", "(1, 2, 3)", six, "True"), "fortran_order");
+  ExpectPhotoRefused(Npy("|u1", "(6,)", six), "shape");
+  ExpectPhotoRefused(Npy("|u1", "(3, 1, 2)", six), "found [3, 1, 2]");
+  ExpectPhotoRefused(Npy("|u1", "(1, 1, 2, 3)", six), "shape");
+  ExpectPhotoRefused(Npy("|u1", "(0, 3)", ""), "size");
+  ExpectPhotoRefused(Npy("|u1", "(31000, 31000)", six), "size");
+  ExpectPhotoRefused(Npy("|u1", "(1, 2, 3)", six + "7"), "found 7");
+  ExpectPhotoRefused(Npy("|u1", "(-1, 6)", six), "header");
+  ExpectPhotoRefused(Npy("|u1", "(1, 6", six), "header");
+  ExpectPhotoRefused(Npy("|u1", "(1, 6), 'more': (1,)", six), "header");
+  ExpectPhotoRefused(Npy("|u1", "(1, 6)", six, "False", 4), "version");
   ForEachCorruption(
       Npy("|u1", "(1, 2, 3)", six), 90, 2000, 3, [](const std::string& bytes) {
         const StatusOr<Photo> photo = DecodePhoto("a.npy", bytes);

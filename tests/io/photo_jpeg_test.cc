@@ -166,7 +166,7 @@ TEST(PhotoJpeg, IccProfile) {
   EXPECT_FALSE(photo->other_primaries);
 }
 
-void ExpectRefused(const std::string& bytes, const std::string& words) {
+void ExpectJpegRefused(const std::string& bytes, const std::string& words) {
   const Status status = DecodePhoto("a.jpg", bytes).status();
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
   EXPECT_EQ(0u, status.message().find("a.jpg"));
@@ -175,15 +175,15 @@ void ExpectRefused(const std::string& bytes, const std::string& words) {
 }
 
 TEST(PhotoJpeg, CmykAndTwelveBitsAreRefusedByName) {
-  ExpectRefused(JpegBytes(Smooth(8, 8, 4)), "CMYK");
+  ExpectJpegRefused(JpegBytes(Smooth(8, 8, 4)), "CMYK");
   std::string bytes = JpegBytes(Smooth(8, 8));
   const size_t frame = bytes.find(std::string("\xff\xc0\0\x11\x08", 5));
   ASSERT_NE(std::string::npos, frame);
   bytes[frame + 4] = 12;
-  ExpectRefused(bytes, "expected 8 bits, found 12");
+  ExpectJpegRefused(bytes, "expected 8 bits, found 12");
   bytes[frame + 4] = 8;
   bytes[frame + 1] = '\xc3';  // lossless
-  ExpectRefused(bytes, "JPEG");
+  ExpectJpegRefused(bytes, "JPEG");
 }
 
 TEST(PhotoJpeg, DamagedFilesAreRefused) {
@@ -220,7 +220,7 @@ TEST(PhotoJpeg, LargeClaimsAreRefused) {
   const size_t frame = bytes.find(std::string("\xff\xc0\0\x11\x08", 5));
   ASSERT_NE(std::string::npos, frame);
   bytes.replace(frame + 5, 4, "\x75\x30\x75\x30");  // 30000 x 30000
-  ExpectRefused(bytes, "a.jpg: size");
+  ExpectJpegRefused(bytes, "a.jpg: size");
 }
 
 TEST(PhotoJpeg, ManyScansAreRefused) {

@@ -197,7 +197,7 @@ TEST(PhotoTiff, ThumbnailsAreSkipped) {
   EXPECT_EQ(2, Read({small})->image.width);
 }
 
-void ExpectRefused(const TiffSpec& spec, const std::string& words) {
+void ExpectTiffRefused(const TiffSpec& spec, const std::string& words) {
   const Status status = Read({spec}).status();
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
   EXPECT_EQ(0u, status.message().find("a.tif"));
@@ -208,27 +208,27 @@ void ExpectRefused(const TiffSpec& spec, const std::string& words) {
 TEST(PhotoTiff, RefusedByName) {
   TiffSpec cmyk = Ramp<uint8_t>(4, 2, 4);
   cmyk.photometric = PHOTOMETRIC_SEPARATED;
-  ExpectRefused(cmyk, "CMYK");
+  ExpectTiffRefused(cmyk, "CMYK");
   TiffSpec lab = Ramp<uint8_t>(4, 2, 3);
   lab.photometric = PHOTOMETRIC_CIELAB;
-  ExpectRefused(lab, "CIE Lab");
+  ExpectTiffRefused(lab, "CIE Lab");
   TiffSpec raw = Ramp<uint16_t>(4, 2, 1);
   raw.photometric = PHOTOMETRIC_CFA;
-  ExpectRefused(raw, "raw sensor data");
+  ExpectTiffRefused(raw, "raw sensor data");
   TiffSpec twelve = Ramp<uint8_t>(4, 2, 3);
   twelve.bits = 12;
   twelve.values.resize(2 * 4 * 3 * 12 / 8);
-  ExpectRefused(twelve, "found 12");
+  ExpectTiffRefused(twelve, "found 12");
   TiffSpec whole = Ramp<uint32_t>(4, 2, 3);
-  ExpectRefused(whole, "found 32");
+  ExpectTiffRefused(whole, "found 32");
   TiffSpec signed_numbers = Ramp<uint16_t>(4, 2, 3);
   signed_numbers.format = SAMPLEFORMAT_INT;
-  ExpectRefused(signed_numbers, "SampleFormat 2");
+  ExpectTiffRefused(signed_numbers, "SampleFormat 2");
   TiffSpec fax = Ramp<uint8_t>(8, 2, 1);
   fax.bits = 1;
   fax.values = "ab";
   fax.compression = COMPRESSION_CCITTFAX4;
-  ExpectRefused(fax, "compression");
+  ExpectTiffRefused(fax, "compression");
 }
 
 TEST(PhotoTiff, DamagedFilesAreRefused) {

@@ -13,10 +13,6 @@ namespace {
 constexpr char kManyViews[] =
     "image: {width: 8, height: 8}\ngeometry: {mesh: m.obj}\n";
 
-struct Refusal {
-  std::string text, error;
-};
-
 std::vector<Refusal> ViewRefusals() {
   const std::string least = kManyViews;
   const std::string normals =

@@ -34,6 +34,11 @@ class ProblemFile : public ::testing::Test {
   const std::string path_ = dir_.File("joint.yaml");
 };
 
+// A file's text, and a part of the message that refuses it.
+struct Refusal {
+  std::string text, error;
+};
+
 // The message of a text that is refused.
 inline std::string ParseError(const std::string& text) {
   return ParseProblem("p.yaml", text, {}).status().message();

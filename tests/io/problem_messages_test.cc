@@ -9,10 +9,6 @@
 namespace ibrdf {
 namespace {
 
-// A file's text, and a part of the message that refuses it.
-struct Refusal {
-  std::string text, message;
-};
 using Refusals = std::vector<Refusal>;
 
 Refusals FileRefusals() {
@@ -210,8 +206,8 @@ TEST_F(ProblemFile, MessagesNameFileKeyAndWhatWasExpected) {
     for (const Refusal& c : section) {
       const std::string message = ErrorOf(c.text);
       EXPECT_EQ(0u, message.find(path_ + ": ")) << message;
-      EXPECT_NE(std::string::npos, message.find(c.message)) << c.text << "\n"
-                                                            << message;
+      EXPECT_NE(std::string::npos, message.find(c.error)) << c.text << "\n"
+                                                          << message;
     }
   }
 }

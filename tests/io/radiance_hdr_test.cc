@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 #include <string>
 
+#include "tests/io/random_image.h"
 #include "tests/support/corruption.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temp_dir.h"
@@ -19,14 +19,6 @@ namespace {
 constexpr float kRgbeError = 0.5f / 128;
 
 const char kHead[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n";
-
-Image RandomImage(int width, int height, uint32_t seed) {
-  std::mt19937 rng(seed);
-  std::lognormal_distribution<float> radiance(0.0f, 2.0f);
-  Image image(width, height);
-  for (float& v : image.rgb) v = radiance(rng);
-  return image;
-}
 
 void ExpectClose(const Image& a, const Image& b) {
   ASSERT_EQ(a.width, b.width);

@@ -11,13 +11,7 @@
 namespace ibrdf {
 namespace {
 
-MeshSpec Tetrahedron() {
-  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-          {},
-          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-}
-
-void ExpectRefused(const std::string& bytes, const std::string& says) {
+void ExpectStlRefused(const std::string& bytes, const std::string& says) {
   const Status status = DecodeMesh("a.stl", bytes).status();
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
   EXPECT_EQ(0u, status.message().find("a.stl: ")) << status.message();
@@ -61,38 +55,42 @@ TEST(Stl, BadTextIsRefusedByLine) {
     return out.replace(out.find(from), from.size(), to);
   };
   const std::string vertex = "vertex 0 1 0";
-  ExpectRefused(replaced(vertex, "vertex 0 nan 0"), "line 5: expected three");
-  ExpectRefused(replaced(vertex, "vertex 0 1e99 0"), "line 5: expected three");
-  ExpectRefused(replaced(vertex, "vertex 0 one 0"), "line 5: expected three");
-  ExpectRefused(replaced(vertex, "vertex 0 1"), "line 5: expected a vertex");
-  ExpectRefused(replaced(vertex, ""), "three vertices, found 2");
-  ExpectRefused(replaced(vertex, vertex + "\n" + vertex),
-                "three vertices, found 4");
-  ExpectRefused(replaced("endfacet", ""), "before another facet");
-  ExpectRefused(replaced("endloop", "color 1 0 0"), "line 7: expected facet");
-  ExpectRefused(text.substr(0, text.find("endsolid")), "cut off");
-  ExpectRefused(text.substr(0, text.rfind("    endloop")), "cut off");
-  ExpectRefused("solid a\nendsolid a\n", "at least one face");
-  ExpectRefused("solid", "cut off");
+  ExpectStlRefused(replaced(vertex, "vertex 0 nan 0"),
+                   "line 5: expected three");
+  ExpectStlRefused(replaced(vertex, "vertex 0 1e99 0"),
+                   "line 5: expected three");
+  ExpectStlRefused(replaced(vertex, "vertex 0 one 0"),
+                   "line 5: expected three");
+  ExpectStlRefused(replaced(vertex, "vertex 0 1"), "line 5: expected a vertex");
+  ExpectStlRefused(replaced(vertex, ""), "three vertices, found 2");
+  ExpectStlRefused(replaced(vertex, vertex + "\n" + vertex),
+                   "three vertices, found 4");
+  ExpectStlRefused(replaced("endfacet", ""), "before another facet");
+  ExpectStlRefused(replaced("endloop", "color 1 0 0"),
+                   "line 7: expected facet");
+  ExpectStlRefused(text.substr(0, text.find("endsolid")), "cut off");
+  ExpectStlRefused(text.substr(0, text.rfind("    endloop")), "cut off");
+  ExpectStlRefused("solid a\nendsolid a\n", "at least one face");
+  ExpectStlRefused("solid", "cut off");
 }
 
 TEST(Stl, BadBinaryFilesAreRefused) {
   const std::string bytes = StlBytes(Tetrahedron());
-  ExpectRefused("", "found 0 bytes");
-  ExpectRefused("this is no mesh", "found 15 bytes");
+  ExpectStlRefused("", "found 0 bytes");
+  ExpectStlRefused("this is no mesh", "found 15 bytes");
   // Cut off, and with a count that lies.
-  ExpectRefused(bytes.substr(0, bytes.size() - 1), "found 4 triangles");
-  ExpectRefused(bytes + "more", "found 4 triangles");
+  ExpectStlRefused(bytes.substr(0, bytes.size() - 1), "found 4 triangles");
+  ExpectStlRefused(bytes + "more", "found 4 triangles");
   std::string damaged = bytes;
   damaged.replace(80, 4, std::string(4, '\xff'));
-  ExpectRefused(damaged, "found 4294967295 triangles");
+  ExpectStlRefused(damaged, "found 4294967295 triangles");
   damaged = bytes;
   damaged.replace(80, 4, std::string(4, '\0'));
-  ExpectRefused(damaged, "found 0 triangles");
-  ExpectRefused(damaged.substr(0, 84), "at least one face");
+  ExpectStlRefused(damaged, "found 0 triangles");
+  ExpectStlRefused(damaged.substr(0, 84), "at least one face");
   damaged = bytes;
   damaged.replace(84 + 50 + 12, 4, std::string("\0\0\xc0\x7f", 4));
-  ExpectRefused(damaged, "triangle 1: expected finite");
+  ExpectStlRefused(damaged, "triangle 1: expected finite");
 }
 
 TEST(Stl, DamagedFiles) {

@@ -11,8 +11,8 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-constexpr JointMethod kMethods[] = {JointMethod::kGaussNewton,
-                                    JointMethod::kLbfgs};
+constexpr JointMethod kKnownBrdfMethods[] = {JointMethod::kGaussNewton,
+                                             JointMethod::kLbfgs};
 
 class KnownBrdfTest : public ::testing::TestWithParam<bool> {
  protected:
@@ -27,7 +27,7 @@ TEST_P(KnownBrdfTest, WithoutObservationsThePriorRules) {
   terms.light_priors.clear();
   JointMethodOptions options;
   options.max_iterations = 8;
-  for (const JointMethod method : kMethods) {
+  for (const JointMethod method : kKnownBrdfMethods) {
     JointObjective objective(terms);
     JointState state{{}, scene_.mean};
     EXPECT_EQ(0.0,
@@ -46,7 +46,7 @@ TEST_P(KnownBrdfTest, ExtremePointsAreRefusedOrImproved) {
   const JointTerms terms = scene_.KnownBrdf();
   JointMethodOptions options;
   options.max_iterations = 5;
-  for (const JointMethod method : kMethods) {
+  for (const JointMethod method : kKnownBrdfMethods) {
     for (const double level : {-200.0, 58.0, 200.0}) {
       const double rgb[3] = {level, level, level};
       JointObjective objective(terms);
@@ -116,7 +116,7 @@ TEST(MirrorLike, FreeTexelsRecoverTheImageAndTheMap) {
   options.max_iterations = 30;
   options.tolerance = 1e-6;
   std::vector<double> ends;
-  for (const JointMethod method : kMethods) {
+  for (const JointMethod method : kKnownBrdfMethods) {
     SCOPED_TRACE(JointMethodName(method));
     JointObjective objective(terms);
     JointState state{{}, terms.light_mean};

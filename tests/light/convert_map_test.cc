@@ -8,6 +8,7 @@
 
 #include "ibrdf/base/pi.h"
 #include "ibrdf/light/texel_overlaps.h"
+#include "tests/light/rounding.h"
 
 namespace ibrdf {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 using Eigen::Array3d;
 using Eigen::Vector3d;
 
-// Float texels and float overlaps.
-constexpr double kFloatRounding = 2e-6;
 // How far the balance of sampled overlaps has converged (convert_map.h).
 constexpr double kRipple = 4e-3;
 

@@ -6,14 +6,10 @@
 #include <random>
 
 #include "ibrdf/base/pi.h"
+#include "tests/light/rounding.h"
 
 namespace ibrdf {
 namespace {
-
-// Rounding of a chain of double sines and arc tangents.
-constexpr double kRounding = 1e-12;
-// Rounding of float texels.
-constexpr double kFloatRounding = 2e-6;
 
 Image Smooth(int height, int width) {
   Image map(width, height);

@@ -23,7 +23,7 @@ constexpr double kDifferenceTolerance = 1e-6;
 // Products of a few hundred thousand terms in double.
 constexpr double kDoubleRounding = 1e-11;
 // Float rounding through about twenty layers of sums of hundreds of terms.
-constexpr double kFloatRounding = 2e-5;
+constexpr double kNetworkRounding = 2e-5;
 constexpr double kFloatAdjointTolerance = 1e-4;
 
 IlluminationUnetOptions Options(int width, int height, int scales, int channels,
@@ -195,9 +195,9 @@ TEST(IlluminationUnet, AgreesWithTheDoubleReferenceAtEverySimdLevel) {
         const IlluminationUnet fast(options, unet.noise(), level);
         const FastPasses passes = RunFast(fast, weights, v, u);
         EXPECT_LT(RelativeError(passes.log_radiance, pass.log_radiance()),
-                  kFloatRounding);
-        EXPECT_LT(RelativeError(passes.jvp, jv), kFloatRounding);
-        EXPECT_LT(RelativeError(passes.vjp, jtu), kFloatRounding);
+                  kNetworkRounding);
+        EXPECT_LT(RelativeError(passes.jvp, jv), kNetworkRounding);
+        EXPECT_LT(RelativeError(passes.vjp, jtu), kNetworkRounding);
       }
     }
   }
@@ -306,7 +306,7 @@ TEST(IlluminationUnet, TurnsWithItsNoise) {
   for (const int columns : {8, 16, 32, 56}) {
     EXPECT_LT(RelativeError(map(turned(unet.noise(), columns)),
                             turned(base, columns)),
-              kFloatRounding);
+              kNetworkRounding);
   }
   EXPECT_GT(RelativeError(map(turned(unet.noise(), 4)), turned(base, 4)), 0.01);
 }

@@ -10,16 +10,12 @@
 #include <string>
 
 #include "ibrdf/base/pi.h"
+#include "tests/light/rounding.h"
 
 namespace ibrdf {
 namespace {
 
 using Eigen::Vector3d;
-
-// Rounding of a chain of double sines and arc tangents.
-constexpr double kRounding = 1e-12;
-// OpenEXR computes in float.
-constexpr double kFloatRounding = 2e-6;
 
 const Vector3d kRight(1, 0, 0), kLeft(-1, 0, 0), kUp(0, 1, 0), kDown(0, -1, 0),
     kBack(0, 0, 1), kAhead(0, 0, -1);

@@ -12,9 +12,9 @@ namespace ibrdf {
 namespace {
 
 // Rounding of a sum of four million terms.
-constexpr double kSumTolerance = 1e-10;
+constexpr double kBrdfSumTolerance = 1e-10;
 // Effect of the floor 1e-6 on values of at least 1 scaled by at most 8.
-constexpr double kFloorTolerance = 1e-5;
+constexpr double kBrdfFloorTolerance = 1e-5;
 
 MerlTable RandomTable(uint32_t seed) {
   std::mt19937 rng(seed);
@@ -46,9 +46,9 @@ TEST(BrdfMetrics, ScalesPerChannelAreAlignedAway) {
     }
   }
   const BrdfMetrics m = CompareBrdfs(estimate, reference).value();
-  EXPECT_NEAR(std::sqrt(squares / 3), m.log_rmse, kFloorTolerance);
-  EXPECT_NEAR(std::sqrt(squares / 3), m.log_rmse_below80, kFloorTolerance);
-  EXPECT_NEAR(0.0, m.log_rmse_aligned, kFloorTolerance);
+  EXPECT_NEAR(std::sqrt(squares / 3), m.log_rmse, kBrdfFloorTolerance);
+  EXPECT_NEAR(std::sqrt(squares / 3), m.log_rmse_below80, kBrdfFloorTolerance);
+  EXPECT_NEAR(0.0, m.log_rmse_aligned, kBrdfFloorTolerance);
 }
 
 // The formulas written down once more. The directions are built as vectors: the
@@ -100,11 +100,11 @@ TEST(BrdfMetrics, MatchesASlowReference) {
   const BrdfMetrics m = CompareBrdfs(estimate, reference).value();
   EXPECT_EQ(bins, m.bins);
   EXPECT_EQ(bins80, m.bins_below80);
-  EXPECT_NEAR(std::sqrt(squares / (3 * bins)), m.log_rmse, kSumTolerance);
+  EXPECT_NEAR(std::sqrt(squares / (3 * bins)), m.log_rmse, kBrdfSumTolerance);
   EXPECT_NEAR(std::sqrt(squares80 / (3 * bins80)), m.log_rmse_below80,
-              kSumTolerance);
+              kBrdfSumTolerance);
   EXPECT_NEAR(std::sqrt(variance / (3 * bins)), m.log_rmse_aligned,
-              kSumTolerance);
+              kBrdfSumTolerance);
 }
 
 TEST(BrdfMetrics, OnlyBinsWithPositiveRedCount) {

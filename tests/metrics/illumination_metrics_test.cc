@@ -13,8 +13,8 @@ namespace {
 
 // Radiance is float, the floor shifts a factor by less than 1e-4 relative to
 // maps whose darkest texel is 0.1 of the brightest.
-constexpr double kFloorTolerance = 1e-4;
-constexpr double kSumTolerance = 1e-12;
+constexpr double kMapFloorTolerance = 1e-4;
+constexpr double kMapSumTolerance = 1e-12;
 
 Image RandomMap(int width, int height, uint32_t seed) {
   std::mt19937 rng(seed);
@@ -37,9 +37,9 @@ TEST(IlluminationMetrics, ScalesPerChannelAreAlignedAway) {
       std::sqrt((1 + 1 + 4) / 3.0) * std::log(2.0) / std::log(10.0);
   const IlluminationMetrics m =
       CompareIlluminations(estimate, reference).value();
-  EXPECT_NEAR(expected, m.relative_log_rmse, kFloorTolerance);
-  EXPECT_NEAR(expected, m.relative_log_rmse_unweighted, kFloorTolerance);
-  EXPECT_NEAR(0.0, m.relative_log_rmse_aligned, kFloorTolerance);
+  EXPECT_NEAR(expected, m.relative_log_rmse, kMapFloorTolerance);
+  EXPECT_NEAR(expected, m.relative_log_rmse_unweighted, kMapFloorTolerance);
+  EXPECT_NEAR(0.0, m.relative_log_rmse_aligned, kMapFloorTolerance);
 }
 
 // One wrong row of four: its share is its solid angle.
@@ -54,11 +54,11 @@ TEST(IlluminationMetrics, RowsCountBySolidAngle) {
       CompareIlluminations(estimate, reference).value();
   const double relative = std::log(3.0) / std::log(10.0);
   EXPECT_NEAR(std::sqrt(share) * relative, m.relative_log_rmse,
-              kFloorTolerance);
+              kMapFloorTolerance);
   EXPECT_NEAR(std::sqrt(share * (1 - share)) * relative,
-              m.relative_log_rmse_aligned, kFloorTolerance);
+              m.relative_log_rmse_aligned, kMapFloorTolerance);
   EXPECT_NEAR(std::sqrt(0.25) * relative, m.relative_log_rmse_unweighted,
-              kFloorTolerance);
+              kMapFloorTolerance);
 }
 
 // The formula written down once more, with a hard sun, zeros and negatives.
@@ -87,7 +87,7 @@ TEST(IlluminationMetrics, MatchesASlowReference) {
   const IlluminationMetrics m =
       CompareIlluminations(estimate, reference).value();
   EXPECT_NEAR(std::sqrt(sum / weights) / range, m.relative_log_rmse,
-              kSumTolerance);
+              kMapSumTolerance);
   EXPECT_LT(m.relative_log_rmse_aligned, m.relative_log_rmse);
 }
 

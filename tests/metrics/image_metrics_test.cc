@@ -10,9 +10,9 @@ namespace ibrdf {
 namespace {
 
 // Rounding of sums of differences of close numbers.
-constexpr double kSumTolerance = 1e-10;
+constexpr double kImageSumTolerance = 1e-10;
 // The relative floor 1e-6 on values from 0.1 of the largest.
-constexpr double kFloorTolerance = 1e-4;
+constexpr double kImageFloorTolerance = 1e-4;
 
 Image RandomImage(int width, int height, uint32_t seed) {
   std::mt19937 rng(seed);
@@ -87,7 +87,7 @@ TEST(ImageMetrics, SameImages) {
   const Image image = RandomImage(20, 15, 1);
   const ImageMetrics m = CompareImages(image, image, Mask()).value();
   EXPECT_EQ(0.0, m.log_rmse);
-  EXPECT_NEAR(0.0, m.dssim, kSumTolerance);
+  EXPECT_NEAR(0.0, m.dssim, kImageSumTolerance);
   EXPECT_TRUE(std::isinf(m.psnr));
   EXPECT_EQ(300, m.pixels);
 }
@@ -98,15 +98,15 @@ TEST(ImageMetrics, OneScaleChangesLogRmseButNotPsnr) {
   const double psnr = CompareImages(estimate, reference, Mask())->psnr;
   for (float& v : estimate.rgb) v *= 4.0f;
   EXPECT_NEAR(psnr, CompareImages(estimate, reference, Mask())->psnr,
-              kSumTolerance);
+              kImageSumTolerance);
   estimate = reference;
   for (float& v : estimate.rgb) v *= 4.0f;
   EXPECT_NEAR(std::log(4.0),
               CompareImages(estimate, reference, Mask())->log_rmse,
-              kFloorTolerance);
+              kImageFloorTolerance);
   EXPECT_NEAR(std::log(4.0),
               CompareImages(estimate, reference, Mask())->mean_abs_log,
-              kFloorTolerance);
+              kImageFloorTolerance);
 }
 
 TEST(ImageMetrics, PsnrInClosedForm) {
@@ -117,11 +117,12 @@ TEST(ImageMetrics, PsnrInClosedForm) {
     reference.rgb[c] = 2.0f;
   }
   EXPECT_NEAR(20 * std::log10(2.0),
-              CompareImages(estimate, reference, Mask())->psnr, kSumTolerance);
+              CompareImages(estimate, reference, Mask())->psnr,
+              kImageSumTolerance);
   // Nothing to scale: the error is the reference itself.
   EXPECT_NEAR(10 * std::log10(2.0),
               CompareImages(Image(2, 1), reference, Mask())->psnr,
-              kSumTolerance);
+              kImageSumTolerance);
 }
 
 TEST(ImageMetrics, DssimMatchesASlowReference) {
@@ -134,7 +135,7 @@ TEST(ImageMetrics, DssimMatchesASlowReference) {
     const double slow = SlowDssim(estimate, reference, mask);
     EXPECT_GT(slow, 0.001);
     EXPECT_NEAR(slow, CompareImages(estimate, reference, mask)->dssim,
-                kSumTolerance);
+                kImageSumTolerance);
   }
 }
 

@@ -15,7 +15,7 @@ using namespace testing;  // NOLINT
 
 constexpr int kSize = 72;    // pixels a side
 constexpr int kAcross = 24;  // 3x3 pixels to a bin
-constexpr double kMinCosine = 0.1;
+constexpr double kMinBinCosine = 0.1;
 
 // Its radiance is another in every pixel; one of them is black.
 Observation SphereObservation() {
@@ -39,7 +39,7 @@ TEST(ObservationPair, IsANinthOfTheImageAndItsBins) {
   }
   EXPECT_GE(blocks.size(), 8u);  // of nine, corners may miss the sphere
   const BinMeans bins = MeanByNormal(pair.pixels.points, pair.pixels.observed,
-                                     kAcross, kMinCosine);
+                                     kAcross, kMinBinCosine);
   ASSERT_EQ(bins.points.size(), pair.bins.points.size());
   EXPECT_LT(3 * bins.points.size(), pair.pixels.points.size());
   EXPECT_EQ(bins.observed.radiance, pair.bins.observed.radiance);

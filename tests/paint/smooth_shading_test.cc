@@ -20,7 +20,7 @@ Eigen::Array3d LogSky(const Eigen::Vector3d& n) {
 }
 
 // Stripes as of wood: across, each darkens and browns slowly, and ends sharply.
-Eigen::Array3d Grain(int x, int y) {
+Eigen::Array3d WoodGrain(int x, int y) {
   const double place = std::fmod(x + 4.0 * std::sin(0.1 * y) + 100.0, 19.0);
   return -place / 19.0 * Eigen::Array3d(0.8, 1.0, 1.3);
 }
@@ -62,7 +62,7 @@ TEST(SmoothShading, IsTheSkysUnderPatchesOfPaint) {
 }
 
 TEST(SmoothShading, IsTheSkysUnderGrain) {
-  const PaintedBall ball = BallUnderSky(Grain);
+  const PaintedBall ball = BallUnderSky(WoodGrain);
   const std::vector<double> even(ball.radiance.size(), 1.0);
   EXPECT_LT(ErrorOf(ball, ShadingOf(ball)), 0.4 * ErrorOf(ball, even));
 }
@@ -70,7 +70,7 @@ TEST(SmoothShading, IsTheSkysUnderGrain) {
 // Steps of wood's grain go one way: summed up, they are a slope that is not
 // there.
 TEST(SmoothShading, TellsGrainInTheFirstPaint) {
-  const PaintedBall ball = BallUnderSky(Grain);
+  const PaintedBall ball = BallUnderSky(WoodGrain);
   const FirstPaint found =
       FindFirstPaint(ball.points, MakeObservations(ball.radiance),
                      NeighboursOf(ball.points, kBallWidth));

@@ -12,20 +12,21 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kSize = 48;  // pixels a side
+constexpr int kSphereSize = 48;  // pixels a side
 
 // The pixels of a unit sphere, seen along -z.
 std::vector<ShadingPoint> SpherePixels() {
   std::vector<ShadingPoint> points;
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
-      const double X = (x + 0.5) / kSize * 2 - 1, Y = 1 - (y + 0.5) / kSize * 2;
+  for (int y = 0; y < kSphereSize; ++y) {
+    for (int x = 0; x < kSphereSize; ++x) {
+      const double X = (x + 0.5) / kSphereSize * 2 - 1,
+                   Y = 1 - (y + 0.5) / kSphereSize * 2;
       const double square = X * X + Y * Y;
       if (square > 0.98) continue;
       ShadingPoint p;
       p.normal = Eigen::Vector3d(X, Y, std::sqrt(1 - square)).cast<float>();
       p.wo = Eigen::Vector3f::UnitZ();
-      p.pixel = y * kSize + x;
+      p.pixel = y * kSphereSize + x;
       p.coverage = 1.0f;
       p.index = static_cast<int>(points.size());
       points.push_back(p);
@@ -92,7 +93,7 @@ class StrayLightTest : public ::testing::Test {
   StrayLightTest()
       : points_(SpherePixels()),
         lighting_(points_.size(), Lighting::kLit),
-        image_(kSize, kSize) {
+        image_(kSphereSize, kSphereSize) {
     image_.rgb.assign(image_.rgb.size(), 1.0f);
   }
   // Darkens `count` points; their radiance is about 0.1, 0.2, 0.3.

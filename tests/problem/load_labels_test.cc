@@ -14,13 +14,15 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-constexpr int kSize = 16;
+constexpr int kLabelsSize = 16;
 
 class LoadLabelsTest : public ::testing::Test {
  protected:
   LoadLabelsTest() {
     for (float& v : radiance_.rgb) v = 1.0f;
-    for (int i = 0; i < kSize * kSize; ++i) Set(i, 7.0f, 7.0f, 7.0f);
+    for (int i = 0; i < kLabelsSize * kLabelsSize; ++i) {
+      Set(i, 7.0f, 7.0f, 7.0f);
+    }
   }
   void Set(int pixel, float r, float g, float b) {
     float* const rgb = &labels_.rgb[size_t{3} * pixel];
@@ -28,15 +30,15 @@ class LoadLabelsTest : public ::testing::Test {
     rgb[1] = g;
     rgb[2] = b;
   }
-  int PixelAt(int x, int y) const { return y * kSize + x; }
+  int PixelAt(int x, int y) const { return y * kLabelsSize + x; }
 
-  Image radiance_{kSize, kSize}, labels_{kSize, kSize};
-  std::vector<ShadingPoint> points_ = SpherePoints(kSize);
+  Image radiance_{kLabelsSize, kLabelsSize}, labels_{kLabelsSize, kLabelsSize};
+  std::vector<ShadingPoint> points_ = SpherePoints(kLabelsSize);
 };
 
 TEST_F(LoadLabelsTest, LabelsAreTheValuesInOrder) {
-  for (int i = 0; i < kSize * kSize; ++i) {
-    const int x = i % kSize;
+  for (int i = 0; i < kLabelsSize * kLabelsSize; ++i) {
+    const int x = i % kLabelsSize;
     if (x < 5) Set(i, 200.0f, 200.0f, 200.0f);
     if (x > 10) Set(i, 7.0f, 0.0f, 255.0f);
   }
@@ -49,7 +51,7 @@ TEST_F(LoadLabelsTest, LabelsAreTheValuesInOrder) {
   EXPECT_EQ("200", found->labels[2].value);
   size_t counts[3] = {};
   for (const ShadingPoint& p : points_) {
-    const int x = p.pixel % kSize;
+    const int x = p.pixel % kLabelsSize;
     EXPECT_EQ(x < 5 ? 2 : x > 10 ? 0 : 1, p.material);
     ++counts[p.material];
   }
@@ -67,7 +69,7 @@ TEST_F(LoadLabelsTest, ValuesOutsideTheObjectAreNone) {
 }
 
 TEST_F(LoadLabelsTest, LabelWithoutUsablePixelsGoesWithAWarning) {
-  const int middle = PixelAt(kSize / 2, kSize / 2);
+  const int middle = PixelAt(kLabelsSize / 2, kLabelsSize / 2);
   Set(middle, 9.0f, 9.0f, 9.0f);
   radiance_.rgb[size_t{3} * middle + 1] = 0.0f;
   const size_t all = points_.size();
@@ -127,9 +129,9 @@ TEST_F(LoadLabelsTest, RefusesOtherSizesAndNaN) {
 
 TEST_F(LoadLabelsTest, ReadsThePicture) {
   const TempDir dir;
-  Rgb8Image picture(kSize, kSize);
-  for (int i = 0; i < kSize * kSize; ++i) {
-    if (i % kSize < kSize / 2) picture.rgb[size_t{3} * i] = 3;
+  Rgb8Image picture(kLabelsSize, kLabelsSize);
+  for (int i = 0; i < kLabelsSize * kLabelsSize; ++i) {
+    if (i % kLabelsSize < kLabelsSize / 2) picture.rgb[size_t{3} * i] = 3;
   }
   ASSERT_TRUE(WritePng(picture, dir.File("l.png")).ok());
   const auto found = LoadLabels(dir.File("l.png"), radiance_, &points_);

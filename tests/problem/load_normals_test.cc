@@ -14,14 +14,15 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-constexpr int kSize = 16;
+constexpr int kNormalsSize = 16;
 
 // Unit normals of a sphere that fills the image; zero outside.
 Image SphereNormals() {
-  Image image(kSize, kSize);
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
-      const double X = (x + 0.5) / kSize * 2 - 1, Y = 1 - (y + 0.5) / kSize * 2;
+  Image image(kNormalsSize, kNormalsSize);
+  for (int y = 0; y < kNormalsSize; ++y) {
+    for (int x = 0; x < kNormalsSize; ++x) {
+      const double X = (x + 0.5) / kNormalsSize * 2 - 1,
+                   Y = 1 - (y + 0.5) / kNormalsSize * 2;
       const double z = 1 - X * X - Y * Y;
       if (z <= 0) continue;
       float* n = image.At(x, y);
@@ -90,7 +91,7 @@ TEST_F(LoadNormalsTest, CodesOfEightAndSixteenBits) {
   for (const int bits : {8, 16}) {
     const double largest = std::exp2(bits) - 1;
     PngSpec png;
-    png.width = png.height = kSize;
+    png.width = png.height = kNormalsSize;
     png.bits = bits;
     for (size_t i = 0; i < right_.num_pixels(); ++i) {
       for (int c = 0; c < 3; ++c) {
@@ -122,7 +123,7 @@ TEST_F(LoadNormalsTest, OpenCvsFrameIsTurnedWhenAskedForAndNamedWhenNot) {
 
 TEST_F(LoadNormalsTest, EachAxisMayPointAnywhere) {
   // x holds what is down, y what is toward the camera, z what is left.
-  Image other(kSize, kSize);
+  Image other(kNormalsSize, kNormalsSize);
   for (size_t i = 0; i < right_.num_pixels(); ++i) {
     const float* n = &right_.rgb[3 * i];
     other.rgb[3 * i] = -n[1];
@@ -161,11 +162,12 @@ TEST_F(LoadNormalsTest, OtherPicturesAreRefused) {
         << status.message();
   };
   // Colours between 0 and 1, radiance of any size, and positions.
-  Image even(kSize, kSize), radiance(kSize, kSize), places(kSize, kSize);
+  Image even(kNormalsSize, kNormalsSize), radiance(kNormalsSize, kNormalsSize),
+      places(kNormalsSize, kNormalsSize);
   for (size_t i = 0; i < even.rgb.size(); ++i) {
     even.rgb[i] = 0.45f + 0.05f * static_cast<float>(i % 3) + 0.15f;
     radiance.rgb[i] = std::exp2(static_cast<float>(i / 3 % 11) - 3.0f);
-    const auto column = static_cast<float>(i / 3 % kSize);
+    const auto column = static_cast<float>(i / 3 % kNormalsSize);
     places.rgb[i] = i % 3 == 2 ? 0.1f : column * column;
   }
   expect_refused(Spec(even));

@@ -16,15 +16,15 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kSize = 48;
+constexpr int kObjectSize = 48;
 
 // Normals of the unit sphere, `up` 1 or -1 times their y.
 Image Normals(float up) {
-  Image normals(kSize, kSize);
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
-      const float u = 2.2f * (x + 0.5f) / kSize - 1.1f;
-      const float v = 1.1f - 2.2f * (y + 0.5f) / kSize;
+  Image normals(kObjectSize, kObjectSize);
+  for (int y = 0; y < kObjectSize; ++y) {
+    for (int x = 0; x < kObjectSize; ++x) {
+      const float u = 2.2f * (x + 0.5f) / kObjectSize - 1.1f;
+      const float v = 1.1f - 2.2f * (y + 0.5f) / kObjectSize;
       const float rest = 1.0f - u * u - v * v;
       if (rest <= 0.0f) continue;
       normals.At(x, y)[0] = u;
@@ -53,11 +53,11 @@ class LoadObjectTest : public ::testing::Test {
 
 TEST_F(LoadObjectTest, CountsWhatAFileOfFloatsHolds) {
   EXPECT_TRUE(WriteExr(Normals(1.0f), dir_.File("n.exr")).ok());
-  Image image(kSize, kSize);
+  Image image(kObjectSize, kObjectSize);
   for (size_t k = 0; k < image.rgb.size(); ++k) {
     image.rgb[k] = 0.5f + 1e-3f * static_cast<float>(k % 497);
   }
-  const int middle = kSize / 2;
+  const int middle = kObjectSize / 2;
   image.At(middle, middle)[0] = 0.0f;
   image.At(middle + 1, middle)[1] = -1.0f;
   image.At(middle + 2, middle)[2] = std::numeric_limits<float>::quiet_NaN();
@@ -79,11 +79,11 @@ TEST_F(LoadObjectTest, CountsWhatAFileOfFloatsHolds) {
 
 TEST_F(LoadObjectTest, CountsClippedCodesAndSaysWhichCurve) {
   EXPECT_TRUE(WriteExr(Normals(1.0f), dir_.File("n.exr")).ok());
-  Rgb8Image image(kSize, kSize);
+  Rgb8Image image(kObjectSize, kObjectSize);
   for (uint8_t& v : image.rgb) v = 120;
-  image.At(kSize / 2, kSize / 2)[1] = 255;
+  image.At(kObjectSize / 2, kObjectSize / 2)[1] = 255;
   EXPECT_TRUE(WritePng(image, dir_.File("i.png")).ok());
-  Rgb8Image mask(kSize, kSize);
+  Rgb8Image mask(kObjectSize, kObjectSize);
   for (uint8_t& v : mask.rgb) v = 255;
   EXPECT_TRUE(WritePng(mask, dir_.File("m.png")).ok());
   const StatusOr<PhotographedObject> object = LoadPhotographedObject(
@@ -93,10 +93,11 @@ TEST_F(LoadObjectTest, CountsClippedCodesAndSaysWhichCurve) {
   EXPECT_EQ(1u, check.counts.clipped);
   EXPECT_EQ("srgb (image.response)", check.curve);
   EXPECT_EQ(2.0, check.exposure);
-  EXPECT_EQ(static_cast<size_t>(kSize * kSize), check.mask_pixels);
+  EXPECT_EQ(static_cast<size_t>(kObjectSize * kObjectSize), check.mask_pixels);
   ASSERT_TRUE(check.overlap.has_value());
-  EXPECT_NEAR(static_cast<double>(check.counts.object) / (kSize * kSize),
-              *check.overlap, 1e-12);
+  EXPECT_NEAR(
+      static_cast<double>(check.counts.object) / (kObjectSize * kObjectSize),
+      *check.overlap, 1e-12);
 }
 
 // The look decides only what nobody said, and of what is unknown.
@@ -131,7 +132,7 @@ TEST(ChosenVariation, IsWhatIsSaidOrSeen) {
 
 TEST_F(LoadObjectTest, WarningsReachTheProblemOfTheSolve) {
   EXPECT_TRUE(WriteExr(Normals(-1.0f), dir_.File("n.exr")).ok());
-  Image image(kSize, kSize);
+  Image image(kObjectSize, kObjectSize);
   for (size_t k = 0; k < image.rgb.size(); ++k) {
     image.rgb[k] = 0.5f + 1e-3f * static_cast<float>(k % 497);
   }

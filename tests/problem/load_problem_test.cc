@@ -14,21 +14,21 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kSize = 64;
+constexpr int kSilhouetteSize = 64;
 
 // A sphere's image with a mask that is a disc of `radius` about (right, up);
 // the sphere's own has radius 1 about 0.
 class SilhouetteTest : public ::testing::Test {
  protected:
   StatusOr<InverseProblem> Load(double radius, double right, double up) const {
-    Image image(kSize, kSize);
+    Image image(kSilhouetteSize, kSilhouetteSize);
     image.rgb.assign(image.rgb.size(), 0.5f);
     EXPECT_TRUE(WriteExr(image, dir_.File("i.exr")).ok());
-    Rgb8Image mask(kSize, kSize);
-    for (int y = 0; y < kSize; ++y) {
-      for (int x = 0; x < kSize; ++x) {
-        const double X = (x + 0.5) / kSize * 2 - 1 - right;
-        const double Y = 1 - (y + 0.5) / kSize * 2 - up;
+    Rgb8Image mask(kSilhouetteSize, kSilhouetteSize);
+    for (int y = 0; y < kSilhouetteSize; ++y) {
+      for (int x = 0; x < kSilhouetteSize; ++x) {
+        const double X = (x + 0.5) / kSilhouetteSize * 2 - 1 - right;
+        const double Y = 1 - (y + 0.5) / kSilhouetteSize * 2 - up;
         const uint8_t v = X * X + Y * Y < radius * radius ? 255 : 0;
         for (int c = 0; c < 3; ++c) mask.At(x, y)[c] = v;
       }

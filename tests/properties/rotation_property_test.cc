@@ -43,7 +43,7 @@ Image MapOf(const Light& light, const Eigen::Matrix3d& turn, int height) {
   return map;
 }
 
-TransportOptions Options() {
+TransportOptions FineOptions() {
   TransportOptions options;
   options.quadrature.near_rings = 8;
   options.quadrature.near_ring_samples = 24;
@@ -52,10 +52,10 @@ TransportOptions Options() {
   return options;
 }
 
-std::vector<double> Render(const std::vector<ShadingPoint>& points,
-                           const BrdfGrid& grid, const Image& map) {
+std::vector<double> RenderFinely(const std::vector<ShadingPoint>& points,
+                                 const BrdfGrid& grid, const Image& map) {
   std::vector<double> L_o(3 * points.size());
-  Transport(points, map.height, map.width, Options())
+  Transport(points, map.height, map.width, FineOptions())
       .Render(grid, map.rgb.data(), L_o.data());
   return L_o;
 }
@@ -106,7 +106,7 @@ TEST(RotationProperty, TurningEverythingChangesNothingButTheTexels) {
     brdf.specular.setConstant(*Unit());
     brdf.roughness.setConstant(*Magnitude(0.05, 1.0));
     const BrdfGrid grid =
-        BrdfGrid::FromFunction(brdf.Function(), Options().grid);
+        BrdfGrid::FromFunction(brdf.Function(), FineOptions().grid);
     Camera camera;
     camera.type = CameraType::kPerspective;
     const double high = *Between(-1.2, 1.2);
@@ -127,8 +127,8 @@ TEST(RotationProperty, TurningEverythingChangesNothingButTheTexels) {
     double d[3];
     for (int k = 0; k < 3; ++k) {
       const int height = 8 << k;
-      d[k] = Difference(Render(points, grid, MapOf(light, still, height)),
-                        Render(turned, grid, MapOf(light, turn, height)));
+      d[k] = Difference(RenderFinely(points, grid, MapOf(light, still, height)),
+                        RenderFinely(turned, grid, MapOf(light, turn, height)));
     }
     // Falls by about 4 with each doubling, by chance at times by less: measured
     // at most 0.05 and 2e-3, and by 4.3 or more over both.

@@ -100,7 +100,7 @@ TEST(SceneProbe, BouncesOfABowlAreWorthTheClosedForm) {
 }
 
 TEST(SceneProbe, WorstLookCountsAndThreadsDoNot) {
-  const Scene scene = Scene::FromMesh(TorusMesh(32, 16)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(32, 16)).value();
   const auto points =
       FindShadingPoints(scene, TorusCamera(), 30, 30, Mask(), 1).value();
   const Image soft = ConstantMap(16, 32, 1.0f);

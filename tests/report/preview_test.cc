@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "ibrdf/solvers/drawing/tone_map.h"
+#include "tests/support/non_finite.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 using Colour = std::array<int, 3>;
 constexpr Colour kGrey = {176, 176, 176};
 

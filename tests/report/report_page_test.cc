@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,14 +13,15 @@
 #include "ibrdf/solvers/report/report_plots.h"
 #include "ibrdf/solvers/report/report_warnings.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
+#include "tests/report/contains.h"
 #include "tests/support/base64.h"
 #include "tests/support/markup.h"
+#include "tests/support/non_finite.h"
 #include "tests/support/tiny_model.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSpread = 0.21875;
 
 TraceEntry Entry(const char* stage, double seconds, double scale, int pixels,
@@ -117,10 +117,6 @@ std::string Page(const Example& example,
   const StatusOr<std::string> page = ReportPage(example.Solved(), groups);
   EXPECT_TRUE(page.ok()) << page.status().message();
   return page.ok() ? *page : "";
-}
-
-bool Contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 TEST(ReportPage, ShowsWhatTheResultHolds) {

@@ -14,8 +14,8 @@ namespace ibrdf {
 namespace {
 
 // An image of 1.5, rendered as 3, in three of its four pixels.
-struct Example {
-  Example() {
+struct FourPixels {
+  FourPixels() {
     inverse.image = Image(2, 2);
     solution.render = Image(2, 2);
     std::fill(inverse.image.rgb.begin(), inverse.image.rgb.end(), 1.5f);
@@ -34,7 +34,7 @@ struct Example {
 };
 
 TEST(ResultMetrics, WithoutTruthTheImageIsAllThatCompares) {
-  const Example example;
+  const FourPixels example;
   const ResultMetrics metrics =
       MeasureResult(example.inverse, example.truth, example.solution).value();
   EXPECT_EQ(12.0, metrics.seconds);
@@ -46,7 +46,7 @@ TEST(ResultMetrics, WithoutTruthTheImageIsAllThatCompares) {
 }
 
 TEST(ResultMetrics, OnlyWhatWasEstimatedIsComparedWithTheTruth) {
-  Example example;
+  FourPixels example;
   example.truth.illumination = example.solution.map;
   EXPECT_TRUE(MeasureResult(example.inverse, example.truth, example.solution)
                   ->illumination.has_value());
@@ -68,7 +68,7 @@ TEST(ResultMetrics, LinesHoldTheFiniteOnesInOrder) {
 }
 
 TEST(LogResidual, IsZeroWhereAPixelTookNoPart) {
-  Example example;
+  FourPixels example;
   example.inverse.image.rgb[3] = 0.0f;  // red of pixel 1
   const Image residual = LogResidual(example.inverse, example.solution);
   for (int c = 0; c < 3; ++c) {

@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "tests/support/markup.h"
+#include "tests/support/non_finite.h"
 
 namespace ibrdf {
 namespace {
-
-const double kNan = std::numeric_limits<double>::quiet_NaN();
-const double kInf = std::numeric_limits<double>::infinity();
 
 std::string Labels(const std::vector<AxisTick>& ticks) {
   std::string out;
@@ -132,7 +129,7 @@ TEST(SvgLinePlot, LeavesOutWhatItCannotShowAndSaysSo) {
       "t",
       {"x", false},
       {"y", true},
-      {{"a", {0, 1, 2, 3, 4, 5, 6}, {1, 2, kNan, 3, -1, kInf, 5}}}};
+      {{"a", {0, 1, 2, 3, 4, 5, 6}, {1, 2, kNan, 3, -1, kInfinity, 5}}}};
   const std::string svg = SvgLinePlot(plot);
   EXPECT_EQ("", MarkupError(svg));
   EXPECT_EQ(std::string::npos, svg.find("nan"));

@@ -9,12 +9,13 @@
 
 #include "ibrdf/solvers/report/report_limits.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
+#include "tests/report/contains.h"
 #include "tests/support/tiny_model.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kNan = VerdictNumbers::kNone;
+constexpr double kNone = VerdictNumbers::kNone;
 
 // A joint problem that went well.
 VerdictNumbers Good() {
@@ -24,10 +25,6 @@ VerdictNumbers Good() {
   n.object_pixels = n.used_pixels = 10000;
   n.reflectance_error = n.hue_error = n.level_error = n.light_error = 0.08;
   return n;
-}
-
-bool Contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 TEST(Verdict, AGoodJointEstimateLacksItsScale) {
@@ -54,7 +51,7 @@ TEST(Verdict, AGoodJointEstimateLacksItsScale) {
 TEST(Verdict, KnownLightTellsTheScale) {
   VerdictNumbers n = Good();
   n.kind = ProblemKind::kReflectance;
-  n.light_error = kNan;
+  n.light_error = kNone;
   const Verdict v = MakeVerdict(n);
   EXPECT_EQ(Trust::kKnown, v.ratings.light);
   EXPECT_EQ(Trust::kGood, v.ratings.hue);
@@ -67,7 +64,7 @@ TEST(Verdict, KnownLightTellsTheScale) {
 TEST(Verdict, KnownReflectanceTellsOfTheLightAlone) {
   VerdictNumbers n = Good();
   n.kind = ProblemKind::kIllumination;
-  n.reflectance_error = kNan;
+  n.reflectance_error = kNone;
   const Verdict v = MakeVerdict(n);
   EXPECT_EQ(Trust::kKnown, v.ratings.gloss);
   EXPECT_EQ(
@@ -157,7 +154,7 @@ TEST(Verdict, NoImprovementAndNanTellNothing) {
   EXPECT_TRUE(Contains(v.doubt, "nothing better than its first guess"));
   EXPECT_TRUE(Contains(v.next, "belong together")) << v.next;
   n = Good();
-  n.misfit = kNan;
+  n.misfit = kNone;
   v = MakeVerdict(n);
   EXPECT_EQ(Trust::kNotDetermined, v.ratings.hue);
   EXPECT_TRUE(Contains(v.doubt, "not a number")) << v.doubt;
@@ -189,7 +186,7 @@ TEST(Verdict, DoubtfulNormalsComeFirst) {
 
 TEST(Verdict, NumbersThatWereNotFoundAreFairAtBest) {
   VerdictNumbers n = Good();
-  n.reflectance_error = n.hue_error = n.level_error = n.light_error = kNan;
+  n.reflectance_error = n.hue_error = n.level_error = n.light_error = kNone;
   const Verdict v = MakeVerdict(n);
   EXPECT_EQ(Trust::kFair, v.ratings.gloss);
   EXPECT_FALSE(Contains(v.trust, "off by")) << v.trust;

@@ -14,7 +14,7 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-constexpr int kSize = 12;  // pixels a side
+constexpr int kLabelledSize = 12;  // pixels a side
 
 // A ball in quarters of two materials, under a smooth map.
 class LabelledTest : public ::testing::Test {
@@ -25,7 +25,7 @@ class LabelledTest : public ::testing::Test {
     problem_.solver.max_iterations = 2;
     problem_.materials = {{"10", 0}, {"90", 0}};
     for (ShadingPoint& p : problem_.points) {
-      const int x = p.pixel % kSize, y = p.pixel / kSize;
+      const int x = p.pixel % kLabelledSize, y = p.pixel / kLabelledSize;
       p.material = (x < 5) != (y < 6) ? 1 : 0;
       ++problem_.materials[p.material].pixels;
     }
@@ -86,7 +86,7 @@ class LabelledTest : public ::testing::Test {
       {-0.2, 0.3, 0.1, -0.3, 3.0, 3.4, 3.9, 0.2, 0.4, -0.1, 0.2, 2.0, 2.2,
        2.6}};
   const Image map_ = SmoothMap(8, 16);
-  InverseProblem problem_ = BallProblem(kSize);
+  InverseProblem problem_ = BallProblem(kLabelledSize);
   std::vector<BrdfGrid> truth_;
 };
 
@@ -131,8 +131,8 @@ TEST_F(LabelledTest, OneLabelIsNone) {
 
 TEST_F(LabelledTest, MaterialOfOnePixelIsEstimatedToo) {
   for (size_t i = 0; i < problem_.points.size(); ++i) {
-    const int x = problem_.points[i].pixel % kSize;
-    const int y = problem_.points[i].pixel / kSize;
+    const int x = problem_.points[i].pixel % kLabelledSize;
+    const int y = problem_.points[i].pixel / kLabelledSize;
     problem_.points[i].material = x == 7 && y == 7 ? 1 : 0;
   }
   problem_.materials = {{"10", problem_.points.size() - 1}, {"90", 1}};

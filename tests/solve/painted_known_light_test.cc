@@ -16,7 +16,7 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-constexpr int kSize = 32;  // pixels a side
+constexpr int kPaintedSize = 32;  // pixels a side
 
 // A ball of the model's first material under a smooth map, its matte part in
 // four paints.
@@ -48,7 +48,7 @@ class PaintedUnderKnownLightTest : public ::testing::Test {
                                      {-0.5, -0.9, -1.0},
                                      {-0.8, -0.3, 0.4},
                                      {0.2, 0.4, 0.1}};
-    const int x = point.pixel % kSize, y = point.pixel / kSize;
+    const int x = point.pixel % kPaintedSize, y = point.pixel / kPaintedSize;
     return paints[(x / 8 + 3 * (y / 8)) % 4];
   }
   void Paint() {
@@ -89,7 +89,7 @@ class PaintedUnderKnownLightTest : public ::testing::Test {
     return std::sqrt(d.square().mean());
   }
 
-  InverseProblem problem_ = BallProblem(kSize);
+  InverseProblem problem_ = BallProblem(kPaintedSize);
   const Image map_ = SmoothMap(8, 16);
   BrdfGrid whole_, matte_;
 };

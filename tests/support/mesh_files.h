@@ -17,6 +17,13 @@ struct MeshSpec {
   std::vector<std::array<int, 3>> triangles;
 };
 
+// Closed, of volume 1/6.
+inline MeshSpec Tetrahedron() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+          {},
+          {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+}
+
 // A value as it lies in memory (little-endian).
 template <typename T>
 void AppendRaw(const T& value, std::string* bytes) {

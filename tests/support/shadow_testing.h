@@ -89,7 +89,7 @@ inline TriangleMesh BallMesh(int rings, double radius) {
 }
 
 // Radii 0.7 and 0.3 about the y axis.
-inline TriangleMesh TorusMesh(int around, int tube) {
+inline TriangleMesh UnitTorusMesh(int around, int tube) {
   return GridMesh(
       tube, around, true,
       [](double u, double v, Eigen::Vector3d* p, Eigen::Vector3d* n) {

@@ -18,7 +18,7 @@ using namespace testing;  // NOLINT
 constexpr int kHeight = 128, kWidth = 256;
 constexpr int kSunRow = 30, kSunColumn = 30;
 
-Image SunnyMap(int row = kSunRow, int column = kSunColumn) {
+Image MapOfOneSun(int row = kSunRow, int column = kSunColumn) {
   Image map = SmoothMap(kHeight, kWidth);
   for (int c = 0; c < 3; ++c) map.At(column, row)[c] = 1e4f;
   return map;
@@ -45,7 +45,7 @@ std::vector<double> Render(const Transport& transport, const BrdfGrid& grid,
 }
 
 TEST(BrightTransport, ShowsASunThatRingsMiss) {
-  const Image map = SunnyMap();
+  const Image map = MapOfOneSun();
   const BrightTexels split = SplitBrightTexels(map);
   ASSERT_EQ(1u, split.texels.size());
   const std::vector<ShadingPoint> points = SunnyPoints();
@@ -76,7 +76,7 @@ TEST(BrightTransport, ShowsASunThatRingsMiss) {
 
 // The same light, given in full to both.
 TEST(BrightTransport, ProductsAgree) {
-  const Image map = SunnyMap();
+  const Image map = MapOfOneSun();
   const BrightTexels split = SplitBrightTexels(map);
   const std::vector<ShadingPoint> points = SunnyPoints();
   const Transport transport(points, kHeight, kWidth, WithBright(split));
@@ -137,7 +137,7 @@ TEST(BrightTransport, ADenseMatrixRefusesIt) {
 
 class ShadowedSun : public ::testing::Test {
  protected:
-  ShadowedSun() : scene_(Scene::FromMesh(TorusMesh(64, 32)).value()) {
+  ShadowedSun() : scene_(Scene::FromMesh(UnitTorusMesh(64, 32)).value()) {
     points_ = FindShadingPoints(scene_, TorusCamera(), 9, 9, Mask(), 1).value();
     TransportOptions options;
     auto visibility =
@@ -150,7 +150,7 @@ class ShadowedSun : public ::testing::Test {
     options_ = WithBright(split_, options);
   }
 
-  const BrightTexels split_ = SplitBrightTexels(SunnyMap(60, 64));  // low
+  const BrightTexels split_ = SplitBrightTexels(MapOfOneSun(60, 64));  // low
   const Image black_{kWidth, kHeight};
   const Scene scene_;
   std::vector<ShadingPoint> points_;

@@ -13,16 +13,14 @@
 #include "ibrdf/transport/transport.h"
 #include "tests/support/render_testing.h"
 #include "tests/support/shadow_testing.h"
+#include "tests/transport/float_sums.h"
 
 namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-// Sums of some thousand float products.
-constexpr double kFloatSums = 2e-5;
-
 const Scene& Torus() {
-  static const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  static const Scene scene = Scene::FromMesh(UnitTorusMesh(64, 32)).value();
   return scene;
 }
 
@@ -40,12 +38,6 @@ TransportOptions Shadowed(const Scene& scene,
   rays.num_threads = threads;
   options.visibility = std::make_shared<Visibility>(scene, points, rays);
   return options;
-}
-
-double Dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
 }
 
 double MeanLogError(const std::vector<double>& a,

@@ -8,13 +8,11 @@
 
 #include "ibrdf/render/reference_renderer.h"
 #include "tests/support/render_testing.h"
+#include "tests/transport/float_sums.h"
 
 namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
-
-// Sums of some thousand float products.
-constexpr double kFloatSums = 2e-5;
 
 class TransportTest : public ::testing::Test {
  protected:
@@ -34,11 +32,6 @@ class TransportTest : public ::testing::Test {
   std::normal_distribution<double> gauss_;
 };
 
-double Dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
 double Magnitude(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] * b[i]);

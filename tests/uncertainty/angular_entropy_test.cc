@@ -17,8 +17,9 @@ namespace {
 
 constexpr int kViews = 120;
 
-EntropyMaps Evaluate(const TexelSamples& samples,
-                     const AngularOptions& options = {}, int threads = 1) {
+EntropyMaps EvaluateAngular(const TexelSamples& samples,
+                            const AngularOptions& options = {},
+                            int threads = 1) {
   return AngularEntropyEvaluator(options).Evaluate(samples, threads).value();
 }
 
@@ -159,7 +160,7 @@ TEST(AngularEntropy, AgreesWithThePlainSum) {
     for (size_t k = 0; k < samples.weight.size(); k += 3) {
       samples.weight[k] = k % 2 == 0 ? 0.0f : 0.4f;
     }
-    const EntropyMaps maps = Evaluate(samples, options);
+    const EntropyMaps maps = EvaluateAngular(samples, options);
     for (const int texel : {0, 7, 19}) {
       for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(PlainEntropy(samples, options, texel, c),
@@ -175,7 +176,7 @@ TEST(AngularEntropy, FindsTheParametersOfItsOwnModel) {
   for (const int num_kd : {8, 0}) {
     options.num_kd = num_kd;
     const EntropyMaps maps =
-        Evaluate(ModelSamples(options, alpha, 0.33, 0.44), options);
+        EvaluateAngular(ModelSamples(options, alpha, 0.33, 0.44), options);
     for (size_t k = 0; k < maps.alpha.size(); ++k) {
       EXPECT_NEAR(alpha, maps.alpha[k], 1e-6);
       EXPECT_NEAR(0.33, maps.Ks[k], 1e-3);
@@ -195,10 +196,10 @@ TEST(AngularEntropy, IrradianceIsThatOfTheFitWhereNoneIsGiven) {
   AngularOptions matte = options;
   matte.fresnel = false;
   matte.num_kd = 8;
-  const EntropyMaps maps = Evaluate(samples, matte);
+  const EntropyMaps maps = EvaluateAngular(samples, matte);
   TexelSamples given = samples;
   given.irradiance.assign(60, static_cast<float>(kPi));
-  const EntropyMaps expected = Evaluate(given, matte);
+  const EntropyMaps expected = EvaluateAngular(given, matte);
   for (size_t k = 0; k < maps.entropy.size(); ++k) {
     EXPECT_NEAR(expected.entropy[k], maps.entropy[k], 1e-3);
   }
@@ -212,7 +213,7 @@ TEST(AngularEntropy, IsOneWhereNothingIsSeen) {
   AngularOptions options;
   for (const int num_kd : {8, 0}) {
     options.num_kd = num_kd;
-    const EntropyMaps maps = Evaluate(samples, options);
+    const EntropyMaps maps = EvaluateAngular(samples, options);
     for (int c = 0; c < 3; ++c) {
       EXPECT_EQ(1.0f, maps.entropy[15 + c]);
       EXPECT_GT(1.0f, maps.entropy[12 + c]);
@@ -222,8 +223,8 @@ TEST(AngularEntropy, IsOneWhereNothingIsSeen) {
 
 TEST(AngularEntropy, DoesNotDependOnTheExposureOrThreads) {
   const TexelSamples samples = ModelSamples({}, 0.1, 0.5, 0.2);
-  const EntropyMaps maps = Evaluate(samples);
-  EXPECT_EQ(maps.entropy, Evaluate(samples, {}, 2).entropy);
+  const EntropyMaps maps = EvaluateAngular(samples);
+  EXPECT_EQ(maps.entropy, EvaluateAngular(samples, {}, 2).entropy);
   for (const double factor : {4096.0, 1.7, 0.001}) {
     TexelSamples scaled = samples;
     scaled.mean_radiance *= factor;
@@ -231,7 +232,7 @@ TEST(AngularEntropy, DoesNotDependOnTheExposureOrThreads) {
          {&scaled.incoming, &scaled.outgoing, &scaled.irradiance}) {
       for (float& x : *v) x *= static_cast<float>(factor);
     }
-    const EntropyMaps other = Evaluate(scaled);
+    const EntropyMaps other = EvaluateAngular(scaled);
     for (size_t k = 0; k < maps.entropy.size(); ++k) {
       EXPECT_NEAR(maps.entropy[k], other.entropy[k],
                   factor == 4096.0 ? 0.0 : 1e-5);
@@ -247,7 +248,8 @@ TEST(AngularEntropy, DoesNotDependOnTheAxesOfTheFrame) {
     turned.directions[3 * k] = -samples.directions[3 * k + 1];
     turned.directions[3 * k + 1] = samples.directions[3 * k];
   }
-  const EntropyMaps maps = Evaluate(samples), other = Evaluate(turned);
+  const EntropyMaps maps = EvaluateAngular(samples),
+                    other = EvaluateAngular(turned);
   for (size_t k = 0; k < maps.entropy.size(); ++k) {
     EXPECT_NEAR(maps.entropy[k], other.entropy[k], kTurned);
   }
@@ -266,7 +268,7 @@ TEST(AngularEntropy, IsFiniteForAnyInput) {
         samples.incoming[samples.outgoing.size() - 1 - k] = value;
       }
       samples.irradiance[4] = value;
-      const EntropyMaps maps = Evaluate(samples, options);
+      const EntropyMaps maps = EvaluateAngular(samples, options);
       for (size_t k = 0; k < maps.entropy.size(); ++k) {
         EXPECT_TRUE(maps.entropy[k] >= 0.0f && maps.entropy[k] <= 1.0f)
             << value;

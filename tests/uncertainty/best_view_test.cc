@@ -12,11 +12,11 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kTexels = 12, kViews = 24;
+constexpr int kTexels = 12, kCandidateViews = 24;
 
 TexelSamples Candidates() {
   std::mt19937 rng(41);
-  TexelSamples samples = EmptySamples(kTexels, kViews);
+  TexelSamples samples = EmptySamples(kTexels, kCandidateViews);
   RandomDirections(&rng, &samples);
   FillByModel(4, 0.2, 0.6, 0.2, &rng, &samples);
   return samples;
@@ -37,7 +37,8 @@ TexelSamples Only(const TexelSamples& samples, const std::vector<int>& views) {
   out.weight.assign(out.weight.size(), 0.0f);
   for (int texel = 0; texel < out.num_texels; ++texel) {
     for (const int view : views) {
-      out.weight[texel * kViews + view] = samples.weight[texel * kViews + view];
+      out.weight[texel * kCandidateViews + view] =
+          samples.weight[texel * kCandidateViews + view];
     }
   }
   return out;
@@ -127,8 +128,8 @@ TEST(BestViewSearch, GivesTheSameBitsForAnyNumberOfThreads) {
 TEST(BestViewSearch, AViewThatSeesNothingGainsNothing) {
   TexelSamples samples = Candidates();
   for (int texel = 0; texel < kTexels; ++texel) {
-    samples.weight[texel * kViews + 6] = 0.0f;
-    samples.weight[texel * kViews + 9] = 0.0f;
+    samples.weight[texel * kCandidateViews + 6] = 0.0f;
+    samples.weight[texel * kCandidateViews + 9] = 0.0f;
   }
   BestViewSearch search(samples, SmallGrid(), 1);
   search.Add(2, true);
@@ -140,11 +141,11 @@ TEST(BestViewSearch, AViewThatSeesNothingGainsNothing) {
 TEST(BestViews, StopWhereNoneIsLeft) {
   const TexelSamples samples = Candidates();
   const std::vector<int> views =
-      BestViews(samples, {4, 1}, kViews + 5, true, SmallGrid(), 1);
-  ASSERT_EQ(static_cast<size_t>(kViews), views.size());
+      BestViews(samples, {4, 1}, kCandidateViews + 5, true, SmallGrid(), 1);
+  ASSERT_EQ(static_cast<size_t>(kCandidateViews), views.size());
   EXPECT_EQ(4, views[0]);
   EXPECT_EQ(1, views[1]);
-  std::vector<bool> seen(kViews, false);
+  std::vector<bool> seen(kCandidateViews, false);
   for (const int view : views) {
     EXPECT_FALSE(seen[view]);
     seen[view] = true;

@@ -127,8 +127,9 @@ TexelSamples Samples(int num_texels, int num_views, double alpha, double Ks,
   return samples;
 }
 
-EntropyMaps Evaluate(const TexelSamples& samples,
-                     const SpectrumOptions& options = {}, int threads = 1) {
+EntropyMaps EvaluateSpectrum(const TexelSamples& samples,
+                             const SpectrumOptions& options = {},
+                             int threads = 1) {
   return SpectrumEntropyEvaluator(options).Evaluate(samples, threads).value();
 }
 
@@ -137,7 +138,7 @@ TEST(SpectrumEntropy, IsOneWhereNothingIsSeen) {
   for (int view = 0; view < 60; ++view) samples.weight[11 * 60 + view] = 0.0f;
   for (const SpectrumOptions& options :
        {SpectrumOptions(), SpectrumOptions::Published(1e-5)}) {
-    const EntropyMaps maps = Evaluate(samples, options);
+    const EntropyMaps maps = EvaluateSpectrum(samples, options);
     for (int c = 0; c < 3; ++c) {
       EXPECT_EQ(1.0f, maps.entropy[33 + c]);
       EXPECT_GT(1.0f, maps.entropy[30 + c]);
@@ -153,18 +154,18 @@ TEST(SpectrumEntropy, IsHighUnderConstantLight) {
     samples.incoming[k] = 1.0f;
     samples.outgoing[k] = 0.7f;
   }
-  for (const float H : Evaluate(samples).entropy) EXPECT_GE(H, 0.98f);
+  for (const float H : EvaluateSpectrum(samples).entropy) EXPECT_GE(H, 0.98f);
 }
 
 TEST(SpectrumEntropy, DoesNotDependOnTheExposure) {
   const TexelSamples samples = Samples(40, 80, 0.15, 0.5, 0.3);
-  const EntropyMaps maps = Evaluate(samples);
+  const EntropyMaps maps = EvaluateSpectrum(samples);
   for (const double factor : {1024.0, 1.0 / 4096.0, 1.7, 333.3, 1e-3}) {
     TexelSamples scaled = samples;
     scaled.mean_radiance *= factor;
     for (float& x : scaled.incoming) x *= static_cast<float>(factor);
     for (float& x : scaled.outgoing) x *= static_cast<float>(factor);
-    const EntropyMaps other = Evaluate(scaled);
+    const EntropyMaps other = EvaluateSpectrum(scaled);
     int exponent = 0;
     const bool power_of_two = std::frexp(factor, &exponent) == 0.5;
     for (size_t k = 0; k < maps.entropy.size(); ++k) {
@@ -176,8 +177,8 @@ TEST(SpectrumEntropy, DoesNotDependOnTheExposure) {
 
 TEST(SpectrumEntropy, DoesNotDependOnThreadsOrTheOrderOfViews) {
   const TexelSamples samples = Samples(900, 30, 0.15, 0.5, 0.3);
-  const EntropyMaps one = Evaluate(samples, {}, 1);
-  EXPECT_EQ(one.entropy, Evaluate(samples, {}, 2).entropy);
+  const EntropyMaps one = EvaluateSpectrum(samples, {}, 1);
+  EXPECT_EQ(one.entropy, EvaluateSpectrum(samples, {}, 2).entropy);
   TexelSamples reversed = samples;
   for (int texel = 0; texel < 900; ++texel) {
     for (int view = 0; view < 30; ++view) {
@@ -189,7 +190,7 @@ TEST(SpectrumEntropy, DoesNotDependOnThreadsOrTheOrderOfViews) {
       }
     }
   }
-  const EntropyMaps other = Evaluate(reversed);
+  const EntropyMaps other = EvaluateSpectrum(reversed);
   for (size_t k = 0; k < one.entropy.size(); ++k) {
     EXPECT_NEAR(one.entropy[k], other.entropy[k], 1e-5);
   }
@@ -206,7 +207,8 @@ TEST(SpectrumEntropy, DoesNotDependOnTheAxesOfTheFrame) {
     turned.directions[3 * k] = c * w[0] - s * w[1];
     turned.directions[3 * k + 1] = s * w[0] + c * w[1];
   }
-  const EntropyMaps maps = Evaluate(samples), other = Evaluate(turned);
+  const EntropyMaps maps = EvaluateSpectrum(samples),
+                    other = EvaluateSpectrum(turned);
   for (size_t k = 0; k < maps.entropy.size(); ++k) {
     EXPECT_NEAR(maps.entropy[k], other.entropy[k], kTurned);
   }
@@ -221,7 +223,7 @@ TEST(SpectrumEntropy, FindsTheParametersOfItsOwnModel) {
   options.fit.order = 3;
   options.fit.lambda = 1e-9;
   TexelSamples samples = Samples(30, 300, alpha, Ks, 0.2, 3);
-  const EntropyMaps maps = Evaluate(samples, options);
+  const EntropyMaps maps = EvaluateSpectrum(samples, options);
   for (size_t k = 0; k < maps.alpha.size(); ++k) {
     EXPECT_NEAR(alpha, maps.alpha[k], 1e-6);
     EXPECT_NEAR(Ks, maps.Ks[k], 1e-6);
@@ -230,11 +232,11 @@ TEST(SpectrumEntropy, FindsTheParametersOfItsOwnModel) {
   // Light smoothed before: undone, the same parameters are found.
   samples.incoming = Samples(30, 300, 0.3, 1.0, 0.0, 3).outgoing;
   samples.prefilter_alpha = 0.3;
-  for (const float found : Evaluate(samples, options).alpha) {
+  for (const float found : EvaluateSpectrum(samples, options).alpha) {
     EXPECT_NEAR(alpha, found, 1e-6);
   }
   options.undo_prefilter = false;
-  for (const float found : Evaluate(samples, options).alpha) {
+  for (const float found : EvaluateSpectrum(samples, options).alpha) {
     EXPECT_GT(alpha, found);
   }
 }
@@ -251,7 +253,7 @@ TEST(SpectrumEntropy, IsFiniteForAnyInput) {
           samples.outgoing[k] = value;
           samples.incoming[samples.outgoing.size() - 1 - k] = value;
         }
-        const EntropyMaps maps = Evaluate(samples, options);
+        const EntropyMaps maps = EvaluateSpectrum(samples, options);
         for (size_t k = 0; k < maps.entropy.size(); ++k) {
           EXPECT_TRUE(maps.entropy[k] >= 0.0f && maps.entropy[k] <= 1.0f)
               << value;
@@ -269,7 +271,7 @@ TEST(SpectrumEntropy, APriorNarrowsIt) {
   options.prior[20] = 1.0;
   TexelSamples unseen = EmptySamples(1, 4);
   unseen.weight.assign(4, 0.0f);
-  EXPECT_LT(Evaluate(unseen, options).entropy[0], 0.01f);
+  EXPECT_LT(EvaluateSpectrum(unseen, options).entropy[0], 0.01f);
 }
 
 TEST(SpectrumOptions, BadOnesAreNamed) {

@@ -133,7 +133,7 @@ TEST(Interreflection, PatchesAreOfTheMaterialOfThePointsNearThem) {
 
 // White walls under constant light look like the light, whatever their shape.
 TEST(Interreflection, WhiteObjectInConstantLightDisappears) {
-  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(64, 32)).value();
   const std::vector<ShadingPoint> points =
       FindShadingPoints(scene, TorusCamera(), 24, 24, Mask(), 1).value();
   const Image map = ConstantMap(32, 64, 1.0f);
@@ -157,7 +157,7 @@ TEST(Interreflection, WhiteObjectInConstantLightDisappears) {
 
 // A large image is transported slice by slice.
 TEST(Interreflection, SlicesOfThePointsHaveTheRadianceOfAll) {
-  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(64, 32)).value();
   const std::vector<ShadingPoint> all =
       FindShadingPoints(scene, TorusCamera(), 24, 24, Mask(), 1).value();
   const Image map = SmoothMap(32, 64);
@@ -181,7 +181,7 @@ TEST(Interreflection, SlicesOfThePointsHaveTheRadianceOfAll) {
 // Patches are patches seen from a few sides; brute force knows none. The
 // sharper the lobe, the more of the bounce that misses.
 TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {
-  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(64, 32)).value();
   const std::vector<ShadingPoint> all =
       FindShadingPoints(scene, TorusCamera(), 40, 40, Mask(), 1).value();
   const Image map = SmoothMap(32, 64);
@@ -226,7 +226,7 @@ TEST(Interreflection, AgreesWithBruteForceFromMatteToGlossy) {
 // A mirror-like torus in itself: patches blur what narrow lobes show, rays of
 // the lobes' own do not. One bounce, at points whose mirrored view is hidden.
 TEST(Interreflection, RaysOfNarrowLobesAgreeWithBruteForce) {
-  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(64, 32)).value();
   const std::vector<ShadingPoint> all =
       FindShadingPoints(scene, TorusCamera(), 32, 32, Mask(), 1).value();
   std::vector<ShadingPoint> points;
@@ -295,7 +295,7 @@ TEST(Interreflection, ConvexObjectsHaveNoPatchesAndTheSameBits) {
 // Patches stand for what is seen: next to no light is lost, and their number
 // is kept.
 TEST(Interreflection, PatchesCoverWhatIsSeenWithinTheirNumber) {
-  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(64, 32)).value();
   const std::vector<ShadingPoint> points =
       FindShadingPoints(scene, TorusCamera(), 48, 48, Mask(), 1).value();
   for (const int most : {6000, 200}) {
@@ -329,7 +329,7 @@ TEST(Interreflection, PatchesCoverWhatIsSeenWithinTheirNumber) {
 // Smooth surfaces give back nearly all light at grazing angles, where a table
 // between its nodes gives back more: bounces must not build that up.
 TEST(Interreflection, GlossyObjectsInConstantLightStayDarkerThanIt) {
-  const Scene scene = Scene::FromMesh(TorusMesh(64, 32)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(64, 32)).value();
   const std::vector<ShadingPoint> points =
       FindShadingPoints(scene, TorusCamera(), 24, 24, Mask(), 1).value();
   const TransportOptions options = WithBounces(scene, points, 4);
@@ -353,7 +353,7 @@ TEST(Interreflection, GlossyObjectsInConstantLightStayDarkerThanIt) {
 class BouncedDerivatives : public ::testing::TestWithParam<int> {
  protected:
   BouncedDerivatives()
-      : scene_(Scene::FromMesh(TorusMesh(64, 32)).value()),
+      : scene_(Scene::FromMesh(UnitTorusMesh(64, 32)).value()),
         points_(
             FindShadingPoints(scene_, TorusCamera(), 9, 9, Mask(), 1).value()),
         options_(WithBounces(scene_, points_, GetParam(), Few())),

@@ -157,7 +157,7 @@ TEST(Visibility, FacetsOfASmoothSphereHideNothing) {
 }
 
 TEST(Visibility, TorusMatchesARayForEveryDirection) {
-  const Scene scene = Scene::FromMesh(TorusMesh(48, 24)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(48, 24)).value();
   const auto points =
       FindShadingPoints(scene, TorusCamera(), 14, 14, Mask(), 1).value();
   const Visibility visibility(scene, points, {});
@@ -222,7 +222,7 @@ TEST(Visibility, BilinearAndSharesAgreeWithTheirDefinition) {
 }
 
 TEST(Visibility, SameBitsForAnyNumberOfThreadsAndAnySelection) {
-  const Scene scene = Scene::FromMesh(TorusMesh(32, 16)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(32, 16)).value();
   const auto points =
       FindShadingPoints(scene, TorusCamera(), 20, 20, Mask(), 1).value();
   const Visibility one(scene, points, {64, 1}), three(scene, points, {64, 3});
@@ -313,7 +313,7 @@ class PlainTrace {
 };
 
 TEST(VisibilityGrid, PacketsGiveTheBitsOfSingleRays) {
-  const Scene scene = Scene::FromMesh(TorusMesh(48, 24)).value();
+  const Scene scene = Scene::FromMesh(UnitTorusMesh(48, 24)).value();
   const std::vector<ShadingPoint> points =
       FindShadingPoints(scene, TorusCamera(), 16, 16, Mask(), 1).value();
   int shadowed = 0;
@@ -333,7 +333,7 @@ TEST(VisibilityGrid, PacketsGiveTheBitsOfSingleRays) {
 }
 
 TEST(Scene, ManyDirectionsAreAsOneByOne) {
-  const Scene torus = Scene::FromMesh(TorusMesh(48, 24)).value();
+  const Scene torus = Scene::FromMesh(UnitTorusMesh(48, 24)).value();
   const ShadingPoint point =
       FindShadingPoints(torus, TorusCamera(), 16, 16, Mask(), 1).value()[40];
   std::mt19937 rng(6);

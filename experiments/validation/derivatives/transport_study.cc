@@ -260,7 +260,7 @@ void StudyTransport(const StudyOptions& options, ErrorTable* table) {
   AddScene("sun alone", sphere, directional_light, glossy, plain, table);
   AddScene("grazing", grazing, SmoothMap(32, 64), glossy, plain, table);
 
-  const Scene torus = Scene::FromMesh(testing::TorusMesh(32, 16)).value();
+  const Scene torus = Scene::FromMesh(testing::UnitTorusMesh(32, 16)).value();
   const std::vector<ShadingPoint> points =
       FindShadingPoints(torus, testing::TorusCamera(), side, side, Mask(), 1)
           .value();
