@@ -284,8 +284,8 @@ struct SolverSpec {
   SolverEstimator estimator = SolverEstimator::kMarginal;
   SolverMethod method = SolverMethod::kAuto;
   QuadratureLevel quadrature = QuadratureLevel::kStandard;
-  SolverGauge gauge = SolverGauge::kPrior;  // of joint problems
-  double seconds = 120.0;                   // wall-clock budget, > 0
+  SolverGauge gauge = SolverGauge::kGreyLight;  // of joint problems
+  double seconds = 120.0;                       // wall-clock budget, > 0
   double tolerance = 1e-4;    // relative decrease of the cost to stop at, >= 0
   int max_iterations = 1000;  // >= 0
   std::optional<int64_t> seed;  // unset: the program's --seed

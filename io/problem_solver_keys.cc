@@ -52,13 +52,13 @@ Row GaugeKey() {
   return Row("solver.gauge",
              "What sets the scale between reflectance and light, which no "
              "image tells ([conventions](conventions.md#scale)).")
-      .Choice("prior",
+      .Choice("grey_light",
               {{"prior",
                 "The priors: the level is that of the training materials, the "
                 "hue the most probable one."},
                {"grey_light",
-                "The light's mean over the sphere is grey. Its level is that "
-                "of `prior`."},
+                "The light's mean over the sphere is grey, as photographers "
+                "balance it. Its level is that of `prior`."},
                {"unit_light",
                 "The light's mean over the sphere is 1 in every channel."}})
       .Needs("problem: joint")

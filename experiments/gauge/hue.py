@@ -34,6 +34,8 @@ def mean_log_ratio(estimate, truth):
 
 def hues(folder, data):
     result = json.loads((folder / "result.json").read_text())
+    if result["problem"]["solver"]["gauge"] != "prior":
+        raise SystemExit(f"{folder}: not solved with solver.gauge: prior")
     truth = result["problem"].get("truth", {}).get("brdf")
     if truth is None:
         return None

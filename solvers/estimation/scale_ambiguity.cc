@@ -21,16 +21,36 @@ constexpr double kFloor = 1e-9;  // 1/sr
 // mean log radiance (experiments/light_statistics).
 constexpr double kLightChromaStd = 0.35;
 
-// Lobes, and a table's raw values, times exp(shift).
-void ScaleReflectance(const Eigen::Array3d& shift, int code_size,
-                      std::vector<double>* lobes, std::vector<double>* raw) {
+void ScaleLobes(const Eigen::Array3d& shift, int code_size,
+                std::vector<double>* lobes) {
+  if (lobes->empty()) return;
   MutableLobeMixture(LobeLayout::OfSize(lobes->size(), code_size),
                      lobes->data())
       .ShiftColours(shift);
+}
+
+void ScaleSlice(const Eigen::Array3d& scale, BrdfSlice* slice) {
+  for (int c = 0; c < 3; ++c) {
+    for (std::vector<double>* values :
+         {&slice->value[c], &slice->low[c], &slice->high[c]}) {
+      for (double& v : *values) v *= scale[c];
+    }
+  }
+}
+
+// All that is said of a material's reflectance, times exp(shift).
+void ScaleReflectance(const Eigen::Array3d& shift, int code_size,
+                      MaterialSolution* material) {
   const Eigen::Array3d scale = shift.exp();
-  for (size_t i = 0; i < raw->size(); ++i) {
+  ScaleLobes(shift, code_size, &material->lobe_parameters);
+  for (Alternative& other : material->alternatives) {
+    ScaleLobes(shift, code_size, &other.lobe_parameters);
+  }
+  for (BrdfSlice& slice : material->slices) ScaleSlice(scale, &slice);
+  std::vector<double>& raw = material->brdf.raw;
+  for (size_t i = 0; i < raw.size(); ++i) {
     // Negative values mark invalid bins.
-    if ((*raw)[i] > 0.0) (*raw)[i] *= scale[i / kMerlBins];
+    if (raw[i] > 0.0) raw[i] *= scale[i / kMerlBins];
   }
 }
 
@@ -113,9 +133,12 @@ void SettleScale(const SolveSetup& setup, Iterate* iterate) {
 
 Eigen::Array3d LightGaugeShift(SolverGauge gauge, const Image& map) {
   if (gauge == SolverGauge::kPrior) return Eigen::Array3d::Zero();
-  const Eigen::Array3d log_mean = MeanRadiance(map).log();
-  if (!log_mean.isFinite().all()) return Eigen::Array3d::Zero();
-  if (gauge == SolverGauge::kUnitLight) return log_mean;
+  const Eigen::Array3d mean = MeanRadiance(map);
+  if (!mean.log().isFinite().all()) return Eigen::Array3d::Zero();
+  if (gauge == SolverGauge::kUnitLight) return mean.log();
+  // By a power of two, so that another unit of radiance leaves all bits.
+  const Eigen::Array3d log_mean =
+      (mean * std::exp2(-std::ilogb(mean[1]))).log();
   return log_mean - log_mean.mean();
 }
 
@@ -126,11 +149,9 @@ void SetGauge(SolverGauge gauge, int code_size, Solution* solution) {
   for (size_t i = 0; i < map.size(); ++i) {
     map[i] = static_cast<float>(map[i] / scale[i % 3]);
   }
-  ScaleReflectance(shift, code_size, &solution->lobe_parameters,
-                   &solution->brdf.raw);
+  ScaleReflectance(shift, code_size, &solution->reflectance());
   for (MaterialSolution& material : solution->materials) {
-    ScaleReflectance(shift, code_size, &material.lobe_parameters,
-                     &material.brdf.raw);
+    ScaleReflectance(shift, code_size, &material);
   }
   std::vector<float>& albedo = solution->albedo.rgb;
   for (size_t i = 0; i < albedo.size(); ++i) {

@@ -64,8 +64,8 @@ void SettleScale(const SolveSetup& setup, Iterate* iterate);
 // mean radiance is not positive and finite in every channel.
 Eigen::Array3d LightGaugeShift(SolverGauge gauge, const Image& map);
 
-// Moves that from the map of a joint estimate to its lobes, of codes of this
-// size, and table.
+// Moves that from the map of a joint estimate to its reflectances: lobes, of
+// codes of this size, tables, slices and alternatives.
 void SetGauge(SolverGauge gauge, int code_size, Solution* solution);
 
 }  // namespace ibrdf

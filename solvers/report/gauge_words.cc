@@ -1,6 +1,15 @@
 #include "ibrdf/solvers/report/gauge_words.h"
 
 namespace ibrdf {
+namespace {
+
+std::string LevelWords(SolverEstimator estimator) {
+  return estimator == SolverEstimator::kMarginal
+             ? "mean log reflectance that of the training materials"
+             : "level: least prior cost of log colours (training materials)";
+}
+
+}  // namespace
 
 std::string GaugeWords(const InverseProblem& inverse) {
   if (inverse.known_map.has_value()) return "set by the known illumination";
@@ -8,7 +17,8 @@ std::string GaugeWords(const InverseProblem& inverse) {
   switch (inverse.solver.gauge) {
     case SolverGauge::kGreyLight:
       return "scale between reflectance and light: the light's mean radiance "
-             "is grey; level: as with gauge: prior";
+             "is grey; " +
+             LevelWords(inverse.solver.estimator);
     case SolverGauge::kUnitLight:
       return "scale between reflectance and light: the light's mean radiance "
              "is 1 in every channel";

@@ -42,10 +42,10 @@ StatusOr<Solution> TakeTurn(const SolveSetup& setup,
   if (!of_light.ok()) return of_light.status();
   StatusOr<Estimate> estimate = EstimateLight(*of_light, found, context);
   if (!estimate.ok()) return estimate.status();
-  Solution solution = Summarise(*of_light, *std::move(estimate), context);
   // Render and gloss are of the light that was found, not of that before.
-  *unpainted = RenderUnpainted(setup, paint.reflectance, solution.map.rgb,
-                               {solution.map.width, solution.map.height});
+  Solution solution = Summarise(*of_light, *std::move(estimate), context,
+                                UnpaintedRenders(paint.reflectance, unpainted));
+  TakeMatteOff(unpainted);
   ScalePixels(PaintGain(*unpainted, log_albedo), points, &solution.render);
   SetPaint(setup, paint.reflectance, *unpainted, log_albedo, &solution);
   return solution;
@@ -84,6 +84,7 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
     if (!next.ok()) return next;
     if (next->misfit < solution->misfit) solution = std::move(next);
   }
+  if (solution.ok()) solution->seconds = context->Elapsed();
   return solution;
 }
 

@@ -96,6 +96,7 @@ StatusOr<Solution> SolvePaintedUnderKnownLight(const SolveSetup& setup,
     if (!next.ok()) return next;
     solution = std::move(next);
   }
+  if (solution.ok()) solution->seconds = context->Elapsed();
   return solution;
 }
 

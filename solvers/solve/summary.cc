@@ -53,14 +53,24 @@ View ViewOf(const JointState& state, const LightPriors& priors,
   return view;
 }
 
-// Radiance and likelihood of the views at every pixel.
+void AddRenders(const std::vector<BesideRender>& beside, const float* map,
+                std::vector<PixelRender>* renders) {
+  for (const BesideRender& render : beside) {
+    renders->push_back({render.brdfs, map, render.radiance});
+  }
+}
+
+// Radiance and likelihood of the views at every pixel, and what is rendered
+// beside the last.
 void RenderViews(const SolveSetup& setup, const Estimate& estimate,
-                 const std::vector<View*>& views) {
+                 const std::vector<View*>& views,
+                 const std::vector<BesideRender>& beside) {
   std::vector<PixelRender> renders;
   for (View* const view : views) {
     renders.push_back(
         {ByMaterial(view->grids), view->map.data(), &view->radiance});
   }
+  AddRenders(beside, views.back()->map.data(), &renders);
   RenderPixels(setup, SizeOf(estimate.iterate.light, setup), renders);
   for (View* const view : views) {
     const LikelihoodValue value = EvaluateLikelihood(
@@ -174,7 +184,8 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
 }
 
 Solution Summarise(const SolveSetup& setup, Estimate estimate,
-                   SolveContext* context) {
+                   SolveContext* context,
+                   const std::vector<BesideRender>& beside) {
   const InverseProblem& problem = *setup.problem;
   const int num_pixels = setup.pixels.observed.num_valid;
   const double scale = estimate.iterate.scale;
@@ -183,7 +194,7 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
                       setup, estimate);
   View last = ViewOf(estimate.iterate.state, estimate.iterate.light.priors,
                      estimate.iterate.ambient, setup, estimate);
-  RenderViews(setup, estimate, {&first, &last});
+  RenderViews(setup, estimate, {&first, &last}, beside);
   const TraceEntry start = MakeEntry("start", setup, *context, num_pixels,
                                      scale, reference.state, first.cost);
   TraceEntry end = MakeEntry("end", setup, *context, num_pixels, scale,
@@ -194,6 +205,9 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
     last = std::move(first);
     end = start;
     end.stage = "end";
+    std::vector<PixelRender> again;
+    AddRenders(beside, last.map.data(), &again);
+    RenderPixels(setup, SizeOf(estimate.iterate.light, setup), again);
     solution.status =
         Status(StatusCode::kNoImprovement,
                "the solver could not improve on its initial guess");

@@ -1,9 +1,12 @@
 // The end of a solve: the estimate at every pixel, held against its reference.
 #pragma once
+#include <vector>
+
 #include "ibrdf/solvers/estimation/posterior.h"
 #include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/estimation/solve_context.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
+#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 
@@ -19,11 +22,19 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
                                       const std::vector<double>& lobes,
                                       const ReflectanceEstimate& reflectance);
 
+// What is to be rendered under the solution's map too, and where to [pixels *
+// 3]: a second pass over all pixels would cost as much again.
+struct BesideRender {
+  MaterialGrids brdfs;
+  std::vector<double>* radiance = nullptr;
+};
+
 // Renders every pixel, evaluates cost and misfit and, of the reflectance, the
 // table, the spread of its posterior and the other candidates. Where the
 // estimate's cost is not below the reference's, the reference is the solution,
 // with the status kNoImprovement.
 Solution Summarise(const SolveSetup& setup, Estimate estimate,
-                   SolveContext* context);
+                   SolveContext* context,
+                   const std::vector<BesideRender>& beside = {});
 
 }  // namespace ibrdf

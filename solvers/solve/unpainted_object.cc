@@ -22,13 +22,25 @@ UnpaintedRadiance RenderUnpainted(const SolveSetup& setup,
                                   const UnpaintedReflectance& reflectance,
                                   const std::vector<float>& map, MapSize size) {
   UnpaintedRadiance out;
-  RenderPixels(setup, size,
-               {{{&reflectance.matte}, map.data(), &out.matte},
-                {{&reflectance.whole}, map.data(), &out.gloss}});
-  for (size_t i = 0; i < out.gloss.size(); ++i) {
-    out.gloss[i] = std::max(out.gloss[i] - out.matte[i], 0.0);
+  std::vector<PixelRender> renders;
+  for (const BesideRender& part : UnpaintedRenders(reflectance, &out)) {
+    renders.push_back({part.brdfs, map.data(), part.radiance});
   }
+  RenderPixels(setup, size, renders);
+  TakeMatteOff(&out);
   return out;
+}
+
+std::vector<BesideRender> UnpaintedRenders(
+    const UnpaintedReflectance& reflectance, UnpaintedRadiance* out) {
+  return {{{&reflectance.matte}, &out->matte},
+          {{&reflectance.whole}, &out->gloss}};
+}
+
+void TakeMatteOff(UnpaintedRadiance* out) {
+  for (size_t i = 0; i < out->gloss.size(); ++i) {
+    out->gloss[i] = std::max(out->gloss[i] - out->matte[i], 0.0);
+  }
 }
 
 void ScalePixels(const std::vector<double>& factors,

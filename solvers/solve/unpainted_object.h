@@ -9,6 +9,7 @@
 #include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
+#include "ibrdf/solvers/solve/summary.h"
 
 namespace ibrdf {
 
@@ -25,6 +26,12 @@ UnpaintedReflectance UnpaintedOf(const LobeModel& lobes,
 UnpaintedRadiance RenderUnpainted(const SolveSetup& setup,
                                   const UnpaintedReflectance& reflectance,
                                   const std::vector<float>& map, MapSize size);
+
+// The same in two steps: what is to be rendered to `out`, which must outlive
+// it, and, after that, the matte part taken off.
+std::vector<BesideRender> UnpaintedRenders(
+    const UnpaintedReflectance& reflectance, UnpaintedRadiance* out);
+void TakeMatteOff(UnpaintedRadiance* out);
 
 // Multiplies the image at the pixels of points by factors [points * 3].
 void ScalePixels(const std::vector<double>& factors,

@@ -109,6 +109,18 @@ TEST(LightGauge, GreyLightKeepsTheLevel) {
   EXPECT_NEAR(MeanRadiance(map).log().mean(), std::log(mean[0]), 1e-12);
 }
 
+TEST(LightGauge, UnitsOfRadianceLeaveTheBitsOfGreyLight) {
+  const Image map = Reddish();
+  const Eigen::Array3d shift = LightGaugeShift(SolverGauge::kGreyLight, map);
+  for (const int exponent : {-100, -3, 100}) {
+    Image scaled = map;
+    for (float& v : scaled.rgb) v = std::ldexp(v, exponent);
+    EXPECT_TRUE(
+        (LightGaugeShift(SolverGauge::kGreyLight, scaled) == shift).all())
+        << exponent;
+  }
+}
+
 TEST(LightGauge, UnitLightHasMeanOneInAnyUnit) {
   Image map = Reddish();
   for (const float unit : {1e-20f, 1.0f, 1e20f}) {
@@ -213,9 +225,17 @@ TEST(SetGauge, MovesTheLightAndAllMaterials) {
   material.lobe_parameters = {0.1, 1.0, 2.0, 3.0, 0.2, 4.0, 5.0, 6.0};
   material.brdf.raw.assign(size_t{3} * kMerlBins, 2.0);
   material.brdf.raw[7] = -1.0;  // invalid
+  material.alternatives = {{"other", 0.0, 0.0, material.lobe_parameters},
+                           {"without lobes"}};
+  material.slices.resize(1);
+  material.slices[0].value.fill({3.0, 4.0});
+  material.slices[0].low.fill({1.0});
+  material.slices[0].high.fill({9.0});
   solution.materials = {material, material};
   solution.lobe_parameters = material.lobe_parameters;
   solution.brdf = material.brdf;
+  solution.alternatives = material.alternatives;
+  solution.slices = material.slices;
   const Eigen::Array3d shift = LightGaugeShift(SolverGauge::kUnitLight, before);
   ASSERT_GT(std::abs(shift[0] - shift[2]), 0.1);
   SetGauge(SolverGauge::kUnitLight, 1, &solution);
@@ -223,6 +243,10 @@ TEST(SetGauge, MovesTheLightAndAllMaterials) {
     EXPECT_EQ(solution.lobe_parameters, moved.lobe_parameters);
     EXPECT_EQ(solution.brdf.raw, moved.brdf.raw);
     EXPECT_EQ(-1.0, moved.brdf.raw[7]);
+    EXPECT_EQ(moved.lobe_parameters, moved.alternatives[0].lobe_parameters);
+    EXPECT_EQ(solution.alternatives[0].lobe_parameters,
+              moved.alternatives[0].lobe_parameters);
+    EXPECT_TRUE(moved.alternatives[1].lobe_parameters.empty());
     for (int c = 0; c < 3; ++c) {
       EXPECT_NEAR(1.0 + c + shift[c], moved.lobe_parameters[1 + c], 1e-12);
       EXPECT_NEAR(4.0 + c + shift[c], moved.lobe_parameters[5 + c], 1e-12);
@@ -230,6 +254,12 @@ TEST(SetGauge, MovesTheLightAndAllMaterials) {
                   moved.brdf.raw[size_t{kMerlBins} * c + 8], 1e-12);
       EXPECT_NEAR(before.rgb[c] / std::exp(shift[c]), solution.map.rgb[c],
                   1e-5);
+      const double factor = std::exp(shift[c]);
+      for (const BrdfSlice& slice : {moved.slices[0], solution.slices[0]}) {
+        EXPECT_NEAR(4.0 * factor, slice.value[c][1], 1e-12);
+        EXPECT_NEAR(1.0 * factor, slice.low[c][0], 1e-12);
+        EXPECT_NEAR(9.0 * factor, slice.high[c][0], 1e-12);
+      }
     }
   }
 }

@@ -12,8 +12,8 @@ namespace {
 
 TEST_F(ProblemFile, GaugesAreOfJointProblems) {
   const std::string least = kLeast;
-  EXPECT_EQ(SolverGauge::kGreyLight,
-            Read(least + "solver: {gauge: grey_light}")->solver.gauge);
+  EXPECT_EQ(SolverGauge::kPrior,
+            Read(least + "solver: {gauge: prior}")->solver.gauge);
   EXPECT_EQ(SolverGauge::kUnitLight,
             Read(least + "solver: {gauge: unit_light}")->solver.gauge);
 }

@@ -140,8 +140,8 @@ TEST(ReportPage, ShowsWhatTheResultHolds) {
            Format("%.2g at such a spread (a factor of 1.5", error.median),
            Format("%.2g", error.most),
            "<section class=\"verdict\">",
-           "Trust, with care, the light&#39;s directions and the object&#39;s "
-           "gloss",
+           "Trust, with care, the light&#39;s directions, the object&#39;s hue "
+           "and the object&#39;s gloss",
            "the sphere is convex",
            "time (s)",
            "</svg>"}) {

@@ -195,6 +195,7 @@ TEST(Verdict, NumbersThatWereNotFoundAreFairAtBest) {
 // Half of the light, not of the sphere, and the summed colours of the lobes.
 TEST(VerdictNumbers, AreThoseOfWhatIsSeen) {
   Problem problem;
+  problem.solver.gauge = SolverGauge::kPrior;
   InverseProblem inverse;
   inverse.model = std::make_shared<const NeuralBrdfModel>(TinyModel(1));
   inverse.points.resize(50);
@@ -228,6 +229,10 @@ TEST(VerdictNumbers, AreThoseOfWhatIsSeen) {
   EXPECT_NEAR(ExpectError(std::sqrt(2 * 0.09 / 3)).median, n.hue_error, 1e-3);
   EXPECT_EQ(50, n.object_pixels);
   EXPECT_EQ(40, n.used_pixels);
+  // Where the gauge sets the hue its error is that of the gauge.
+  problem.solver.gauge = SolverGauge::kGreyLight;
+  EXPECT_EQ(0.2, NumbersForVerdict({problem, inverse, truth, solution, metrics})
+                     .hue_error);
   EXPECT_TRUE(std::isnan(n.misfit));
 }
 

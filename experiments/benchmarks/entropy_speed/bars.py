@@ -61,7 +61,7 @@ def prepare(args):
     write(args.out / "scene.yaml", {"image": {"width": args.pixels, "height": args.pixels},
                                     "views": views_of(args, False), "geometry": geometry,
                                     "reflectance": {"known": {"principled": {"roughness": 0.4}}}, "illumination": light,
-                                    "quality": "preview"})
+                                    "quality": "preview", "effects": "none"})
     subprocess.run([args.bin / "ibrdf_render", "--scene", args.out / "scene.yaml", "--out", args.out / "renders",
                     "--quiet", "--threads", str(args.threads)], check=True)
 
