@@ -8,63 +8,18 @@ import math
 import pathlib
 import random
 import subprocess
+import sys
 import time
 
-FOLDS = (
-    "pink-jasper,green-plastic,aluminium,white-marble,black-oxidized-steel,"
-    "red-plastic,blue-metallic-paint2,nickel,specular-green-phenolic,green-latex",
-    "pink-fabric2,polyethylene,dark-blue-paint,silicon-nitrade,pure-rubber,"
-    "dark-specular-fabric,tungsten-carbide,brass,red-fabric2,"
-    "specular-orange-phenolic",
-)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
+from cases import (FOV, fibonacci_sphere, geometry_of, look_at_origin, model_without, perspective_view,  # noqa: E402
+                   solve, write_problem)
+
 COLUMNS = (
     "material", "map", "shape", "second", "candidate", "gain_nats",
     "information_nats", "seconds", "misfit", "brdf_log_rmse_aligned",
     "illumination_relative_log_rmse_aligned",
 )
-FOV, DISTANCE = 32.0, 4.0
-
-
-def look_at_origin(direction):
-    """Rows of the pose of a camera that stands there, y up."""
-    back = direction
-    up = (0.0, 0.0, 1.0) if abs(back[1]) > 0.99 else (0.0, 1.0, 0.0)
-    right = (up[1] * back[2] - up[2] * back[1], up[2] * back[0] - up[0] * back[2],
-             up[0] * back[1] - up[1] * back[0])
-    norm = math.sqrt(sum(x * x for x in right))
-    right = tuple(x / norm for x in right)
-    up = (back[1] * right[2] - back[2] * right[1], back[2] * right[0] - back[0] * right[2],
-          back[0] * right[1] - back[1] * right[0])
-    return [[right[i], up[i], back[i], DISTANCE * back[i]] for i in range(3)] + [[0, 0, 0, 1]]
-
-
-def candidates(count):
-    """Directions of a Fibonacci sphere."""
-    golden = math.pi * (3.0 - math.sqrt(5.0))
-    out = []
-    for i in range(count):
-        y = 1.0 - (2.0 * i + 1.0) / count
-        r = math.sqrt(1.0 - y * y)
-        out.append((r * math.sin(golden * i), y, r * math.cos(golden * i)))
-    return out
-
-
-def write(path, document):
-    # JSON is YAML.
-    path.write_text(json.dumps(document, indent=1) + "\n")
-
-
-def view_of(name, pose, with_file):
-    view = {"name": name, "camera": {"type": "perspective", "fov_degrees": FOV,
-                                     "world_from_camera": pose}}
-    if with_file:
-        view["file"] = f"views/{name}/render.exr"
-        view["mask"] = f"views/{name}/mask.png"
-    return view
-
-
-def geometry_of(args, shape):
-    return {"sphere": {}} if shape == "sphere" else {"mesh": str(args.meshes / f"{shape}.obj"), "fit": "unit_sphere"}
 
 
 class Case:
@@ -72,13 +27,13 @@ class Case:
         self.args, self.material, self.light, self.shape = args, material, light, shape
         self.folder = args.out / f"{material}-{light}-{shape}"
         self.folder.mkdir(parents=True, exist_ok=True)
+        self.mesh = None if shape == "sphere" else args.meshes / f"{shape}.obj"
         self.poses = {"front": look_at_origin((0.0, 0.0, 1.0))}
-        for i, direction in enumerate(candidates(args.candidates)):
+        for i, direction in enumerate(fibonacci_sphere(args.candidates)):
             self.poses[f"c{i}"] = look_at_origin(direction)
         frames = [{"file_path": f"{name}.exr", "transform_matrix": pose}
                   for name, pose in self.poses.items() if name != "front"]
-        write(self.folder / "candidates.json",
-              {"camera_angle_x": math.radians(FOV), "frames": frames})
+        write_problem(self.folder / "candidates.json", {"camera_angle_x": math.radians(FOV), "frames": frames})
 
     def truth(self):
         return {"brdf": str(self.args.data / f"{self.material}.binary"),
@@ -88,10 +43,10 @@ class Case:
         if (self.folder / f"views/{name}/mask.png").exists():
             return
         truth = self.truth()
-        write(self.folder / f"{name}.yaml", {
+        write_problem(self.folder / f"{name}.yaml", {
             "image": {"width": self.args.size, "height": self.args.size},
-            "views": [view_of(name, self.poses[name], False)],
-            "geometry": geometry_of(self.args, self.shape),
+            "views": [perspective_view(name, self.poses[name])],
+            "geometry": geometry_of(self.mesh),
             "reflectance": {"known": truth["brdf"]},
             "illumination": {"known": truth["illumination"]}, "noise": 0.02})
         subprocess.run([self.args.bin / "ibrdf_render", "--scene", self.folder / f"{name}.yaml",
@@ -107,12 +62,11 @@ class Case:
         for name in names:
             self.render(name)
         tag = "_".join(names)
-        fold = 0 if self.material in FOLDS[0].split(",") else 1
-        write(self.folder / f"joint_{tag}.yaml", {
+        write_problem(self.folder / f"joint_{tag}.yaml", {
             "problem": "joint",
-            "views": [view_of(n, self.poses[n], True) for n in names],
-            "geometry": geometry_of(self.args, self.shape),
-            "reflectance": {"model": str(self.args.models / f"fold{fold}.ibrdf"),
+            "views": [perspective_view(n, self.poses[n], "views") for n in names],
+            "geometry": geometry_of(self.mesh),
+            "reflectance": {"model": str(model_without(self.args.models, self.material)),
                             "lobes": 2, "variation": "none"},
             "illumination": {"width": 128, "height": 64},
             "solver": {"seconds": self.args.seconds}, "truth": self.truth()})
@@ -125,12 +79,10 @@ class Case:
         if seconds.exists():
             return {**json.loads((out / "result.json").read_text()), "wall": float(seconds.read_text())}
         start = time.time()
-        done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
-        if done.returncode not in (0, 3):
-            raise SystemExit(f"{out}: {done.stderr}")
+        result = solve(command, out)
         wall = round(time.time() - start, 1)
         seconds.write_text(f"{wall}\n")
-        return {**json.loads((out / "result.json").read_text()), "wall": wall}
+        return {**result, "wall": wall}
 
 
 def run(case, seed, rows):

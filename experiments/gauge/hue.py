@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "painted"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
 from files import read_exr, read_merl  # noqa: E402
 
 COLUMNS = ("case", "prior", "grey_light", "grey_object")

@@ -11,12 +11,14 @@ python3-numpy.
 import argparse
 import pathlib
 import subprocess
+import sys
 
 import numpy as np
 
-from files import write_pfm, write_png
-from surface import SIDE, mesh, pixel_means, sphere, write_turned
-from textures import TEXTURES
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
+from files import write_pfm, write_png  # noqa: E402
+from surface import SIDE, mesh, pixel_means, sphere, write_turned  # noqa: E402
+from textures import TEXTURES  # noqa: E402
 
 SIZE = 128
 CASES = 40

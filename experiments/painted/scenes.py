@@ -18,12 +18,14 @@ import json
 import pathlib
 import resource
 import subprocess
+import sys
 import time
 
 import numpy as np
 
-from files import read_exr, read_merl, write_pfm
-from make_scenes import add_arguments, cases, make, write_meshes
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
+from files import read_exr, read_merl, write_pfm  # noqa: E402
+from make_scenes import add_arguments, cases, make, write_meshes  # noqa: E402
 
 COLUMNS = ["case", "setting", "texture", "coat", "material", "shape", "map", "albedo", "constant", "brdf", "gloss",
            "map_error", "misfit", "variation", "seconds", "cpu_seconds"]

@@ -3,19 +3,15 @@
 
 import argparse
 import csv
-import json
 import math
 import pathlib
 import subprocess
+import sys
 import time
 
-FOLDS = (
-    "pink-jasper,green-plastic,aluminium,white-marble,black-oxidized-steel,"
-    "red-plastic,blue-metallic-paint2,nickel,specular-green-phenolic,green-latex",
-    "pink-fabric2,polyethylene,dark-blue-paint,silicon-nitrade,pure-rubber,"
-    "dark-specular-fabric,tungsten-carbide,brass,red-fabric2,"
-    "specular-orange-phenolic",
-)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
+import cases  # noqa: E402
+
 COLUMNS = (
     "material", "map", "views", "seconds", "misfit", "brdf_log_rmse_aligned",
     "illumination_relative_log_rmse_aligned", "image_log_rmse",
@@ -43,16 +39,11 @@ def views_of(count, files):
     return views
 
 
-def write(path, document):
-    # JSON is YAML.
-    path.write_text(json.dumps(document, indent=1) + "\n")
-
-
 def render(args, folder, material, light):
     if (folder / "input/views/v3/mask.png").exists():
         return
     folder.mkdir(parents=True, exist_ok=True)
-    write(folder / "scene.yaml", {
+    cases.write_problem(folder / "scene.yaml", {
         "image": {"width": args.size, "height": args.size},
         "views": views_of(4, files=False),
         "geometry": {"sphere": {}},
@@ -67,7 +58,7 @@ def render(args, folder, material, light):
 
 def solve(args, folder, material, light, model, count):
     out = folder / f"{args.name}{count}"
-    write(folder / f"joint{count}.yaml", {
+    cases.write_problem(folder / f"joint{count}.yaml", {
         "problem": "joint",
         "views": views_of(count, files=True),
         "geometry": {"sphere": {}},
@@ -78,13 +69,10 @@ def solve(args, folder, material, light, model, count):
                   "illumination": str(args.maps / f"{light}.hdr")},
     })
     start = time.time()
-    done = subprocess.run(
+    result = cases.solve(
         [args.bin / "ibrdf_solve", "--problem", folder / f"joint{count}.yaml",
-         "--out", out, "--quiet", "--threads", str(args.threads)],
-        stderr=subprocess.PIPE, text=True)
-    if done.returncode not in (0, 3):
-        raise SystemExit(f"{out}: {done.stderr}")
-    metrics = json.loads((out / "result.json").read_text())["metrics"]
+         "--out", out, "--quiet", "--threads", str(args.threads)], out)
+    metrics = result["metrics"]
     row = {"material": material, "map": light, "views": count}
     row.update({key: metrics.get(key) for key in COLUMNS[3:]})
     row["seconds"] = round(time.time() - start, 1)
@@ -102,7 +90,7 @@ def main():
                         help="folder of fold0.ibrdf and fold1.ibrdf")
     parser.add_argument("--out", type=pathlib.Path, required=True)
     parser.add_argument("--map-names", default="city,studio")
-    parser.add_argument("--materials", default=",".join(FOLDS))
+    parser.add_argument("--materials", default=",".join(cases.FOLDS))
     parser.add_argument("--views", default="1,4")
     parser.add_argument("--size", type=int, default=128)
     parser.add_argument("--seconds", type=float, default=120)
@@ -116,13 +104,12 @@ def main():
         rows = csv.DictWriter(file, COLUMNS)
         rows.writeheader()
         for material in args.materials.split(","):
-            fold = 0 if material in FOLDS[0].split(",") else 1
             for light in args.map_names.split(","):
                 folder = args.out / f"{material}-{light}"
                 render(args, folder, material, light)
                 for count in map(int, args.views.split(",")):
                     row = solve(args, folder, material, light,
-                                args.models / f"fold{fold}.ibrdf", count)
+                                cases.model_without(args.models, material), count)
                     rows.writerow(row)
                     file.flush()
                     print(row, flush=True)

@@ -7,12 +7,12 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/scene/num_views.h"
 #include "ibrdf/solvers/paint/chroma_plane.h"
+#include "ibrdf/solvers/paint/colour_means.h"
 
 namespace ibrdf {
 namespace {
@@ -20,9 +20,6 @@ namespace {
 // A pixel tells its albedo where at least this share of its radiance is matte.
 constexpr double kLeastMatteShare = 0.05;
 constexpr double kStudentDegrees = 3.0;
-// Cells of chroma are this wide, in colour lengths; the kernel reaches so many.
-constexpr double kCellWidth = 0.5;
-constexpr int kReach = 6;
 // Where normals turn by more from pixel to pixel, radians, neighbours say
 // little of each other.
 constexpr double kCrease = 0.05;
@@ -55,59 +52,6 @@ Apparent ApparentAlbedo(const UnpaintedRadiance& unpainted,
   return out;
 }
 
-// Means of a value over points of like chroma, by cells of chroma.
-class MeanByColour {
- public:
-  MeanByColour(std::vector<Eigen::Array2d> chroma, double length)
-      : chroma_(std::move(chroma)), width_(kCellWidth * length) {}
-
-  // weights [points] >= 0; the mean of `values` for each point.
-  std::vector<double> Of(const std::vector<double>& values,
-                         const std::vector<double>& weights) const {
-    std::map<std::pair<int, int>, std::pair<double, double>> cells;
-    for (size_t i = 0; i < values.size(); ++i) {
-      auto& cell = cells[CellOf(i)];
-      cell.first += weights[i];
-      cell.second += weights[i] * values[i];
-    }
-    std::map<std::pair<int, int>, double> means;
-    std::vector<double> out;
-    for (size_t i = 0; i < values.size(); ++i) {
-      const auto cell = CellOf(i);
-      const auto known = means.find(cell);
-      out.push_back(known != means.end() ? known->second
-                                         : means[cell] = Near(cells, cell));
-    }
-    return out;
-  }
-
- private:
-  std::pair<int, int> CellOf(size_t i) const {
-    return {static_cast<int>(std::floor(chroma_[i][0] / width_)),
-            static_cast<int>(std::floor(chroma_[i][1] / width_))};
-  }
-
-  static double Near(
-      const std::map<std::pair<int, int>, std::pair<double, double>>& cells,
-      const std::pair<int, int>& at) {
-    double weight = 0.0, sum = 0.0;
-    for (int x = -kReach; x <= kReach; ++x) {
-      for (int y = -kReach; y <= kReach; ++y) {
-        const auto cell = cells.find({at.first + x, at.second + y});
-        if (cell == cells.end()) continue;
-        const double k =
-            std::exp(-0.5 * Square(kCellWidth) * (Square(x) + Square(y)));
-        weight += k * cell->second.first;
-        sum += k * cell->second.second;
-      }
-    }
-    return weight > 0.0 ? sum / weight : 0.0;
-  }
-
-  std::vector<Eigen::Array2d> chroma_;
-  double width_;
-};
-
 // What the image says of each point's paint, if the light is right.
 struct ApparentPaint {
   std::vector<Eigen::Array2d> chroma;
@@ -127,21 +71,28 @@ ApparentPaint ApparentPaintOf(const UnpaintedRadiance& unpainted,
   return out;
 }
 
-// The luminance of points of like chroma, outliers aside.
-std::vector<double> LuminanceOfColour(const ApparentPaint& apparent,
-                                      const AlbedoFitOptions& options) {
-  const MeanByColour mean(apparent.chroma, options.colour_length);
-  std::vector<double> weights = apparent.seen, of_colour;
-  for (int k = 0; k < options.iterations; ++k) {
-    of_colour = mean.Of(apparent.luminance, weights);
-    for (size_t i = 0; i < weights.size(); ++i) {
-      const double r =
-          (apparent.luminance[i] - of_colour[i]) / options.shading_std;
-      weights[i] = apparent.seen[i] * (kStudentDegrees + 1.0) /
-                   (kStudentDegrees + r * r);
-    }
+// Weights of what points show, that of outliers about `expected` less.
+std::vector<double> RobustWeights(const ApparentPaint& apparent,
+                                  const std::vector<double>& expected,
+                                  double deviation) {
+  std::vector<double> weights = apparent.seen;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const double r = (apparent.luminance[i] - expected[i]) / deviation;
+    weights[i] *= (kStudentDegrees + 1.0) / (kStudentDegrees + r * r);
   }
-  return of_colour;
+  return weights;
+}
+
+// The luminance of points of like chroma, outliers aside.
+std::vector<double> LuminanceOfChroma(const ColourMeans& means,
+                                      const ApparentPaint& apparent,
+                                      const AlbedoFitOptions& options) {
+  std::vector<double> weights = apparent.seen, of_chroma;
+  for (int k = 0; k < options.iterations; ++k) {
+    of_chroma = means.OfLikeChroma(apparent.luminance, weights);
+    weights = RobustWeights(apparent, of_chroma, options.shading_std);
+  }
+  return of_chroma;
 }
 
 // x of the least sum over points of anchor_weight (x - anchor)^2 and over pairs
@@ -158,7 +109,8 @@ class SteppedField {
   std::vector<double> Solve(const std::vector<NeighbourPair>& pairs,
                             const std::vector<double>& pair_weights,
                             const std::vector<double>& steps,
-                            const std::vector<double>& anchors) const {
+                            const std::vector<double>& anchors,
+                            const std::vector<double>& guess) const {
     const auto count = static_cast<Eigen::Index>(weights_.size());
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd right = weights_.cwiseProduct(ToEigen(anchors));
@@ -182,7 +134,7 @@ class SteppedField {
         solver(A);
     solver.setTolerance(kTolerance);
     solver.setMaxIterations(kMostIterations);
-    return ToVector(solver.solveWithGuess(right, ToEigen(anchors)));
+    return ToVector(solver.solveWithGuess(right, ToEigen(guess)));
   }
 
  private:
@@ -249,7 +201,7 @@ std::vector<Eigen::Array2d> FittedChroma(
       of_axis[k] = steps.chroma[k][axis];
     }
     const std::vector<double> x =
-        field.Solve(neighbours, steps.weights, of_axis, anchors);
+        field.Solve(neighbours, steps.weights, of_axis, anchors, anchors);
     for (size_t i = 0; i < count; ++i) {
       if (drifts || apparent.seen[i] == 0.0) fitted[i][axis] = x[i];
     }
@@ -257,11 +209,48 @@ std::vector<Eigen::Array2d> FittedChroma(
   return fitted;
 }
 
+// A field whose points may leave their anchors over this share of their
+// number's square root.
+SteppedField FieldOfReach(double reach, const ApparentPaint& apparent) {
+  std::vector<double> weights = apparent.seen;
+  for (double& w : weights) {
+    w /= Square(reach) * static_cast<double>(weights.size());
+  }
+  return SteppedField(weights);
+}
+
+// Luminance by its steps, drawn to what its colour has.
+std::vector<double> FittedLuminance(
+    const ApparentPaint& apparent, const PaintSteps& steps,
+    const std::vector<NeighbourPair>& neighbours,
+    const AlbedoFitOptions& options) {
+  const ColourMeans means(apparent.chroma, options.colour_length);
+  std::vector<double> anchors = LuminanceOfChroma(means, apparent, options);
+  const bool part = options.luminance_turns > 0;
+  std::vector<double> luminance =
+      FieldOfReach(part ? options.parting_reach : options.reach, apparent)
+          .Solve(neighbours, steps.weights, steps.luminance, anchors, anchors);
+  // White and black paint have one chroma. Once steps have parted them, each is
+  // drawn to its own.
+  const SteppedField field = FieldOfReach(options.reach, apparent);
+  for (int k = 0; k < options.luminance_turns; ++k) {
+    anchors = means.OfLikeColour(
+        apparent.luminance,
+        RobustWeights(apparent, luminance, options.shading_std), luminance,
+        options.luminance_length);
+    luminance = field.Solve(neighbours, steps.weights, steps.luminance, anchors,
+                            luminance);
+  }
+  return luminance;
+}
+
 }  // namespace
 
 AlbedoFitOptions InViews(AlbedoFitOptions options,
                          const std::vector<ShadingPoint>& points) {
-  options.reach /= std::sqrt(static_cast<double>(NumViews(points)));
+  const double views = std::sqrt(static_cast<double>(NumViews(points)));
+  options.reach /= views;
+  options.parting_reach /= views;
   return options;
 }
 
@@ -275,14 +264,8 @@ std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
   const PaintSteps steps = StepsOf(apparent, neighbours, options);
   apparent.chroma =
       FittedChroma(apparent, steps, neighbours, options.chroma_drifts);
-  const std::vector<double> of_colour = LuminanceOfColour(apparent, options);
-  std::vector<double> anchor_weights = apparent.seen;
-  for (double& w : anchor_weights) {
-    w /= Square(options.reach) * static_cast<double>(count);
-  }
   const std::vector<double> luminance =
-      SteppedField(anchor_weights)
-          .Solve(neighbours, steps.weights, steps.luminance, of_colour);
+      FittedLuminance(apparent, steps, neighbours, options);
   std::vector<double> out(3 * count);
   for (size_t i = 0; i < count; ++i) {
     const Eigen::Array3d log_colour = FromChromaPlane(apparent.chroma[i]);

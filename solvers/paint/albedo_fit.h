@@ -17,6 +17,12 @@ struct UnpaintedRadiance {
 
 struct AlbedoFitOptions {
   double colour_length = AlbedoPrior().colour_length;
+  // What counts as like luminance where steps have parted paints of one chroma:
+  // two points differ by twice shading_std and more. So often they are parted.
+  double luminance_length = 0.4;
+  int luminance_turns = 4;
+  // As `reach`, while they are being parted.
+  double parting_reach = 0.5;
   // Deviation of log radiance between image and render that is not paint's: of
   // the reflectance, the light and the normals.
   double shading_std = 0.15;
@@ -42,8 +48,10 @@ AlbedoFitOptions InViews(AlbedoFitOptions options,
 // differ by paint where they differ sharply (Retinex), by shading where they do
 // not: shading drifts with the normals, paint has edges. So a is the least
 // squares' solution of sharp steps (a print's, of the same chroma too), drawn
-// over `reach` to what its colour has. Where the gloss is nearly all of the
-// image, or nothing was observed, paint is filled in from around.
+// over `reach` to what its colour has: first what its chroma has, then what
+// points do that are of like luminance too in the solution before. Where the
+// gloss is nearly all of the image, or nothing was observed, paint is filled in
+// from around.
 std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
                               const Observations& observed,
                               const std::vector<NeighbourPair>& neighbours,

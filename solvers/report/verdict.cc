@@ -80,10 +80,13 @@ TrustRatings RatingsOf(const VerdictNumbers& n) {
     // Paint comes out as mirrored light.
     const int painted = n.several_materials ? 2 : 0;
     const int rival = n.rival_difference > kRivalDifference ? 1 : 0;
+    // The energy of gloss is off by 7 and 12 times where its error was expected
+    // to be fair (experiments/painted).
+    const int under_paint = n.has_paint ? 1 : 0;
     ratings.light = Lower(Rate(n.light_error, kGoodError, kFairError),
                           lost + clipped + painted);
     ratings.gloss = Lower(Rate(n.reflectance_error, kGoodError, kFairError),
-                          lost + clipped + painted + rival);
+                          lost + clipped + painted + rival + under_paint);
     ratings.hue = Lower(Rate(n.hue_error, kGoodHue, kFairHue), lost + painted);
     ratings.level = Lower(Rate(n.level_error, kGoodError, kFairError), lost);
     if (n.kind == ProblemKind::kJoint) {
@@ -202,6 +205,9 @@ std::vector<std::string> Reasons(const VerdictNumbers& n) {
     reasons.emplace_back(
         "the object looks painted or of several materials, and paint is taken "
         "for light");
+  }
+  if (n.has_paint) {
+    reasons.emplace_back("paint and broad gloss explain each other");
   }
   if (ClippedShare(n) > kClippedWord) {
     reasons.push_back(Format("%.0f", 100.0 * ClippedShare(n)) +
@@ -391,6 +397,7 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
   n.object_pixels = static_cast<int64_t>(solved.inverse.points.size());
   n.used_pixels = solution.pixels_used;
   if (solved.inverse.look != nullptr) TakeLook(solved.inverse.look->check, &n);
+  n.has_paint = solution.has_paint();
   // What is sought is not taken for light.
   if (solution.has_paint() || solution.materials.size() > 1) {
     n.several_materials = false;

@@ -5,7 +5,9 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/solvers/costs/laplace_interval.h"
@@ -18,10 +20,10 @@ namespace ibrdf {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Deviations of the prior that are searched, either way; points and refinements
-// of a family's line.
+// Deviations of the prior that are searched, either way; where a family's line
+// begins, the most probable first, and how often it is refined.
 constexpr double kReach = 2.0;
-constexpr int kPoints = 5;
+constexpr double kStarts[] = {0.0, -1.0, 1.0};
 constexpr int kRefinements = 3;
 // A parameter is settled to this share of its prior's deviation: costs of two
 // searches so near differ by some nats of chance.
@@ -66,8 +68,9 @@ double KnownLightCost(const SolveSetup& setup, SolveContext* context) {
         return CodesCost(on.objective->radiance(), estimate.pixels->observed(),
                          std::exp(log_b));
       },
-      std::log(kLeastScale), std::log(kMostScale), kScalePoints,
-      kScaleRefinements, kSettledScale);
+      {std::log(kLeastScale), std::log(kMostScale),
+       EqualSteps(std::log(kLeastScale), std::log(kMostScale), kScalePoints),
+       kScaleRefinements, kSettledScale});
   return codes.value + end.reflectance_prior;
 }
 
@@ -110,11 +113,16 @@ CurveEstimate BestOfFamily(
     return best;
   }
   const ResponseParameter range = *ParameterOf(family.kind);
+  LineSearch line;
+  line.low = std::max(-kReach, DeviationsOf(family, range.least));
+  line.high = std::min(kReach, DeviationsOf(family, range.most));
+  for (const double u : kStarts) {
+    line.starts.push_back(std::clamp(u, line.low, line.high));
+  }
+  line.refinements = kRefinements;
+  line.settled = kSettled;
   const LineMinimum minimum = MinimiseOnLine(
-      [&](double u) { return cost(CurveAt(family, u)) + 0.5 * u * u; },
-      std::max(-kReach, DeviationsOf(family, range.least)),
-      std::min(kReach, DeviationsOf(family, range.most)), kPoints, kRefinements,
-      kSettled);
+      [&](double u) { return cost(CurveAt(family, u)) + 0.5 * u * u; }, line);
   best.curve = CurveAt(family, minimum.at);
   best.cost = minimum.value;
   if (minimum.curvature > 0.0) {
@@ -146,20 +154,27 @@ Parabola Through(const double* x, const double* f) {
 
 }  // namespace
 
-LineMinimum MinimiseOnLine(const std::function<double(double)>& f, double low,
-                           double high, int count, int refinements,
-                           double settled) {
+std::vector<double> EqualSteps(double low, double high, int count) {
+  std::vector<double> steps;
+  for (int k = 0; k < count; ++k) {
+    steps.push_back(low + (high - low) * k / (count - 1));
+  }
+  return steps;
+}
+
+LineMinimum MinimiseOnLine(const std::function<double(double)>& f,
+                           const LineSearch& line) {
   std::map<double, double> values;
   const auto add = [&](double x) {
     const double value = f(x);
     if (std::isfinite(value)) values[x] = value;
   };
-  for (int k = 0; k < count; ++k) {
-    add(low + (high - low) * k / (count - 1));
+  for (const double start : line.starts) {
+    if (values.count(start) == 0) add(start);
   }
   LineMinimum minimum;
   minimum.value = kInfinity;
-  for (int k = 0; k <= refinements && !values.empty(); ++k) {
+  for (int k = 0; k <= line.refinements && !values.empty(); ++k) {
     const auto best = std::min_element(
         values.begin(), values.end(),
         [](const auto& a, const auto& b) { return a.second < b.second; });
@@ -175,11 +190,17 @@ LineMinimum MinimiseOnLine(const std::function<double(double)>& f, double low,
     const double x[3] = {before->first, middle->first, after->first};
     const double y[3] = {before->second, middle->second, after->second};
     const Parabola parabola = Through(x, y);
-    if (!(parabola.curvature > 0.0)) break;
-    minimum.curvature = parabola.curvature;
-    const double next = std::clamp(parabola.vertex, low, high);
+    double next = minimum.at;
+    if (parabola.curvature > 0.0) {
+      minimum.curvature = parabola.curvature;
+      next = std::clamp(parabola.vertex, line.low, line.high);
+    } else if (best == values.begin()) {
+      next = line.low;
+    } else if (std::next(best) == values.end()) {
+      next = line.high;
+    }
     const double move = std::abs(next - minimum.at);
-    if (k == refinements || move <= settled) break;
+    if (k == line.refinements || move <= line.settled) break;
     add(next);
   }
   return minimum;

@@ -30,16 +30,25 @@ StatusOr<std::vector<CurveEstimate>> FindCurves(const InverseProblem& problem,
 InverseProblem WithCurve(const InverseProblem& problem,
                          const ResponseDefinition& curve);
 
-// The lowest point of a function on [low, high]: values at `count` points in
-// equal steps, then up to `refinements` points at the vertex of the parabola
-// through the lowest and its neighbours, until it is within `settled` of the
-// lowest. Infinite values are passed over.
+struct LineSearch {
+  double low = 0.0, high = 0.0;
+  std::vector<double> starts;  // within those
+  int refinements = 0;         // at most
+  double settled = 0.0;
+};
+// `count` of them, at least two, in equal steps from low to high.
+std::vector<double> EqualSteps(double low, double high, int count);
+
+// The lowest point of a function on [low, high]: values at the starts, then at
+// the vertex of the parabola through the lowest and its neighbours, until it is
+// within `settled` of the lowest. Where that parabola has no lowest point and
+// the function falls to an end of the starts, the end of the line is tried.
+// Infinite values are passed over.
 struct LineMinimum {
   double at = 0.0, value = 0.0;
   double curvature = 0.0;  // second derivative there; 0: the ends are lowest
 };
-LineMinimum MinimiseOnLine(const std::function<double(double)>& f, double low,
-                           double high, int count, int refinements,
-                           double settled);
+LineMinimum MinimiseOnLine(const std::function<double(double)>& f,
+                           const LineSearch& line);
 
 }  // namespace ibrdf

@@ -25,29 +25,41 @@ struct PaintedPixels {
   AlbedoFitOptions options;
 };
 
-// The paint under the light that gives `unpainted`, and the light and the rest
-// given that paint. `unpainted` receives what the light that was found gives.
+// Under a light: what the unpainted object shows, and the paint.
+struct Paint {
+  UnpaintedRadiance unpainted;
+  std::vector<double> log_albedo;
+
+  std::vector<double> Gain() const { return PaintGain(unpainted, log_albedo); }
+};
+
+void FitPaint(const SolveSetup& setup, const PaintedPixels& pixels,
+              Paint* paint) {
+  paint->log_albedo =
+      FitAlbedo(paint->unpainted, setup.pixels.observed, pixels.neighbours,
+                InViews(pixels.options, setup.pixels.points));
+}
+
+// The light and the rest given the paint, and the paint under that light.
 StatusOr<Solution> TakeTurn(const SolveSetup& setup,
                             const ReflectanceEstimate& found,
-                            const PaintedPixels& paint,
-                            UnpaintedRadiance* unpainted,
+                            const PaintedPixels& pixels, Paint* paint,
                             SolveContext* context) {
   const std::vector<ShadingPoint>& points = setup.pixels.points;
-  const std::vector<double> log_albedo =
-      FitAlbedo(*unpainted, setup.pixels.observed, paint.neighbours,
-                InViews(paint.options, points));
-  const std::vector<double> gain = PaintGain(*unpainted, log_albedo);
-  const InverseProblem without = WithoutPaint(*setup.problem, gain, points);
+  const InverseProblem without =
+      WithoutPaint(*setup.problem, paint->Gain(), points);
   const StatusOr<SolveSetup> of_light = SetUp(without);
   if (!of_light.ok()) return of_light.status();
   StatusOr<Estimate> estimate = EstimateLight(*of_light, found, context);
   if (!estimate.ok()) return estimate.status();
-  // Render and gloss are of the light that was found, not of that before.
-  Solution solution = Summarise(*of_light, *std::move(estimate), context,
-                                UnpaintedRenders(paint.reflectance, unpainted));
-  TakeMatteOff(unpainted);
-  ScalePixels(PaintGain(*unpainted, log_albedo), points, &solution.render);
-  SetPaint(setup, paint.reflectance, *unpainted, log_albedo, &solution);
+  Solution solution =
+      Summarise(*of_light, *std::move(estimate), context,
+                UnpaintedRenders(pixels.reflectance, &paint->unpainted));
+  TakeMatteOff(&paint->unpainted);
+  FitPaint(setup, pixels, paint);
+  ScalePixels(paint->Gain(), points, &solution.render);
+  SetPaint(setup, pixels.reflectance, paint->unpainted, paint->log_albedo,
+           &solution);
   return solution;
 }
 
@@ -70,17 +82,18 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
   }
   const UnpaintedReflectance reflectance =
       UnpaintedOf(*setup.lobes, found->lobes.data());
-  const PaintedPixels paint = {reflectance, neighbours, first.options};
+  const PaintedPixels pixels = {reflectance, neighbours, first.options};
   std::vector<float> map;
   found->light.mode.Exp(&map);
-  UnpaintedRadiance unpainted =
+  Paint paint;
+  paint.unpainted =
       RenderUnpainted(setup, reflectance, map, found->light.mode.size());
+  FitPaint(setup, pixels, &paint);
   Turns turns(kLightTurns, context);
   StatusOr<Solution> solution =
-      TakeTurn(setup, *found, paint, &unpainted, context);
+      TakeTurn(setup, *found, pixels, &paint, context);
   while (solution.ok() && turns.Another()) {
-    StatusOr<Solution> next =
-        TakeTurn(setup, *found, paint, &unpainted, context);
+    StatusOr<Solution> next = TakeTurn(setup, *found, pixels, &paint, context);
     if (!next.ok()) return next;
     if (next->misfit < solution->misfit) solution = std::move(next);
   }

@@ -102,6 +102,30 @@ TEST(FitAlbedo, KeepsAPrintOfTheSameChroma) {
   EXPECT_LT(error, 0.3);
 }
 
+// Black and white fields of one chroma, too large for their edges to tell the
+// luminance of their middle: to draw both to what the chroma has on average
+// would make both grey.
+TEST(FitAlbedo, KeepsLargeFieldsOfOneChromaApart) {
+  Painted p = MakePainted(0.2);
+  for (size_t i = 0; i < p.radiance.size(); ++i) {
+    const bool white = i < p.radiance.size() / 3;
+    const double before = p.log_albedo[i];
+    p.log_albedo[i] = white ? 0.0 : -1.6;
+    p.radiance[i] =
+        p.unpainted.gloss[i] + (p.radiance[i] - p.unpainted.gloss[i]) *
+                                   std::exp(p.log_albedo[i] - before);
+  }
+  AlbedoFitOptions by_chroma;
+  by_chroma.luminance_turns = 0;
+  const double without =
+      AlignedRmse(FitAlbedo(p.unpainted, MakeObservations(p.radiance),
+                            p.neighbours, by_chroma),
+                  p.log_albedo);
+  const double with = AlignedRmse(Fit(p), p.log_albedo);
+  EXPECT_GT(without, 0.15);
+  EXPECT_LT(with, 0.6 * without);
+}
+
 TEST(FitAlbedo, IsFiniteWhereNothingIsSeen) {
   Painted p = MakePainted(0.0);
   p.radiance[0] = -1.0;

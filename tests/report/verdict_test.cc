@@ -91,6 +91,17 @@ TEST(Verdict, PaintIsTheReasonOfAMisfit) {
   EXPECT_EQ(Trust::kPoor, MakeVerdict(n).ratings.light);
 }
 
+TEST(Verdict, PaintTakesFromWhatIsKnownOfGlossAlone) {
+  VerdictNumbers n = Good();
+  n.has_paint = true;
+  const Verdict v = MakeVerdict(n);
+  EXPECT_EQ(Trust::kFair, v.ratings.gloss);
+  EXPECT_EQ(Trust::kGood, v.ratings.light);
+  EXPECT_EQ(MakeVerdict(Good()).ratings.hue, v.ratings.hue);
+  EXPECT_TRUE(Contains(v.doubt, "paint and broad gloss explain each other"))
+      << v.doubt;
+}
+
 TEST(Verdict, AKnownReasonIsSaidOfASmallMisfitToo) {
   VerdictNumbers n = Good();
   n.misfit = 0.07;

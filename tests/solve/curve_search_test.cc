@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 namespace ibrdf {
 namespace {
@@ -11,14 +13,21 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSettled = 0.02;
 
+// From five points of [-2, 2].
+LineMinimum Minimise(const std::function<double(double)>& f, int refinements,
+                     double settled = kSettled) {
+  return MinimiseOnLine(
+      f, {-2.0, 2.0, EqualSteps(-2.0, 2.0, 5), refinements, settled});
+}
+
 TEST(MinimiseOnLine, FindsAParabolasVertex) {
   int calls = 0;
-  const LineMinimum minimum = MinimiseOnLine(
+  const LineMinimum minimum = Minimise(
       [&](double x) {
         ++calls;
         return 3.0 + 4.0 * (x - 0.37) * (x - 0.37);
       },
-      -2.0, 2.0, 5, 2, kSettled);
+      2);
   EXPECT_NEAR(0.37, minimum.at, 1e-9);
   EXPECT_NEAR(3.0, minimum.value, 1e-12);
   EXPECT_NEAR(8.0, minimum.curvature, 1e-9);
@@ -27,7 +36,7 @@ TEST(MinimiseOnLine, FindsAParabolasVertex) {
 
 TEST(MinimiseOnLine, ComesNearTheMinimumOfOthers) {
   const auto f = [](double x) { return std::cosh(x - 0.8) + 0.1 * x * x * x; };
-  const LineMinimum minimum = MinimiseOnLine(f, -2.0, 2.0, 5, 3, kSettled);
+  const LineMinimum minimum = Minimise(f, 3);
   for (double x = -2.0; x <= 2.0; x += 0.01) {
     EXPECT_LE(minimum.value, f(x) + 1e-3);
   }
@@ -39,28 +48,37 @@ TEST(MinimiseOnLine, StopsWhereItIsSettled) {
     ++calls;
     return (x - 0.1) * (x - 0.1);
   };
-  EXPECT_EQ(0.0, MinimiseOnLine(f, -2.0, 2.0, 5, 2, 0.11).at);
+  EXPECT_EQ(0.0, Minimise(f, 2, 0.11).at);
   EXPECT_EQ(5, calls);
-  EXPECT_NEAR(0.1, MinimiseOnLine(f, -2.0, 2.0, 5, 2, 0.09).at, 1e-9);
+  EXPECT_NEAR(0.1, Minimise(f, 2, 0.09).at, 1e-9);
 }
 
 TEST(MinimiseOnLine, EndsAreAllowed) {
-  const LineMinimum minimum = MinimiseOnLine(
-      [](double x) { return std::exp(x); }, -2.0, 2.0, 5, 2, kSettled);
+  const LineMinimum minimum = Minimise([](double x) { return std::exp(x); }, 2);
   EXPECT_EQ(-2.0, minimum.at);
-  const LineMinimum line =
-      MinimiseOnLine([](double x) { return -x; }, -2.0, 2.0, 5, 2, kSettled);
+  const LineMinimum line = Minimise([](double x) { return -x; }, 2);
   EXPECT_EQ(2.0, line.at);
   EXPECT_EQ(0.0, line.curvature);
+}
+
+TEST(MinimiseOnLine, LeavesItsStartsWhereTheFunctionFalls) {
+  const std::vector<double> starts = {0.0, -1.0, 1.0};
+  const auto bowl = [](double x) { return (x - 1.6) * (x - 1.6); };
+  EXPECT_NEAR(1.6, MinimiseOnLine(bowl, {-2.0, 2.0, starts, 3, kSettled}).at,
+              1e-9);
+  // No parabola through the starts has a lowest point.
+  const auto hill = [](double x) { return -(x + 0.5) * (x + 0.5); };
+  EXPECT_EQ(2.0, MinimiseOnLine(hill, {-2.0, 2.0, starts, 3, kSettled}).at);
+  const auto other = [](double x) { return -(x - 0.5) * (x - 0.5); };
+  EXPECT_EQ(-2.0, MinimiseOnLine(other, {-2.0, 2.0, starts, 3, kSettled}).at);
 }
 
 TEST(MinimiseOnLine, PassesOverWhatHasNoValue) {
   const auto f = [](double x) {
     return x < -0.5 ? kInfinity : (x - 0.1) * (x - 0.1);
   };
-  EXPECT_NEAR(0.1, MinimiseOnLine(f, -2.0, 2.0, 5, 2, kSettled).at, 1e-9);
-  const LineMinimum none = MinimiseOnLine([](double) { return kInfinity; },
-                                          -2.0, 2.0, 5, 2, kSettled);
+  EXPECT_NEAR(0.1, Minimise(f, 2).at, 1e-9);
+  const LineMinimum none = Minimise([](double) { return kInfinity; }, 2);
   EXPECT_EQ(kInfinity, none.value);
 }
 

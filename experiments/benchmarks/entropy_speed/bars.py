@@ -8,58 +8,32 @@ import argparse
 import csv
 import io
 import json
-import math
 import os
 import pathlib
 import subprocess
+import sys
 import time
 
-FOV, DISTANCE = 32.0, 4.0
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "common"))
+from cases import fibonacci_sphere, geometry_of, look_at_origin, perspective_view, write_problem  # noqa: E402
 
 
-def look_at_origin(back):
-    """Rows of the pose of a camera that stands in a direction, y up; not at the poles."""
-    norm = math.hypot(back[0], back[2])
-    right = (back[2] / norm, 0.0, -back[0] / norm)
-    up = (back[1] * right[2], back[2] * right[0] - back[0] * right[2], -back[1] * right[0])
-    return [[right[i], up[i], back[i], DISTANCE * back[i]] for i in range(3)] + [[0, 0, 0, 1]]
-
-
-def poses(count):
-    golden = math.pi * (3.0 - math.sqrt(5.0))
-    for i in range(count):
-        y = 1.0 - (2.0 * i + 1.0) / count
-        r = math.sqrt(1.0 - y * y)
-        yield look_at_origin((r * math.sin(golden * i), y, r * math.cos(golden * i)))
-
-
-def views_of(args, with_files):
-    views = []
-    for k, pose in enumerate(poses(args.views)):
-        view = {"name": f"v{k:03}", "camera": {"type": "perspective", "fov_degrees": FOV, "world_from_camera": pose}}
-        if with_files:
-            view["file"] = f"renders/views/v{k:03}/render.exr"
-            view["mask"] = f"renders/views/v{k:03}/mask.png"
-        views.append(view)
-    return views
-
-
-def write(path, document):
-    # JSON is YAML.
-    path.write_text(json.dumps(document, indent=1) + "\n")
+def views_of(args, folder):
+    return [perspective_view(f"v{k:03}", look_at_origin(back), folder)
+            for k, back in enumerate(fibonacci_sphere(args.views))]
 
 
 def prepare(args):
     """Photographs and the problem that names them."""
-    geometry = {"sphere": {}} if args.mesh is None else {"mesh": str(args.mesh.resolve()), "fit": "unit_sphere"}
+    geometry = geometry_of(args.mesh and args.mesh.resolve())
     light = {"known": str(args.map.resolve())}
-    write(args.out / "views.yaml", {"problem": "textures", "geometry": geometry, "illumination": light,
-                                    "views": views_of(args, True),
+    write_problem(args.out / "views.yaml", {"problem": "textures", "geometry": geometry, "illumination": light,
+                                    "views": views_of(args, "renders/views"),
                                     "texture": {"width": args.texels, "height": args.texels}})
     if (args.out / f"renders/views/v{args.views - 1:03}/render.exr").exists():
         return
-    write(args.out / "scene.yaml", {"image": {"width": args.pixels, "height": args.pixels},
-                                    "views": views_of(args, False), "geometry": geometry,
+    write_problem(args.out / "scene.yaml", {"image": {"width": args.pixels, "height": args.pixels},
+                                    "views": views_of(args, None), "geometry": geometry,
                                     "reflectance": {"known": {"principled": {"roughness": 0.4}}}, "illumination": light,
                                     "quality": "preview", "effects": "none"})
     subprocess.run([args.bin / "ibrdf_render", "--scene", args.out / "scene.yaml", "--out", args.out / "renders",

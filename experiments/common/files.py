@@ -1,4 +1,4 @@
-"""The image files that the experiment writes and reads. Needs Debian's python3-numpy."""
+"""The image files and MERL tables that experiments read and write. Needs Debian's python3-numpy."""
 import struct
 import zlib
 
