@@ -20,6 +20,9 @@ namespace {
 // A pixel tells its albedo where at least this share of its radiance is matte.
 constexpr double kLeastMatteShare = 0.05;
 constexpr double kStudentDegrees = 3.0;
+// Paints of one chroma differ by no more from their mean, in log luminance;
+// where the light is hardly known the image seems to say so.
+constexpr double kMostOfPaint = 3.0;
 // Where normals turn by more from pixel to pixel, radians, neighbours say
 // little of each other.
 constexpr double kCrease = 0.05;
@@ -225,7 +228,9 @@ std::vector<double> FittedLuminance(
     const std::vector<NeighbourPair>& neighbours,
     const AlbedoFitOptions& options) {
   const ColourMeans means(apparent.chroma, options.colour_length);
-  std::vector<double> anchors = LuminanceOfChroma(means, apparent, options);
+  const std::vector<double> of_chroma =
+      LuminanceOfChroma(means, apparent, options);
+  std::vector<double> anchors = of_chroma;
   const bool part = options.luminance_turns > 0;
   std::vector<double> luminance =
       FieldOfReach(part ? options.parting_reach : options.reach, apparent)
@@ -238,6 +243,10 @@ std::vector<double> FittedLuminance(
         apparent.luminance,
         RobustWeights(apparent, luminance, options.shading_std), luminance,
         options.luminance_length);
+    for (size_t i = 0; i < anchors.size(); ++i) {
+      anchors[i] = std::clamp(anchors[i], of_chroma[i] - kMostOfPaint,
+                              of_chroma[i] + kMostOfPaint);
+    }
     luminance = field.Solve(neighbours, steps.weights, steps.luminance, anchors,
                             luminance);
   }
