@@ -2,10 +2,12 @@
 """Solves real photographs by flags alone and lists what the verdict says of each. See README.md."""
 import argparse
 import csv
-import json
 import pathlib
-import subprocess
+import sys
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
+import cases  # noqa: E402
 
 # The files of each object, and what the photographer knows of them.
 OBJECTS = {
@@ -21,13 +23,9 @@ def solve(program, folder, out, threads):
     photograph, *flags = OBJECTS[folder.name]
     flags = [str(folder / word) if "." in word else word for word in flags]
     began = time.monotonic()
-    # 3: nothing better than the first guess was found; the result says so.
-    done = subprocess.run([program, folder / photograph, *flags, "--mask", folder / "mask.png", "--out", out / folder.name, "--quiet",
-                           "--threads", str(threads)])
-    if done.returncode not in (0, 3):
-        raise SystemExit(f"{folder.name}: exit status {done.returncode}")
+    result = cases.solve([program, folder / photograph, *flags, "--mask", folder / "mask.png", "--out", out / folder.name,
+                          "--quiet", "--threads", str(threads)], out / folder.name)
     seconds = time.monotonic() - began
-    result = json.loads((out / folder.name / "result.json").read_text())
     verdict, check = result["verdict"], result["check"]
     ratings = verdict["ratings"]
     return [folder.name, f"{seconds:.0f}", result["status"], f"{result['metrics']['misfit']:.3f}",

@@ -13,6 +13,7 @@ constexpr size_t kPointsAtOnce = 4096;
 
 void RenderPixels(const SolveSetup& setup, MapSize size,
                   const std::vector<PixelRender>& renders) {
+  if (renders.empty()) return;
   const std::vector<ShadingPoint>& points = setup.pixels.points;
   for (const PixelRender& render : renders) {
     render.radiance->resize(3 * points.size());

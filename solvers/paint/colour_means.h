@@ -21,8 +21,7 @@ class ColourMeans {
   std::vector<double> OfLikeChroma(const std::vector<double>& values,
                                    const std::vector<double>& weights) const;
   // The same over points whose log luminance is like too, by that length > 0.
-  // What is further than 4.8 / 0.3 lengths from the mean luminance counts as
-  // that far.
+  // What is further than 16 lengths from the mean luminance counts as that far.
   std::vector<double> OfLikeColour(const std::vector<double>& values,
                                    const std::vector<double>& weights,
                                    const std::vector<double>& luminance,

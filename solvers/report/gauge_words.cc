@@ -26,8 +26,8 @@ std::string GaugeWords(const InverseProblem& inverse) {
       break;
   }
   if (inverse.solver.estimator == SolverEstimator::kMarginal) {
-    return "scale between reflectance and light: mean log reflectance that of "
-           "the training materials; hue: most probable";
+    return "scale between reflectance and light: " +
+           LevelWords(inverse.solver.estimator) + "; hue: most probable";
   }
   return "scale per channel between reflectance and light: least prior cost of "
          "log colours (training materials) and of the light's mean chroma";

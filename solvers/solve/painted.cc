@@ -35,9 +35,8 @@ struct Paint {
 
 void FitPaint(const SolveSetup& setup, const PaintedPixels& pixels,
               Paint* paint) {
-  paint->log_albedo =
-      FitAlbedo(paint->unpainted, setup.pixels.observed, pixels.neighbours,
-                InViews(pixels.options, setup.pixels.points));
+  paint->log_albedo = FitAlbedo(paint->unpainted, setup.pixels.observed,
+                                pixels.neighbours, pixels.options);
 }
 
 // The light and the rest given the paint, and the paint under that light.
@@ -82,7 +81,8 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
   }
   const UnpaintedReflectance reflectance =
       UnpaintedOf(*setup.lobes, found->lobes.data());
-  const PaintedPixels pixels = {reflectance, neighbours, first.options};
+  const PaintedPixels pixels = {reflectance, neighbours,
+                                InViews(first.options, setup.pixels.points)};
   std::vector<float> map;
   found->light.mode.Exp(&map);
   Paint paint;

@@ -27,15 +27,14 @@ def prepare(args):
     """Photographs and the problem that names them."""
     geometry = geometry_of(args.mesh and args.mesh.resolve())
     light = {"known": str(args.map.resolve())}
-    write_problem(args.out / "views.yaml", {"problem": "textures", "geometry": geometry, "illumination": light,
-                                    "views": views_of(args, "renders/views"),
-                                    "texture": {"width": args.texels, "height": args.texels}})
+    write_problem(args.out / "views.yaml", {
+        "problem": "textures", "geometry": geometry, "illumination": light, "views": views_of(args, "renders/views"),
+        "texture": {"width": args.texels, "height": args.texels}})
     if (args.out / f"renders/views/v{args.views - 1:03}/render.exr").exists():
         return
-    write_problem(args.out / "scene.yaml", {"image": {"width": args.pixels, "height": args.pixels},
-                                    "views": views_of(args, None), "geometry": geometry,
-                                    "reflectance": {"known": {"lambertian": 0.5}}, "illumination": light,
-                                    "quality": "preview", "effects": "none"})
+    write_problem(args.out / "scene.yaml", {
+        "image": {"width": args.pixels, "height": args.pixels}, "views": views_of(args, None), "geometry": geometry,
+        "reflectance": {"known": {"lambertian": 0.5}}, "illumination": light, "quality": "preview", "effects": "none"})
     subprocess.run([args.bin / "ibrdf_render", "--scene", args.out / "scene.yaml", "--out", args.out / "renders",
                     "--quiet", "--threads", str(args.threads)], check=True)
 
