@@ -28,6 +28,10 @@ const std::vector<SearchStage> kEvidenceStages = {{4, 2}, {2, 5}};
 // FindFirstPaint leaves of paint, and the variance of the light's chroma.
 constexpr double kLeftOfPaint = 0.3;
 constexpr double kPaintedLightChroma = 0.1;
+// The first paint rests on one lamp in an even room. What that leaves of the
+// shading drifts over the surface; else lobes would mirror a light that makes
+// it: a paper cup came out with 14 times its gloss (docs/notes/paint.md).
+constexpr double kLeftOfShading = 0.15;
 
 // Before the light is known, pixels tell paint and a lamp by themselves; what
 // is left is small. Under a lamp its chroma is hardly the light's, which else
@@ -44,6 +48,7 @@ void AddPaint(const FirstPaint& first, ReflectanceSearchOptions* o) {
   o->paint->albedo = AlbedoPrior().Scaled(kLeftOfPaint);
   o->paint->albedo.own_luminance =
       std::max(o->paint->albedo.own_luminance, first.deviation);
+  o->paint->albedo.smooth_luminance = kLeftOfShading;
   o->paint->mean = first.log_albedo;
   if (first.natural_light) return;
   o->process.chroma_variance *= kPaintedLightChroma;
@@ -103,6 +108,8 @@ StatusOr<std::vector<ModelOptima>> Search(
   if (!found.ok()) return found.status();
   std::vector<ModelOptima> optima;
   for (const ReflectanceSearchResult& result : *found) {
+    VLOG(1) << "found from " << result.initial_guess
+            << ", -log evidence: " << result.cost << " nats";
     optima.push_back(OptimaOf(result, *setups[result.model]));
   }
   return optima;

@@ -61,6 +61,18 @@ Eigen::VectorXd MeanPaint(const std::vector<ShadingPoint>& points,
          ToEigen(BinByNormal(points, without, resolution.bins).log_radiance);
 }
 
+// Of each bin's points [bins][3], not normalised.
+Eigen::MatrixX3d MeanNormals(const NormalBins& bins) {
+  Eigen::MatrixX3d normals = Eigen::MatrixX3d::Zero(bins.num_bins(), 3);
+  for (int i = 0; i < bins.num_bins(); ++i) {
+    for (int k = bins.first[i]; k < bins.first[i + 1]; ++k) {
+      normals.row(i) += bins.points[k].normal.cast<double>().transpose() /
+                        (bins.first[i + 1] - bins.first[i]);
+    }
+  }
+  return normals;
+}
+
 // Those of the values [3 * bins], or of none, whose bins are to be kept.
 Eigen::VectorXd KeepRows(const Eigen::VectorXd& values,
                          const std::vector<bool>& keep) {
@@ -107,8 +119,8 @@ MarginalReflectance::MarginalReflectance(
   CHECK(!paint || num_materials == 1);
   Eigen::MatrixXd covariance;
   if (paint) {
-    covariance =
-        AlbedoCovariance(paint->albedo, LogChroma(binned_.log_radiance));
+    covariance = AlbedoCovariance(
+        paint->albedo, LogChroma(binned_.log_radiance), MeanNormals(binned_));
   }
   likelihood_ = std::make_unique<MarginalLikelihood>(
       LogRadianceData{binned_.log_radiance, binned_.log_low, binned_.log_high},

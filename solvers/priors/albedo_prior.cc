@@ -7,6 +7,19 @@ namespace {
 
 double Square(double x) { return x * x; }
 
+// exp(-|n_p - n_q|^2 / (2 length^2)) [points]^2.
+Eigen::MatrixXd SmoothKernel(const Eigen::MatrixX3d& normals, double length) {
+  const Eigen::Index P = normals.rows();
+  Eigen::MatrixXd kernel(P, P);
+  for (Eigen::Index p = 0; p < P; ++p) {
+    kernel.col(p) =
+        (-(normals.rowwise() - normals.row(p)).rowwise().squaredNorm().array() /
+         (2.0 * Square(length)))
+            .exp();
+  }
+  return kernel;
+}
+
 }  // namespace
 
 AlbedoPrior AlbedoPrior::Scaled(double factor) const {
@@ -15,6 +28,7 @@ AlbedoPrior AlbedoPrior::Scaled(double factor) const {
   scaled.chroma_std *= factor;
   scaled.own_luminance *= factor;
   scaled.own_chroma *= factor;
+  scaled.smooth_luminance *= factor;
   return scaled;
 }
 
@@ -29,7 +43,8 @@ Eigen::MatrixX3d LogChroma(const std::vector<double>& log_radiance) {
 }
 
 Eigen::MatrixXd AlbedoCovariance(const AlbedoPrior& prior,
-                                 const Eigen::MatrixX3d& chroma) {
+                                 const Eigen::MatrixX3d& chroma,
+                                 const Eigen::MatrixX3d& normals) {
   const Eigen::Index P = chroma.rows();
   Eigen::MatrixXd kernel(P, P);
   for (Eigen::Index p = 0; p < P; ++p) {
@@ -40,8 +55,13 @@ Eigen::MatrixXd AlbedoCovariance(const AlbedoPrior& prior,
     }
   }
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(P, P);
-  const Eigen::MatrixXd luminance =
+  Eigen::MatrixXd luminance =
       Square(prior.luminance_std) * kernel + Square(prior.own_luminance) * one;
+  if (normals.rows() > 0 && prior.smooth_luminance > 0.0) {
+    CHECK_EQ(normals.rows(), P);
+    luminance += Square(prior.smooth_luminance) *
+                 SmoothKernel(normals, prior.smooth_length);
+  }
   const Eigen::MatrixXd colour =
       Square(prior.chroma_std) * kernel + Square(prior.own_chroma) * one;
   Eigen::MatrixXd K(3 * P, 3 * P);

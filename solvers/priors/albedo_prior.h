@@ -18,6 +18,10 @@ struct AlbedoPrior {
   double own_luminance = 0.1;   // a point's own
   double own_chroma = 0.03;     // likewise
   double colour_length = 0.06;  // of log chroma: what counts as like
+  // Of luminance that drifts over the surface, whatever the colour, and the
+  // distance of unit normals at which it has become another.
+  double smooth_luminance = 0.0;
+  double smooth_length = 0.5;
 
   // All deviations times `factor`.
   AlbedoPrior Scaled(double factor) const;
@@ -43,7 +47,10 @@ Eigen::MatrixX3d LogChroma(const std::vector<double>& log_radiance);
 //   + (chroma_std^2 k_pq + own_chroma^2 [p = q]) (I - 1 1^T / 3),
 //   k_pq = 1 / (1 + |q_p - q_q|^2 / (2 colour_length^2)),
 // a rational quadratic kernel: colours far from each other still tell a little.
+// With normals [points][3], empty: none, the first bracket has also
+//   smooth_luminance^2 exp(-|n_p - n_q|^2 / (2 smooth_length^2)).
 Eigen::MatrixXd AlbedoCovariance(const AlbedoPrior& prior,
-                                 const Eigen::MatrixX3d& chroma);
+                                 const Eigen::MatrixX3d& chroma,
+                                 const Eigen::MatrixX3d& normals = {});
 
 }  // namespace ibrdf

@@ -185,6 +185,36 @@ TEST(MarginalPaint, TakesWhatColourTellsFromTheLight) {
   EXPECT_LT(spread_of_light(paint), 0.2 * spread_of_light({}));
 }
 
+// Normals on an arc, of which neighbours differ by 0.1 radians.
+Eigen::MatrixX3d ArcOfNormals(int points) {
+  Eigen::MatrixX3d normals(points, 3);
+  for (int i = 0; i < points; ++i) {
+    normals.row(i) << std::sin(0.1 * i), 0.0, std::cos(0.1 * i);
+  }
+  return normals;
+}
+
+TEST(AlbedoCovariance, LuminanceDriftsWithTheNormals) {
+  constexpr int kArc = 30;
+  AlbedoPrior prior;
+  prior.smooth_luminance = 0.2;
+  prior.smooth_length = 0.5;
+  const Eigen::MatrixX3d chroma = SomeChroma(kArc);
+  const Eigen::MatrixXd without = AlbedoCovariance(prior, chroma);
+  const Eigen::MatrixXd drift =
+      AlbedoCovariance(prior, chroma, ArcOfNormals(kArc)) - without;
+  for (const int q : {0, 1, 5, 29}) {
+    const double chord = 2.0 * std::sin(0.05 * q);
+    const double expected = 0.04 * std::exp(-2.0 * chord * chord);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(drift(0, c * kArc + q), expected, 1e-15) << c << ' ' << q;
+      EXPECT_NEAR(drift(c * kArc + q, 0), expected, 1e-15) << c << ' ' << q;
+    }
+  }
+  EXPECT_GT(drift.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(),
+            -1e-12);
+}
+
 TEST(AlbedoCovariance, IsPositiveDefiniteAndOfItsDeviations) {
   const AlbedoPrior prior;
   const Eigen::MatrixX3d chroma = SomeChroma(5);

@@ -102,6 +102,15 @@ TEST(Verdict, PaintTakesFromWhatIsKnownOfGlossAlone) {
       << v.doubt;
 }
 
+TEST(Verdict, KnownLightTellsGlossFromPaint) {
+  VerdictNumbers n = Good();
+  n.kind = ProblemKind::kReflectance;
+  n.has_paint = true;
+  const Verdict v = MakeVerdict(n);
+  EXPECT_EQ(Trust::kGood, v.ratings.gloss);
+  EXPECT_FALSE(Contains(v.doubt, "paint")) << v.doubt;
+}
+
 TEST(Verdict, AKnownReasonIsSaidOfASmallMisfitToo) {
   VerdictNumbers n = Good();
   n.misfit = 0.07;

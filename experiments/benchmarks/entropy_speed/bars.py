@@ -34,7 +34,7 @@ def prepare(args):
         return
     write_problem(args.out / "scene.yaml", {
         "image": {"width": args.pixels, "height": args.pixels}, "views": views_of(args, None), "geometry": geometry,
-        "reflectance": {"known": {"lambertian": 0.5}}, "illumination": light, "quality": "preview", "effects": "none"})
+        "reflectance": {"known": {"lambertian": 0.5}}, "illumination": light, "quality": "preview", "effects": ["harmonics"]})
     subprocess.run([args.bin / "ibrdf_render", "--scene", args.out / "scene.yaml", "--out", args.out / "renders",
                     "--quiet", "--threads", str(args.threads)], check=True)
 
