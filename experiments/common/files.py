@@ -23,6 +23,49 @@ def write_png(path, image):
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
+def _paeth(left, up, corner):
+    """The PNG standard's predictor, section 9.4."""
+    estimate = left + up - corner
+    return min((abs(estimate - value), order, value) for order, value in enumerate((left, up, corner)))[2]
+
+
+def _unfilter(kind, line, above, step):
+    """A row of a PNG file, bytes, from what is stored of it."""
+    if kind == 0:
+        return line
+    if kind == 2:
+        return [(x + up) & 255 for x, up in zip(line, above)]
+    row = [0] * step
+    for i, x in enumerate(line):
+        left, up, corner = row[i], above[i], above[i - step] if i >= step else 0
+        row.append((x + (left if kind == 1 else (left + up) // 2 if kind == 3 else _paeth(left, up, corner))) & 255)
+    return row[step:]
+
+
+def read_png(path):
+    """[H, W, channels] in [0, 1] of a PNG file of 8 or 16 bits, not interlaced and without a palette."""
+    data = path.read_bytes()
+    at, packed = 8, b""
+    while at < len(data):
+        size, name = struct.unpack(">I", data[at:at + 4])[0], data[at + 4:at + 8]
+        if name == b"IHDR":
+            width, height, bits, kind, _, _, interlaced = struct.unpack(">IIBBBBB", data[at + 8:at + 21])
+        elif name == b"IDAT":
+            packed += data[at + 8:at + 8 + size]
+        at += 12 + size
+    channels = {0: 1, 2: 3, 4: 2, 6: 4}[kind]
+    if bits not in (8, 16) or interlaced:
+        raise ValueError(f"{path}: PNG of {bits} bits, interlaced {interlaced}, is not read")
+    raw, step = zlib.decompress(packed), channels * bits // 8
+    rows, above = [], [0] * (width * step)
+    for y in range(height):
+        begin = y * (width * step + 1)
+        above = _unfilter(raw[begin], list(raw[begin + 1:begin + 1 + width * step]), above, step)
+        rows.append(bytes(above))
+    values = np.frombuffer(b"".join(rows), ">u2" if bits == 16 else "u1")
+    return values.reshape(height, width, channels) / float(2**bits - 1)
+
+
 def read_exr(path):
     """[H, W, 3] of an OpenEXR file as the programs write them: floats B, G, R in blocks of 16 rows, ZIP."""
     data = path.read_bytes()
