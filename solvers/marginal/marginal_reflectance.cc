@@ -61,7 +61,7 @@ Eigen::VectorXd MeanPaint(const std::vector<ShadingPoint>& points,
          ToEigen(BinByNormal(points, without, resolution.bins).log_radiance);
 }
 
-// Of each bin's points [bins][3], not normalised.
+// The mean normals of the bins' points [bins][3], not normalised.
 Eigen::MatrixX3d MeanNormals(const NormalBins& bins) {
   Eigen::MatrixX3d normals = Eigen::MatrixX3d::Zero(bins.num_bins(), 3);
   for (int i = 0; i < bins.num_bins(); ++i) {

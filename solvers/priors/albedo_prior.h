@@ -18,8 +18,8 @@ struct AlbedoPrior {
   double own_luminance = 0.1;   // a point's own
   double own_chroma = 0.03;     // likewise
   double colour_length = 0.06;  // of log chroma: what counts as like
-  // Of luminance that drifts over the surface, whatever the colour, and the
-  // distance of unit normals at which it has become another.
+  // Luminance drifts over the surface by this, whatever the colour, and has
+  // become another where unit normals are that far apart.
   double smooth_luminance = 0.0;
   double smooth_length = 0.5;
 

@@ -86,8 +86,7 @@ TrustRatings RatingsOf(const VerdictNumbers& n) {
     // Paint comes out as mirrored light.
     const int painted = n.several_materials ? 2 : 0;
     const int rival = n.rival_difference > kRivalDifference ? 1 : 0;
-    // The energy of gloss is off by 7 and 12 times where its error was expected
-    // to be fair (experiments/painted).
+    // The energy of gloss is off by up to 3.3 times (experiments/painted).
     const int under_paint = PaintMayBeGloss(n) ? 1 : 0;
     ratings.light = Lower(Rate(n.light_error, kGoodError, kFairError),
                           lost + clipped + painted);
