@@ -45,6 +45,9 @@ inline std::optional<ResponseKind> KnownResponse(ResponseChoice choice) {
   return static_cast<ResponseKind>(static_cast<int>(choice) - 1);
 }
 
+// Photographs of one view beside the first: each takes a solve of its light.
+inline constexpr size_t kMaxOtherLights = 15;
+
 struct ImageSpec {
   std::string file;   // any of photo_file.h; empty: to be rendered
   std::string mask;   // .png; empty: none
@@ -58,6 +61,8 @@ struct ImageSpec {
   // Further files of the same view, each of its own exposure.
   std::vector<std::string> brackets;
   std::vector<double> bracket_exposures;
+  // Further files of the same view, each under a light of its own.
+  std::vector<std::string> other_lights;
   int width = 0;  // pixels, of an image to be rendered; 0 with a file
   int height = 0;
 };

@@ -60,13 +60,13 @@ void TakeLabelsOfViews(const ViewsSpec& views, ProblemReader reader,
 void ReadKeys(ProblemReader root, Problem* problem) {
   root.Read("problem", &problem->kind);
   // CheckTextures says what textures need in the image's place.
-  const bool views =
-      root.Has("views") || problem->kind == ProblemKind::kTextures;
+  const bool others = root.Has("views") || root.Has("images") ||
+                      problem->kind == ProblemKind::kTextures;
   for (const char* key : {"image", "geometry"}) {
-    if (root.Has(key) || (views && std::string(key) == "image")) continue;
+    if (root.Has(key) || (others && std::string(key) == "image")) continue;
     root.Fail(key, "expected this key, found nothing");
   }
-  ReadImageSpec(root.Below("image"), views, &problem->image);
+  ReadImageSpec(root.Below("image"), others, &problem->image);
   ReadCamera(root.Below("camera"), &problem->camera);
   ReadViews(&root, &problem->views);
   TakeOneView(&root, problem);
@@ -85,6 +85,7 @@ void ReadKeys(ProblemReader root, Problem* problem) {
   ReadSolver(root.Below("solver"), problem->kind, &problem->solver);
   TakeLabelsOfViews(problem->views, root.Below("reflectance"),
                     &problem->reflectance);
+  ReadOtherLights(&root, problem);
   SettleVariation(problem->solver, root.Below("reflectance"),
                   &problem->reflectance);
   SettlePrior(problem->solver, &problem->illumination);

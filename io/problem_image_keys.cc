@@ -2,6 +2,7 @@
 #include <string>
 
 #include "ibrdf/io/image_limits.h"
+#include "ibrdf/io/problem.h"
 #include "ibrdf/io/problem_schema_rows.h"
 #include "ibrdf/io/problem_section_keys.h"
 
@@ -90,6 +91,19 @@ Keys BracketKeys() {
               .UsedBy(kUsedBySolve)};
 }
 
+Keys OtherLightKeys() {
+  return {Row("images",
+              "In place of `image.file`: photographs of one view, each under a "
+              "light of its own. The albedo is what they share. Implies "
+              "`variation: albedo`.")
+              .PathList(".exr, .hdr, .pfm, .png, .jpg, .tif, .npy")
+              .Without("one photograph")
+              .UsedBy(kUsedByJoint)
+              .Notes({"At most " + std::to_string(kMaxOtherLights + 1) +
+                      ", of one size, mask and curve, from the same place. The "
+                      "reflectance is found from the first."})};
+}
+
 Keys MaskAndSizeKeys() {
   return {Row("image.mask",
               "White pixels are the object. Without a mask, all pixels whose "
@@ -112,8 +126,8 @@ Keys MaskAndSizeKeys() {
 }  // namespace
 
 Keys ImageKeys() {
-  return Join(
-      {ImageFileKeys(), ResponseKeys(), BracketKeys(), MaskAndSizeKeys()});
+  return Join({ImageFileKeys(), ResponseKeys(), BracketKeys(),
+               MaskAndSizeKeys(), OtherLightKeys()});
 }
 
 }  // namespace problem_keys

@@ -28,7 +28,9 @@ json ImageJson(const ImageSpec& image) {
     return {{"width", image.width}, {"height", image.height}};
   }
   json out;
-  if (!image.file.empty()) out["file"] = image.file;
+  if (!image.file.empty() && image.other_lights.empty()) {
+    out["file"] = image.file;
+  }
   if (!image.mask.empty()) out["mask"] = image.mask;
   if (!image.layer.empty()) out["layer"] = image.layer;
   out["response"] = WordOf("image.response", image.response);
@@ -172,11 +174,10 @@ json ReflectanceJson(const ReflectanceSpec& reflectance) {
   if (reflectance.known()) {
     return {{"known", KnownReflectanceJson(reflectance)}};
   }
-  json out = {
-      {"model", reflectance.model.empty() ? "auto" : reflectance.model},
-      {"lobes", reflectance.lobes},
-      {"prior_sigma", reflectance.prior_sigma},
-      {"variation", ReflectanceVariationName(reflectance.variation)}};
+  json out = {{"model", reflectance.model.empty() ? "auto" : reflectance.model},
+              {"lobes", reflectance.lobes},
+              {"prior_sigma", reflectance.prior_sigma},
+              {"variation", ReflectanceVariationName(reflectance.variation)}};
   if (!reflectance.labels.empty()) out["labels"] = reflectance.labels;
   return out;
 }
@@ -311,6 +312,12 @@ nlohmann::json ProblemToJson(const Problem& problem) {
   out["likelihood"] = {{"scale", AutoOr(problem.likelihood.scale)},
                        {"epsilon", AutoOr(problem.likelihood.epsilon)}};
   out["solver"] = SolverJson(problem.solver, problem.kind);
+  if (!problem.image.other_lights.empty()) {
+    out["images"] = {problem.image.file};
+    for (const std::string& file : problem.image.other_lights) {
+      out["images"].push_back(file);
+    }
+  }
   json truth = json::object();
   if (!problem.truth.brdf.empty()) truth["brdf"] = problem.truth.brdf;
   if (!problem.truth.illumination.empty()) {

@@ -39,6 +39,9 @@ std::vector<NamedFile> NamedFiles(const Problem& problem) {
   for (const std::string& bracket : problem.image.brackets) {
     files.push_back({"image.brackets", bracket});
   }
+  for (const std::string& file : problem.image.other_lights) {
+    files.push_back({"images", file});
+  }
   const std::vector<ViewSpec>& list = problem.views.list;
   for (size_t i = 0; i < list.size(); ++i) {
     const std::string key = "views[" + std::to_string(i) + "].";

@@ -8,8 +8,13 @@
 namespace ibrdf {
 
 // With kTextures the views have the files, so the image may have none.
-// views: whether others stand beside it, which may have the files.
-void ReadImageSpec(ProblemReader reader, bool views, ImageSpec* image);
+// others: whether `views` or `images` stand beside it, which may have the
+// files.
+void ReadImageSpec(ProblemReader reader, bool others, ImageSpec* image);
+
+// `images`, in place of the image's file. Kind, image, views and reflectance
+// are read before, and its variation becomes kAlbedo.
+void ReadOtherLights(ProblemReader* root, Problem* problem);
 
 void ReadCamera(ProblemReader reader, Camera* camera);
 void ReadViews(ProblemReader* root, ViewsSpec* views);

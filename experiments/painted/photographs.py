@@ -4,7 +4,8 @@
     experiments/painted/photographs.py PHOTOGRAPHS OUT [--lights original,light01] [--bin DIR]
 
 PHOTOGRAPHS: a folder with a folder for each object: the image of each light, mask.png, normals.exr and
-reflectance.png, all linear (MIT intrinsic images, Grosse et al. 2009). A row of OUT/results.csv as each solve finishes;
+reflectance.png, all linear (MIT intrinsic images, Grosse et al. 2009). A light may be several, as original+light01: one
+solve of both photographs, its image's error that of the first. A row of OUT/results.csv as each solve finishes;
 the same command goes on where it was stopped. Log-RMSE and LMSE are aligned by a scale per channel (ibrdf_eval albedo).
 """
 import argparse
@@ -16,7 +17,8 @@ import time
 
 COLUMNS = ["object", "light", "variation", "log_rmse", "constant", "image", "lmse", "seconds"]
 PROBLEM = """problem: joint
-image: {{file: {folder}/{light}.png, mask: {folder}/mask.png, response: linear}}
+images: [{files}]
+image: {{mask: {folder}/mask.png, response: linear}}
 geometry: {{normals: {folder}/normals.exr}}
 reflectance: {{variation: {variation}}}
 solver: {{seconds: 300}}
@@ -35,14 +37,16 @@ def solve(binaries, folder, light, variation, out):
     case = out / f"{folder.name}_{light}_{variation}"
     case.mkdir(parents=True, exist_ok=True)
     problem = case / "problem.yaml"
-    problem.write_text(PROBLEM.format(folder=folder.resolve(), light=light, variation=variation))
+    lights = light.split("+")
+    files = ", ".join(f"{folder.resolve()}/{one}.png" for one in lights)
+    problem.write_text(PROBLEM.format(folder=folder.resolve(), files=files, variation=variation))
     began = time.monotonic()
     subprocess.run([binaries / "ibrdf_solve", "--problem", problem, "--out", case, "--quiet"], check=True)
     seconds = time.monotonic() - began
     metrics = evaluate(binaries, case / "albedo.exr", folder)
     # The mask is white: a constant albedo.
     constant = evaluate(binaries, folder / "mask.png", folder)["albedo_log_rmse_aligned"]
-    image = evaluate(binaries, folder / f"{light}.png", folder)["albedo_log_rmse_aligned"]
+    image = evaluate(binaries, folder / f"{lights[0]}.png", folder)["albedo_log_rmse_aligned"]
     return [folder.name, light, variation, f"{metrics['albedo_log_rmse_aligned']:.3f}", f"{constant:.3f}", f"{image:.3f}",
             f"{metrics['albedo_lmse']:.4f}", f"{seconds:.0f}"]
 

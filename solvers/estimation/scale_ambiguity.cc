@@ -38,6 +38,12 @@ void ScaleSlice(const Eigen::Array3d& scale, BrdfSlice* slice) {
   }
 }
 
+void DivideChannels(const Eigen::Array3d& scale, Image* image) {
+  for (size_t i = 0; i < image->rgb.size(); ++i) {
+    image->rgb[i] = static_cast<float>(image->rgb[i] / scale[i % 3]);
+  }
+}
+
 // All that is said of a material's reflectance, times exp(shift).
 void ScaleReflectance(const Eigen::Array3d& shift, int code_size,
                       MaterialSolution* material) {
@@ -145,9 +151,9 @@ Eigen::Array3d LightGaugeShift(SolverGauge gauge, const Image& map) {
 void SetGauge(SolverGauge gauge, int code_size, Solution* solution) {
   const Eigen::Array3d shift = LightGaugeShift(gauge, solution->map);
   const Eigen::Array3d scale = shift.exp();
-  std::vector<float>& map = solution->map.rgb;
-  for (size_t i = 0; i < map.size(); ++i) {
-    map[i] = static_cast<float>(map[i] / scale[i % 3]);
+  DivideChannels(scale, &solution->map);
+  for (OtherLight& other : solution->other_lights) {
+    DivideChannels(scale, &other.map);
   }
   ScaleReflectance(shift, code_size, &solution->reflectance());
   for (MaterialSolution& material : solution->materials) {

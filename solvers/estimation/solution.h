@@ -51,6 +51,12 @@ struct CurveEstimate {
   double cost = 0.0;  // -log evidence, nats, above the best one's
 };
 
+// What a solution says of another photograph (OtherPhotograph).
+struct OtherLight {
+  Image map, render;  // as Solution has them
+  double misfit = 0.0;
+};
+
 // What a solution says of a material's reflectance.
 struct MaterialSolution {
   std::vector<double> lobe_parameters;  // as LobeModel; empty if known
@@ -102,6 +108,8 @@ struct Solution : MaterialSolution {
   // Where the albedo varies, has_paint(): that of what is matte, at the
   // object's pixels, else 0; and the radiance that is gloss. Else empty.
   Image albedo, gloss;
+  // Of the problem's other photographs; empty where they took no part.
+  std::vector<OtherLight> other_lights;
   bool has_paint() const { return !albedo.empty(); }
   // Stray light beside the known map's, in `render` too; 0: none.
   Eigen::Array3d ambient = Eigen::Array3d::Zero();

@@ -29,6 +29,8 @@ class SolveContext {
   double Elapsed() const { return seconds_spent_ + clock_.Seconds(); }
   double budget() const { return budget_; }
   const std::atomic<bool>* stop() const { return stop_; }
+  const SolveProgress& progress() const { return progress_; }
+  double reserved() const { return reserved_; }
   bool Interrupted() const { return stop_ != nullptr && stop_->load(); }
 
   // Keeps seconds for what follows the estimate (Summarise and the writing of

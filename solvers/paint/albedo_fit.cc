@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ibrdf/base/eigen_vectors.h"
+#include "ibrdf/base/median.h"
 #include "ibrdf/scene/num_views.h"
 #include "ibrdf/solvers/paint/chroma_plane.h"
 #include "ibrdf/solvers/paint/colour_means.h"
@@ -70,6 +71,52 @@ ApparentPaint ApparentPaintOf(const UnpaintedRadiance& unpainted,
     out.chroma.push_back(ChromaPlane(apparent.log_albedo));
     out.luminance.push_back(apparent.log_albedo.mean());
     out.seen.push_back(apparent.seen ? 1.0 : 0.0);
+  }
+  return out;
+}
+
+// The median; of an even number what is nearest to 0 between the middle two.
+double MedianStep(std::vector<double> steps) {
+  std::sort(steps.begin(), steps.end());
+  return std::clamp(0.0, steps[(steps.size() - 1) / 2],
+                    steps[steps.size() / 2]);
+}
+
+// Moves an image's paint to the level and hue of another's.
+void TakeLevelOf(const ApparentPaint& first, ApparentPaint* image) {
+  std::vector<double> luminance, u, v;
+  for (size_t i = 0; i < first.seen.size(); ++i) {
+    if (first.seen[i] == 0.0 || image->seen[i] == 0.0) continue;
+    luminance.push_back(image->luminance[i] - first.luminance[i]);
+    u.push_back(image->chroma[i][0] - first.chroma[i][0]);
+    v.push_back(image->chroma[i][1] - first.chroma[i][1]);
+  }
+  if (luminance.empty()) return;
+  const double level = UpperMedian(std::move(luminance));
+  const Eigen::Array2d hue(UpperMedian(std::move(u)),
+                           UpperMedian(std::move(v)));
+  for (size_t i = 0; i < first.seen.size(); ++i) {
+    image->luminance[i] -= level;
+    image->chroma[i] -= hue;
+  }
+}
+
+// What the images say together, all of one level. The brighter of two: an image
+// has shadows that the render has not.
+ApparentPaint Together(const std::vector<ApparentPaint>& images) {
+  ApparentPaint out = images.front();
+  for (size_t i = 0; images.size() > 1 && i < out.seen.size(); ++i) {
+    std::vector<double> luminance, u, v;
+    for (const ApparentPaint& image : images) {
+      if (image.seen[i] == 0.0) continue;
+      luminance.push_back(image.luminance[i]);
+      u.push_back(image.chroma[i][0]);
+      v.push_back(image.chroma[i][1]);
+    }
+    if (luminance.empty()) continue;
+    out.seen[i] = 1.0;
+    out.luminance[i] = UpperMedian(std::move(luminance));
+    out.chroma[i] = {UpperMedian(std::move(u)), UpperMedian(std::move(v))};
   }
   return out;
 }
@@ -160,23 +207,39 @@ struct PaintSteps {
   std::vector<Eigen::Array2d> chroma;
 };
 
-PaintSteps StepsOf(const ApparentPaint& apparent,
+// A step that the images have between two points.
+struct ImageStep {
+  double luminance = 0.0;
+  Eigen::Array2d chroma = Eigen::Array2d::Zero();
+  bool seen = false;
+};
+
+ImageStep StepOf(const std::vector<ApparentPaint>& images,
+                 const NeighbourPair& pair) {
+  const int a = pair.first, b = pair.second;
+  std::vector<double> luminance, u, v;
+  for (const ApparentPaint& image : images) {
+    if (image.seen[a] == 0.0 || image.seen[b] == 0.0) continue;
+    luminance.push_back(image.luminance[b] - image.luminance[a]);
+    u.push_back(image.chroma[b][0] - image.chroma[a][0]);
+    v.push_back(image.chroma[b][1] - image.chroma[a][1]);
+  }
+  if (luminance.empty()) return {};
+  return {MedianStep(std::move(luminance)),
+          {MedianStep(std::move(u)), MedianStep(std::move(v))},
+          true};
+}
+
+PaintSteps StepsOf(const std::vector<ApparentPaint>& images,
                    const std::vector<NeighbourPair>& neighbours,
                    const AlbedoFitOptions& options) {
   PaintSteps steps;
   for (const NeighbourPair& pair : neighbours) {
-    const int a = pair.first, b = pair.second;
-    if (apparent.seen[a] == 0.0 || apparent.seen[b] == 0.0) {
-      steps.weights.push_back(1.0);
-      steps.luminance.push_back(0.0);
-      steps.chroma.push_back(Eigen::Array2d::Zero());
-      continue;
-    }
-    const double luminance = apparent.luminance[b] - apparent.luminance[a];
-    const Eigen::Array2d chroma = apparent.chroma[b] - apparent.chroma[a];
+    const auto [luminance, chroma, seen] = StepOf(images, pair);
     const double share =
         PaintShare(luminance, chroma.matrix().norm(), pair.turn, options);
-    steps.weights.push_back(1.0 / (1.0 + Square(pair.turn / kCrease)));
+    steps.weights.push_back(seen ? 1.0 / (1.0 + Square(pair.turn / kCrease))
+                                 : 1.0);
     steps.luminance.push_back(share * luminance);
     steps.chroma.push_back(share * chroma);
   }
@@ -255,6 +318,14 @@ std::vector<double> FittedLuminance(
 
 }  // namespace
 
+AlbedoFitOptions UnderKnownShading() {
+  AlbedoFitOptions options;
+  options.edge = 0.03;
+  options.edge_by_turn = 1.0;
+  options.reach = 0.3;
+  return options;
+}
+
 AlbedoFitOptions InViews(AlbedoFitOptions options,
                          const std::vector<ShadingPoint>& points) {
   const double views = std::sqrt(static_cast<double>(NumViews(points)));
@@ -263,14 +334,20 @@ AlbedoFitOptions InViews(AlbedoFitOptions options,
   return options;
 }
 
-std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
-                              const Observations& observed,
+std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
                               const std::vector<NeighbourPair>& neighbours,
                               const AlbedoFitOptions& options) {
-  const size_t count = observed.valid.size();
-  CHECK_EQ(unpainted.matte.size(), 3 * count);
-  ApparentPaint apparent = ApparentPaintOf(unpainted, observed);
-  const PaintSteps steps = StepsOf(apparent, neighbours, options);
+  CHECK(!images.empty());
+  const size_t count = images.front().observed->valid.size();
+  std::vector<ApparentPaint> of_images;
+  for (const auto& [unpainted, observed] : images) {
+    CHECK_EQ(observed->valid.size(), count);
+    CHECK_EQ(unpainted->matte.size(), 3 * count);
+    of_images.push_back(ApparentPaintOf(*unpainted, *observed));
+    if (of_images.size() > 1) TakeLevelOf(of_images[0], &of_images.back());
+  }
+  ApparentPaint apparent = Together(of_images);
+  const PaintSteps steps = StepsOf(of_images, neighbours, options);
   apparent.chroma =
       FittedChroma(apparent, steps, neighbours, options.chroma_drifts);
   const std::vector<double> luminance =

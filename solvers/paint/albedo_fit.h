@@ -15,6 +15,12 @@ struct UnpaintedRadiance {
   std::vector<double> matte, gloss;
 };
 
+// One photograph of the points, and what they would show in it without paint.
+struct PaintedImage {
+  const UnpaintedRadiance* unpainted = nullptr;
+  const Observations* observed = nullptr;
+};
+
 struct AlbedoFitOptions {
   double colour_length = AlbedoPrior().colour_length;
   // What counts as like luminance where steps have parted paints of one chroma:
@@ -38,6 +44,10 @@ struct AlbedoFitOptions {
   double reach = 0.15;
 };
 
+// The options where little of what changes over the object is shading's that
+// the render has not.
+AlbedoFitOptions UnderKnownShading();
+
 // The options where the object's size is that of one of the points' views.
 AlbedoFitOptions InViews(AlbedoFitOptions options,
                          const std::vector<ShadingPoint>& points);
@@ -52,8 +62,12 @@ AlbedoFitOptions InViews(AlbedoFitOptions options,
 // points do that are of like luminance too in the solution before. Where the
 // gloss is nearly all of the image, or nothing was observed, paint is filled in
 // from around.
-std::vector<double> FitAlbedo(const UnpaintedRadiance& unpainted,
-                              const Observations& observed,
+//
+// Of several images of the same points, each under its own light, at least one:
+// shading and shadows change with the light, paint does not. So a step is the
+// median of theirs (Weiss 2001, Eq. 7), and so is a point's paint, each image's
+// level taken off by the median of its quotient with the first's.
+std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
                               const std::vector<NeighbourPair>& neighbours,
                               const AlbedoFitOptions& options);
 

@@ -139,15 +139,30 @@ double DeviationAtLikeNormals(const std::vector<ShadingPoint>& points,
              : kDeviationOverMad * UpperMedian(std::move(deviations));
 }
 
-// FitAlbedo of a matte object of that shading, its mean 0 in each channel.
-std::vector<double> PaintOf(const std::vector<ShadingPoint>& points,
-                            const Observations& observed,
-                            const std::vector<NeighbourPair>& neighbours,
-                            const UnpaintedRadiance& unpainted,
-                            const AlbedoFitOptions& options) {
+// What an image says by itself: its light, and what that makes of a white
+// matte object.
+struct ImageShading {
+  FirstPaint paint;
+  UnpaintedRadiance unpainted;
+};
+
+// FitAlbedo of a matte object of those shadings, its mean 0 in each channel.
+std::vector<double> PaintOf(
+    const std::vector<ShadingPoint>& points,
+    const std::vector<const Observations*>& images,
+    const std::vector<const UnpaintedRadiance*>& unpainted,
+    const std::vector<NeighbourPair>& neighbours,
+    const AlbedoFitOptions& options) {
+  std::vector<Observations> matte;
+  for (size_t k = 0; k < images.size(); ++k) {
+    matte.push_back(WithoutHighlights(points, *images[k], unpainted[k]->matte));
+  }
+  std::vector<PaintedImage> painted;
+  for (size_t k = 0; k < images.size(); ++k) {
+    painted.push_back({unpainted[k], &matte[k]});
+  }
   std::vector<double> log_albedo =
-      FitAlbedo(unpainted, WithoutHighlights(points, observed, unpainted.matte),
-                neighbours, InViews(options, points));
+      FitAlbedo(painted, neighbours, InViews(options, points));
   Eigen::Map<Eigen::Matrix3Xd> a(log_albedo.data(), 3,
                                  static_cast<Eigen::Index>(points.size()));
   const Eigen::Vector3d mean = a.rowwise().mean();
@@ -155,55 +170,92 @@ std::vector<double> PaintOf(const std::vector<ShadingPoint>& points,
   return log_albedo;
 }
 
-// The paint under SmoothShading in place of that of `out` under `unpainted`,
-// where it has fewer colours.
+// The paint under SmoothShading in place of the image's, where it has fewer
+// colours.
 void TakeIfSimpler(const std::vector<ShadingPoint>& points,
                    const Observations& observed,
                    const std::vector<NeighbourPair>& neighbours,
-                   UnpaintedRadiance* unpainted, FirstPaint* out) {
+                   ImageShading* out) {
   UnpaintedRadiance other;
   other.matte = SmoothShading(points, observed, neighbours);
-  other.gloss = unpainted->gloss;
+  other.gloss = out->unpainted.gloss;
   AlbedoFitOptions options;
   options.edge = options.chroma_edge = kAnyStep;
   options.edge_by_turn = 0.0;
   std::vector<double> paint =
-      PaintOf(points, observed, neighbours, other, options);
+      PaintOf(points, {&observed}, {&other}, neighbours, options);
   if (ColourEntropy(points, observed, paint) + kFewerColours >
-      ColourEntropy(points, observed, out->log_albedo)) {
+      ColourEntropy(points, observed, out->paint.log_albedo)) {
     return;
   }
-  *unpainted = std::move(other);
-  out->log_albedo = std::move(paint);
-  out->options = options;
+  out->unpainted = std::move(other);
+  out->paint.log_albedo = std::move(paint);
+  out->paint.options = options;
+}
+
+ImageShading ShadingOf(const std::vector<ShadingPoint>& points,
+                       const Observations& observed,
+                       const std::vector<NeighbourPair>& neighbours) {
+  ImageShading out;
+  out.paint.light = FindShadingLight(points, observed);
+  const ShadingLight light = out.paint.light.value_or(ShadingLight());
+  out.paint.natural_light = light.strength < kStrongLamp;
+  out.paint.options.chroma_drifts = out.paint.natural_light;
+  out.unpainted.gloss.assign(3 * points.size(), 0.0);
+  for (const ShadingPoint& point : points) {
+    const Eigen::Array3d irradiance =
+        Irradiance(light, point.normal.cast<double>());
+    out.unpainted.matte.insert(out.unpainted.matte.end(), irradiance.begin(),
+                               irradiance.end());
+  }
+  out.paint.log_albedo = PaintOf(points, {&observed}, {&out.unpainted},
+                                 neighbours, out.paint.options);
+  if (out.paint.natural_light) {
+    TakeIfSimpler(points, observed, neighbours, &out);
+  }
+  return out;
+}
+
+// Gives each image the paint that all show. Shading that no light's model has
+// is mostly gone from the median of several lights.
+void ShareThePaint(const std::vector<ShadingPoint>& points,
+                   const std::vector<const Observations*>& images,
+                   const std::vector<NeighbourPair>& neighbours,
+                   std::vector<ImageShading>* shadings) {
+  AlbedoFitOptions options = UnderKnownShading();
+  options.chroma_drifts = true;
+  std::vector<const UnpaintedRadiance*> unpainted;
+  for (const ImageShading& shading : *shadings) {
+    options.chroma_drifts &= shading.paint.options.chroma_drifts;
+    unpainted.push_back(&shading.unpainted);
+  }
+  const std::vector<double> log_albedo =
+      PaintOf(points, images, unpainted, neighbours, options);
+  for (ImageShading& shading : *shadings) {
+    shading.paint.log_albedo = log_albedo;
+    shading.paint.options = options;
+  }
 }
 
 }  // namespace
 
-FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
-                          const Observations& observed,
-                          const std::vector<NeighbourPair>& neighbours) {
-  FirstPaint out;
-  if (points.empty()) return out;
-  out.light = FindShadingLight(points, observed);
-  const ShadingLight light = out.light.value_or(ShadingLight());
-  out.natural_light = light.strength < kStrongLamp;
-  out.options.chroma_drifts = out.natural_light;
-  UnpaintedRadiance unpainted;
-  unpainted.gloss.assign(3 * points.size(), 0.0);
-  for (const ShadingPoint& point : points) {
-    const Eigen::Array3d irradiance =
-        Irradiance(light, point.normal.cast<double>());
-    unpainted.matte.insert(unpainted.matte.end(), irradiance.begin(),
-                           irradiance.end());
+std::vector<FirstPaint> FindFirstPaints(
+    const std::vector<ShadingPoint>& points,
+    const std::vector<const Observations*>& images,
+    const std::vector<NeighbourPair>& neighbours) {
+  if (points.empty()) return std::vector<FirstPaint>(images.size());
+  std::vector<ImageShading> shadings;
+  for (const Observations* observed : images) {
+    shadings.push_back(ShadingOf(points, *observed, neighbours));
   }
-  out.log_albedo =
-      PaintOf(points, observed, neighbours, unpainted, out.options);
-  if (out.natural_light) {
-    TakeIfSimpler(points, observed, neighbours, &unpainted, &out);
+  if (images.size() > 1) ShareThePaint(points, images, neighbours, &shadings);
+  std::vector<FirstPaint> out;
+  for (size_t k = 0; k < images.size(); ++k) {
+    ImageShading& shading = shadings[k];
+    shading.paint.deviation = DeviationAtLikeNormals(
+        points, *images[k], shading.unpainted, shading.paint.log_albedo);
+    out.push_back(std::move(shading.paint));
   }
-  out.deviation =
-      DeviationAtLikeNormals(points, observed, unpainted, out.log_albedo);
   return out;
 }
 
@@ -213,7 +265,8 @@ std::vector<double> FirstPaintUnder(
   UnpaintedRadiance unpainted;
   unpainted.matte = std::move(shading);
   unpainted.gloss.assign(3 * points.size(), 0.0);
-  return PaintOf(points, observed, neighbours, unpainted, AlbedoFitOptions());
+  return PaintOf(points, {&observed}, {&unpainted}, neighbours,
+                 AlbedoFitOptions());
 }
 
 }  // namespace ibrdf

@@ -33,9 +33,13 @@ struct FirstPaint {
 // also under SmoothShading, which takes wood's grain for paint where the former
 // takes its drift for light; the one with fewer colours is the simpler
 // explanation. Highlights say nothing of paint and are filled in from around.
-FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
-                          const Observations& observed,
-                          const std::vector<NeighbourPair>& neighbours);
+//
+// images: of the same points, each under its own light, at least one. Returns
+// one for each; the paint is that of all, and so is how it was fitted.
+std::vector<FirstPaint> FindFirstPaints(
+    const std::vector<ShadingPoint>& points,
+    const std::vector<const Observations*>& images,
+    const std::vector<NeighbourPair>& neighbours);
 
 // The log albedo alone, [points * 3] of mean 0, where the shading is known:
 // the radiance [points * 3] of a white matte object.

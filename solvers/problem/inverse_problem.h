@@ -28,6 +28,13 @@ struct NamedModel {
   std::shared_ptr<const NeuralBrdfModel> model;
 };
 
+// The same view as the image's, under another light.
+struct OtherPhotograph {
+  std::string file;
+  Image image;
+  std::optional<RadianceBounds> bounds;  // as InverseProblem has them
+};
+
 struct InverseProblem {
   ProblemKind kind = ProblemKind::kJoint;
   Image image;  // observed radiance; of several views, the sheet's
@@ -35,6 +42,8 @@ struct InverseProblem {
   // Where the file bounds radiance alone, as whole numbers do: the ends. An
   // image's value is then in its interval, or its one end.
   std::optional<RadianceBounds> bounds;
+  // Of painted objects under unknown light (SolvePainted).
+  std::vector<OtherPhotograph> other_photographs;
   // Codes of a curve that is to be found; image and bounds are then of a first
   // guess.
   std::optional<UnknownCurve> unknown_curve;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/problem/load_photograph.h"
 #include "ibrdf/solvers/problem/load_scene.h"
 #include "ibrdf/solvers/problem/open_model.h"
 #include "ibrdf/solvers/problem/quadrature_level.h"
@@ -202,6 +203,31 @@ Status FindDarkPixels(const std::optional<Eigen::Array3d>& ambient,
   return OkStatus();
 }
 
+// Photographs of the same pixels under other lights.
+Status LoadOtherPhotographs(const Problem& problem, InverseProblem* inverse) {
+  for (const std::string& file : problem.image.other_lights) {
+    ImageSpec spec = problem.image;
+    spec.file = file;
+    spec.mask.clear();  // the object's pixels are known
+    StatusOr<Photograph> photograph = LoadPhotograph(spec);
+    if (!photograph.ok()) return photograph.status();
+    const Image& image = photograph->radiance;
+    if (image.width != inverse->image.width ||
+        image.height != inverse->image.height) {
+      return InvalidInput(
+          file, "expected the size of " + problem.image.file + ", " +
+                    SizeName(inverse->image.width, inverse->image.height) +
+                    ", found " + SizeName(image.width, image.height));
+    }
+    for (std::string& warning : photograph->warnings) {
+      inverse->warnings.push_back(std::move(warning));
+    }
+    inverse->other_photographs.push_back(
+        {file, std::move(photograph->radiance), std::move(photograph->bounds)});
+  }
+  return OkStatus();
+}
+
 // What the file says without naming another.
 InverseProblem SettingsOf(const Problem& problem, uint64_t default_seed,
                           int num_threads) {
@@ -243,6 +269,7 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   inverse.materials = std::move(object.materials);
   inverse.look = std::move(object.look);
   inverse.variation = ChosenVariation(problem, inverse.look->check);
+  IBRDF_RETURN_IF_ERROR(LoadOtherPhotographs(problem, &inverse));
   IBRDF_RETURN_IF_ERROR(LoadReflectance(problem, &inverse));
   IBRDF_RETURN_IF_ERROR(LoadIllumination(problem, &inverse));
   IBRDF_RETURN_IF_ERROR(PlanAndTraceEffects(problem, object.scene, &inverse));

@@ -21,8 +21,9 @@ inline constexpr double kLeastCircle = 0.9;
 // Unset: the unit sphere, which touches the image's shorter sides. So it is
 // where it overlaps the mask by kFillsImage, where the mask's circle is within
 // a pixel of it, where the mask is no circle and the unit sphere covers it, and
-// where no circle fits better. Warns where an outline is fitted. Fails where the mask is no circle and reaches beyond the
-// unit sphere. path: of the mask or image, for messages.
+// where no circle fits better. Warns where an outline is fitted. Fails where
+// the mask is no circle and reaches beyond the unit sphere. path: of the mask
+// or image, for messages.
 StatusOr<std::optional<PixelCircle>> FindSphereOutline(
     const Mask& mask, const std::string& path,
     std::vector<std::string>* warnings);

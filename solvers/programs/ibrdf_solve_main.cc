@@ -267,8 +267,9 @@ Status Solve(const SolveFlags& flags) {
 
 void AddProblemFlags(CLI::App* app, SolveFlags* flags) {
   ProblemFlags* const problem = &flags->problem;
-  app->add_option("photo", problem->photo,
-                  "the photograph, in place of a problem file");
+  app->add_option("photo", problem->photos,
+                  "the photograph, in place of a problem file; several: of "
+                  "one view, each under a light of its own");
   app->add_option("--normals", problem->normals,
                   "its normal map (x right, y up, z to the camera)");
   app->add_option(

@@ -52,11 +52,25 @@ void SetText(ConfigNode* root, const std::string& path,
   node->quoted = true;
 }
 
+// One photograph, or several under lights of their own.
+void SetPhotos(const std::vector<std::string>& photos, ConfigNode* root) {
+  if (photos.size() == 1) return SetText(root, "image.file", photos[0]);
+  ConfigNode* const images = At(root, "images", true);
+  images->kind = ConfigNode::Kind::kList;
+  for (const std::string& photo : photos) {
+    ConfigNode one;
+    one.kind = ConfigNode::Kind::kScalar;
+    one.scalar = photo;
+    one.quoted = true;
+    images->items.push_back(one);
+  }
+}
+
 // The tree that the flags but --set stand for.
 ConfigNode TreeOf(const ProblemFlags& flags) {
   ConfigNode root;
   if (!flags.known_light.empty()) SetText(&root, "problem", "reflectance");
-  SetText(&root, "image.file", flags.photo);
+  SetPhotos(flags.photos, &root);
   SetText(&root, "image.mask", flags.mask);
   SetText(&root, "image.response", flags.response);
   SetText(&root, "geometry.normals", flags.normals);
@@ -66,8 +80,13 @@ ConfigNode TreeOf(const ProblemFlags& flags) {
 }
 
 Status CheckText(const ProblemFlags& flags) {
-  for (const auto& [option, text] : {std::pair("the photograph", flags.photo),
-                                     {"--mask", flags.mask},
+  for (const std::string& photo : flags.photos) {
+    if (!IsUtf8(photo)) {
+      return InvalidInput(std::string(kCommandLine) + ": the photograph",
+                          "expected a name in UTF-8");
+    }
+  }
+  for (const auto& [option, text] : {std::pair("--mask", flags.mask),
                                      {"--response", flags.response},
                                      {"--normals", flags.normals},
                                      {"--mesh", flags.mesh},
@@ -145,11 +164,12 @@ bool IsShellSafe(const std::string& text) {
 }  // namespace
 
 bool ProblemFlags::Any() const {
-  return !(photo + mask + response + normals + mesh + known_light).empty();
+  return !photos.empty() ||
+         !(mask + response + normals + mesh + known_light).empty();
 }
 
 StatusOr<FlagProblem> ProblemFromFlags(const ProblemFlags& flags) {
-  if (flags.photo.empty()) {
+  if (flags.photos.empty() || flags.photos.front().empty()) {
     return InvalidInput(kCommandLine,
                         "expected a photograph, as in: ibrdf_solve photo.exr "
                         "--normals normals.npy --mask mask.png");

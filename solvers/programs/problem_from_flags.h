@@ -11,7 +11,7 @@ namespace ibrdf {
 // What stands on the command line in place of a problem file. Paths are
 // relative to the current folder; empty: not given.
 struct ProblemFlags {
-  std::string photo;        // image.file
+  std::vector<std::string> photos;  // image.file; several: images
   std::string mask;         // image.mask
   std::string response;     // image.response
   std::string normals;      // geometry.normals

@@ -112,6 +112,12 @@ constexpr char kPaintNote[] =
     "hue over the object is taken for paint. In the grey render only shading "
     "and gloss should be left. Paint that shows there was taken for light.";
 
+constexpr char kOtherLightsNote[] =
+    "Photographs of one view share the paint and the reflectance, which was "
+    "found from the first. Each map is drawn as the one above, at an exposure "
+    "of its own. The folders images/2, images/3, ... have the maps and "
+    "renders.";
+
 constexpr char kDeviationNote[] =
     " The standard deviation is that of the light given the reflectance. Where "
     "it is large, the image says nothing and the map shows the prior.";
@@ -156,6 +162,10 @@ std::vector<ReportGroup> MakeReportGroups(const ResultPanels& panels,
       groups.back().text += kDeviationNote;
       groups.back().figures.push_back(DeviationFigure(map_std));
     }
+  }
+  if (!panels.other_lights.empty()) {
+    groups.push_back(Group("Light of the other photographs", kOtherLightsNote,
+                           panels.other_lights));
   }
   if (!panels.spheres.empty()) {
     groups.push_back(Group("Reflectance", kSphereNote, panels.spheres));

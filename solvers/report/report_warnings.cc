@@ -5,6 +5,7 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/solvers/effects/describe_plan.h"
+#include "ibrdf/solvers/report/light_results.h"
 #include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/report/report_limits.h"
 #include "ibrdf/solvers/report/view_results.h"
@@ -58,6 +59,15 @@ std::string ViewWarning(const SolvedProblem& solved) {
   }
   return "The other views contradict " + names +
          ": check its camera and its exposure.";
+}
+
+// A photograph under another light that does not fit the first.
+std::string PhotographWarning(const SolvedProblem& solved) {
+  const std::string odd = OddPhotographs(solved);
+  if (odd.empty()) return "";
+  return "The albedo does not explain " + odd + " as it explains " +
+         solved.problem.image.file +
+         ": is it of the same object, from the same place?";
 }
 
 // Pixels that the known light reaches and that cannot be used.
@@ -198,9 +208,9 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
                   solved.truth.warnings.end());
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
-        MisfitWarning(solved), ViewWarning(solved), PixelWarning(solved),
-        UnlitWarning(solved), StrayLightWarning(solved), PaintWarning(solved),
-        FewPixelsWarning(solved), CurveWarning(solved),
+        MisfitWarning(solved), ViewWarning(solved), PhotographWarning(solved),
+        PixelWarning(solved), UnlitWarning(solved), StrayLightWarning(solved),
+        PaintWarning(solved), FewPixelsWarning(solved), CurveWarning(solved),
         UncertainWarning(solved.solution),
         RivalWarning(solved.solution.alternatives)}) {
     if (!warning.empty()) warnings.push_back(std::move(warning));

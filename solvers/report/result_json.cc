@@ -11,6 +11,7 @@
 #include "ibrdf/solvers/optim/conditioning.h"
 #include "ibrdf/solvers/report/check_json.h"
 #include "ibrdf/solvers/report/gauge_words.h"
+#include "ibrdf/solvers/report/light_results.h"
 #include "ibrdf/solvers/report/lobe_summary.h"
 #include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/report_warnings.h"
@@ -295,6 +296,18 @@ Json ViewsJson(const SolvedProblem& solved) {
   return views;
 }
 
+// How well each photograph beside the first is explained.
+Json OtherLightsJson(const SolvedProblem& solved) {
+  Json lights = Json::array();
+  for (size_t k = 0; k < solved.solution.other_lights.size(); ++k) {
+    lights.push_back(
+        {{"file", solved.inverse.other_photographs[k].file},
+         {"results", PhotographFolder("", k)},
+         {"misfit", Finite(solved.solution.other_lights[k].misfit)}});
+  }
+  return lights;
+}
+
 // Which photographs to take next; empty where none were chosen.
 Json NextViewsJson(const InformativeViews* next) {
   if (next == nullptr) return Json::object();
@@ -350,6 +363,7 @@ std::string ResultJson(const SolvedProblem& solved,
                {"pixels_used", solution.pixels_used},
                {"pixels_of_object", inverse.points.size()},
                {"views", ViewsJson(solved)},
+               {"other_lights", OtherLightsJson(solved)},
                {"next_views", NextViewsJson(solved.next_views)},
                {"variation", ReflectanceVariationName(VariationOf(solution))},
                {"dark_pixels", DarkPixelsJson(solved)},

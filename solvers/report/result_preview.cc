@@ -178,6 +178,17 @@ Row MapPanels(const ResultPreviewInput& input) {
                   MapForPicture(reference), Mask(), exposure, kind)};
 }
 
+// Each at an exposure of its own.
+Row OtherLightPanels(const ResultPreviewInput& input) {
+  Row row;
+  for (const auto& [label, map] : input.other_lights) {
+    row.push_back(Picture(label, MapForPicture(map), Mask(),
+                          ExposureOf(map, Mask(), kMapWhite),
+                          PreviewPanel::Kind::kMap));
+  }
+  return row;
+}
+
 // Pictures of a sphere, kSphereSamples values a pixel; the one in the sky as it
 // was rendered, too.
 struct Spheres {
@@ -382,6 +393,7 @@ ResultPanels MakeRows(const ResultPreviewInput& input) {
   panels.images = ImagePanels(input);
   panels.paint = PaintPanels(input);
   panels.maps = MapPanels(input);
+  panels.other_lights = OtherLightPanels(input);
   if (input.brdf.raw.empty()) return panels;
   if (input.materials.size() > 1) {
     std::vector<Spheres> materials;
@@ -447,6 +459,13 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   input.albedo = solved.solution.albedo;
   input.gloss = solved.solution.gloss;
   input.illumination = solved.solution.map;
+  for (size_t k = 0; k < solved.solution.other_lights.size(); ++k) {
+    const OtherLight& other = solved.solution.other_lights[k];
+    input.other_lights.emplace_back(
+        name_of(solved.inverse.other_photographs[k].file) +
+            Format(", misfit %.2g", other.misfit),
+        other.map);
+  }
   input.illumination_known = solved.inverse.known_map.has_value();
   input.reference_illumination = solved.truth.illumination;
   // Of several views each looks another way.

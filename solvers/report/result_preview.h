@@ -30,6 +30,8 @@ struct ResultPreviewInput {
   Image illumination;               // in the library's frame
   bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;
+  // Of other photographs of the object, each with its label.
+  std::vector<std::pair<std::string, Image>> other_lights;
   std::string middle_of_map = "-z";  // of the pictures of maps, in words
   MerlTable brdf;
   MerlTable reference_brdf;
@@ -63,6 +65,7 @@ struct ResultPanels {
   std::vector<PreviewPanel> images;  // input, render, residual, labels
   std::vector<PreviewPanel> paint;   // albedo, gloss, repainted grey
   std::vector<PreviewPanel> maps;    // estimate, reference; or known
+  std::vector<PreviewPanel> other_lights;
   // Estimate and reference under each light; or each material.
   std::vector<PreviewPanel> spheres;
   bool spheres_compared = false;           // with references

@@ -7,6 +7,7 @@
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/solvers/next_view/candidate_views.h"
+#include "ibrdf/solvers/report/light_results.h"
 #include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/material_summary.h"
 #include "ibrdf/solvers/report/report_figures.h"
@@ -41,6 +42,9 @@ std::vector<std::string> EarlierNames(const SolvedProblem& solved) {
     names.insert(names.end(), PaintFiles().begin(), PaintFiles().end());
   }
   if (solution.materials.empty()) names.emplace_back("labels.png");
+  const std::vector<std::string> of_lights =
+      OtherLightPaths(solution.other_lights.size(), kMaxOtherLights, "");
+  names.insert(names.end(), of_lights.begin(), of_lights.end());
   if (solved.next_views == nullptr) names.emplace_back(kNextViewsFile);
   return names;
 }
@@ -139,6 +143,9 @@ std::vector<std::string> ResultPaths(const Problem& problem,
   for (std::string& path : paths) path.insert(0, folder + "/");
   const std::vector<std::string> of_views = ViewPaths(object.sheet, folder);
   paths.insert(paths.end(), of_views.begin(), of_views.end());
+  const std::vector<std::string> of_lights =
+      OtherLightPaths(0, problem.image.other_lights.size(), folder);
+  paths.insert(paths.end(), of_lights.begin(), of_lights.end());
   return paths;
 }
 
@@ -159,6 +166,7 @@ Status WriteResults(const SolvedProblem& solved, const std::string& folder) {
   if (!panels.ok()) return panels.status();
   IBRDF_RETURN_IF_ERROR(WriteResultPreviews(*panels, preview, folder));
   IBRDF_RETURN_IF_ERROR(WriteViews(solved, preview, folder));
+  IBRDF_RETURN_IF_ERROR(WriteOtherLights(solved, folder));
   const MaterialSummary material =
       SummariseMaterial(solved.inverse, solved.solution);
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(folder + "/result.json",

@@ -40,6 +40,12 @@ InverseProblem InUnitsOf(double exposure, const InverseProblem& problem) {
   }
   if (out.known_map) Scale(1.0 / exposure, &*out.known_map);
   if (out.epsilon) *out.epsilon /= exposure;
+  for (OtherPhotograph& other : out.other_photographs) {
+    Scale(1.0 / exposure, &other.image);
+    if (!other.bounds) continue;
+    Scale(1.0 / exposure, &other.bounds->low);
+    Scale(1.0 / exposure, &other.bounds->high);
+  }
   out.dark.ambient /= exposure;
   out.dark.ambient_deviation /= exposure;
   return out;
@@ -49,6 +55,10 @@ void RestoreUnits(double exposure, Solution* estimate) {
   Scale(exposure, &estimate->map);
   Scale(exposure, &estimate->render);
   Scale(exposure, &estimate->gloss);
+  for (OtherLight& other : estimate->other_lights) {
+    Scale(exposure, &other.map);
+    Scale(exposure, &other.render);
+  }
   estimate->epsilon *= exposure;
   estimate->ambient *= exposure;
 }

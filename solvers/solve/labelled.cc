@@ -90,8 +90,7 @@ StatusOr<Solution> SolveInKnownLight(const SolveSetup& setup,
                                      SolveContext* context) {
   const InverseProblem& problem = *setup.problem;
   const int count = static_cast<int>(problem.materials.size());
-  const double reserved =
-      context->budget() - context->Elapsed() - context->Remaining();
+  const double reserved = context->reserved();
   Solution all;
   for (int m = 0; m < count; ++m) {
     context->Reserve(reserved);

@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "ibrdf/solvers/estimation/marginal_search.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
 #include "ibrdf/solvers/paint/first_paint.h"
+#include "ibrdf/solvers/solve/other_photographs.h"
 #include "ibrdf/solvers/solve/summary.h"
 #include "ibrdf/solvers/solve/turns.h"
 #include "ibrdf/solvers/solve/unpainted_object.h"
@@ -18,48 +20,99 @@ namespace {
 
 constexpr int kLightTurns = 2;  // of light and paint
 
-// What all turns know of the paint.
-struct PaintedPixels {
-  const UnpaintedReflectance& reflectance;
-  const std::vector<NeighbourPair>& neighbours;
-  AlbedoFitOptions options;
+// A painted object in its photographs: what is known so far.
+class PaintedObject {
+ public:
+  // `setup` and `first`, of each photograph, must outlive this.
+  PaintedObject(const SolveSetup& setup, std::vector<LitPhotograph> others,
+                std::vector<NeighbourPair> neighbours,
+                const std::vector<FirstPaint>& first)
+      : setup_(setup),
+        others_(std::move(others)),
+        neighbours_(std::move(neighbours)),
+        options_(InViews(first.front().options, setup.pixels.points)),
+        log_albedo_(first.front().log_albedo) {}
+
+  // The reflectance that was found, and the paint under what that says of the
+  // light; several photographs have told as much before.
+  void Begin(const ReflectanceEstimate& found);
+  // The lights and the rest given the paint, and the paint under those lights.
+  StatusOr<Solution> TakeTurn(const ReflectanceEstimate& found,
+                              SolveContext* context);
+
+ private:
+  std::vector<double> GainOf(const LitPhotograph& other) const;
+  void FitPaint();
+
+  const SolveSetup& setup_;
+  std::vector<LitPhotograph> others_;
+  const std::vector<NeighbourPair> neighbours_;
+  const AlbedoFitOptions options_;
+  UnpaintedReflectance reflectance_;
+  UnpaintedRadiance unpainted_;  // in the first photograph
+  std::vector<double> log_albedo_;
 };
 
-// Under a light: what the unpainted object shows, and the paint.
-struct Paint {
-  UnpaintedRadiance unpainted;
-  std::vector<double> log_albedo;
-
-  std::vector<double> Gain() const { return PaintGain(unpainted, log_albedo); }
-};
-
-void FitPaint(const SolveSetup& setup, const PaintedPixels& pixels,
-              Paint* paint) {
-  paint->log_albedo = FitAlbedo(paint->unpainted, setup.pixels.observed,
-                                pixels.neighbours, pixels.options);
+void PaintedObject::Begin(const ReflectanceEstimate& found) {
+  reflectance_ = UnpaintedOf(*setup_.lobes, found.lobes.data());
+  std::vector<float> map;
+  found.light.mode.Exp(&map);
+  unpainted_ =
+      RenderUnpainted(setup_, reflectance_, map, found.light.mode.size());
+  if (others_.empty()) FitPaint();
 }
 
-// The light and the rest given the paint, and the paint under that light.
-StatusOr<Solution> TakeTurn(const SolveSetup& setup,
-                            const ReflectanceEstimate& found,
-                            const PaintedPixels& pixels, Paint* paint,
-                            SolveContext* context) {
-  const std::vector<ShadingPoint>& points = setup.pixels.points;
+// A matte object's, before the light is known.
+std::vector<double> PaintedObject::GainOf(const LitPhotograph& other) const {
+  if (!other.unpainted.matte.empty()) {
+    return PaintGain(other.unpainted, log_albedo_);
+  }
+  std::vector<double> gain = log_albedo_;
+  for (double& g : gain) g = std::exp(g);
+  return gain;
+}
+
+void PaintedObject::FitPaint() {
+  std::vector<PaintedImage> images = {{&unpainted_, &setup_.pixels.observed}};
+  for (const LitPhotograph& other : others_) {
+    images.push_back({&other.unpainted, &other.observed});
+  }
+  log_albedo_ = FitAlbedo(images, neighbours_, options_);
+}
+
+StatusOr<Solution> PaintedObject::TakeTurn(const ReflectanceEstimate& found,
+                                           SolveContext* context) {
+  const std::vector<ShadingPoint>& points = setup_.pixels.points;
   const InverseProblem without =
-      WithoutPaint(*setup.problem, paint->Gain(), points);
+      WithoutPaint(*setup_.problem, PaintGain(unpainted_, log_albedo_), points);
   const StatusOr<SolveSetup> of_light = SetUp(without);
   if (!of_light.ok()) return of_light.status();
   StatusOr<Estimate> estimate = EstimateLight(*of_light, found, context);
   if (!estimate.ok()) return estimate.status();
-  Solution solution =
-      Summarise(*of_light, *std::move(estimate), context,
-                UnpaintedRenders(pixels.reflectance, &paint->unpainted));
-  TakeMatteOff(&paint->unpainted);
-  FitPaint(setup, pixels, paint);
-  ScalePixels(paint->Gain(), points, &solution.render);
-  SetPaint(setup, pixels.reflectance, paint->unpainted, paint->log_albedo,
-           &solution);
+  Solution solution = Summarise(*of_light, *std::move(estimate), context,
+                                UnpaintedRenders(reflectance_, &unpainted_));
+  TakeMatteOff(&unpainted_);
+  for (LitPhotograph& other : others_) {
+    IBRDF_RETURN_IF_ERROR(
+        FindOtherLight(reflectance_, GainOf(other), *context, &other));
+  }
+  FitPaint();
+  ScalePixels(PaintGain(unpainted_, log_albedo_), points, &solution.render);
+  for (const LitPhotograph& other : others_) {
+    solution.other_lights.push_back(other.light);
+    ScalePixels(GainOf(other), points, &solution.other_lights.back().render);
+  }
+  SetPaint(setup_, reflectance_, unpainted_, log_albedo_, &solution);
   return solution;
+}
+
+// The paint of each photograph.
+std::vector<FirstPaint> FirstPaintsOf(
+    const SolveSetup& setup, const std::vector<LitPhotograph>& others,
+    const std::vector<NeighbourPair>& neighbours) {
+  std::vector<const Observations*> images = {&setup.pixels.observed};
+  for (const LitPhotograph& other : others) images.push_back(&other.observed);
+  return FindFirstPaints(setup.pixels.points, images, neighbours);
 }
 
 }  // namespace
@@ -68,10 +121,13 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
                                 SolveContext* context) {
   const std::vector<NeighbourPair> neighbours =
       NeighboursOf(setup.pixels.points, setup.problem->image.width);
-  const FirstPaint first =
-      FindFirstPaint(setup.pixels.points, setup.pixels.observed, neighbours);
+  StatusOr<std::vector<LitPhotograph>> others =
+      OtherPhotographsOf(*setup.problem);
+  if (!others.ok()) return others.status();
+  const std::vector<FirstPaint> first =
+      FirstPaintsOf(setup, *others, neighbours);
   const StatusOr<ReflectanceEstimate> found =
-      EstimateReflectance(setup, context, &first);
+      EstimateReflectance(setup, context, &first.front());
   if (!found.ok() && found.status().code() != StatusCode::kNoImprovement) {
     return found.status();
   }
@@ -79,21 +135,12 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
     LOG(WARNING) << "no paint was told from the light";
     return Summarise(setup, ConstantLight(setup, MeanMaterial(setup)), context);
   }
-  const UnpaintedReflectance reflectance =
-      UnpaintedOf(*setup.lobes, found->lobes.data());
-  const PaintedPixels pixels = {reflectance, neighbours,
-                                InViews(first.options, setup.pixels.points)};
-  std::vector<float> map;
-  found->light.mode.Exp(&map);
-  Paint paint;
-  paint.unpainted =
-      RenderUnpainted(setup, reflectance, map, found->light.mode.size());
-  FitPaint(setup, pixels, &paint);
+  PaintedObject object(setup, *std::move(others), neighbours, first);
+  object.Begin(*found);
   Turns turns(kLightTurns, context);
-  StatusOr<Solution> solution =
-      TakeTurn(setup, *found, pixels, &paint, context);
+  StatusOr<Solution> solution = object.TakeTurn(*found, context);
   while (solution.ok() && turns.Another()) {
-    StatusOr<Solution> next = TakeTurn(setup, *found, pixels, &paint, context);
+    StatusOr<Solution> next = object.TakeTurn(*found, context);
     if (!next.ok()) return next;
     if (next->misfit < solution->misfit) solution = std::move(next);
   }

@@ -18,16 +18,6 @@ namespace {
 
 constexpr int kReflectanceTurns = 3;  // of reflectance and paint
 
-// Under known light little of what changes over the object is shading's that
-// the model cannot know.
-AlbedoFitOptions UnderKnownLight() {
-  AlbedoFitOptions options;
-  options.edge = 0.03;
-  options.edge_by_turn = 1.0;
-  options.reach = 0.3;
-  return options;
-}
-
 // What a white matte object shows at each pixel under the known map.
 std::vector<double> MatteShading(const SolveSetup& setup) {
   BrdfGrid white(setup.lobes->grid_shape());
@@ -62,8 +52,8 @@ class Turn {
       with_ambient.gloss[i] += solution.ambient[i % 3];
     }
     const std::vector<double> log_albedo =
-        FitAlbedo(with_ambient, setup_.pixels.observed, neighbours_,
-                  InViews(UnderKnownLight(), setup_.pixels.points));
+        FitAlbedo({{&with_ambient, &setup_.pixels.observed}}, neighbours_,
+                  InViews(UnderKnownShading(), setup_.pixels.points));
     gain_ = PaintGain(with_ambient, log_albedo);
     ScalePixels(gain_, setup_.pixels.points, &solution.render);
     SetPaint(setup_, reflectance, unpainted, log_albedo, &solution);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <functional>
 #include <set>
+#include <sstream>
 
 #include "ibrdf/io/calibrated_views.h"
 #include "ibrdf/io/checksum.h"
@@ -147,10 +148,14 @@ void FuzzConfig(const std::string& text) {
 void FuzzFlags(const std::string& input) {
   std::vector<std::string> parts = Parts(input);
   ProblemFlags flags;
-  size_t next = 0;
-  for (std::string* const flag :
-       {&flags.photo, &flags.mask, &flags.response, &flags.normals, &flags.mesh,
-        &flags.known_light}) {
+  // Several photographs are one to a line.
+  std::istringstream photos(parts.front());
+  for (std::string line; std::getline(photos, line);) {
+    flags.photos.push_back(line);
+  }
+  size_t next = 1;
+  for (std::string* const flag : {&flags.mask, &flags.response, &flags.normals,
+                                  &flags.mesh, &flags.known_light}) {
     if (next < parts.size()) *flag = parts[next++];
   }
   flags.overrides.assign(parts.begin() + static_cast<std::ptrdiff_t>(next),

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "ibrdf/io/problem_json.h"
 #include "tests/io/problem_file_fixture.h"
 
 namespace ibrdf {
@@ -63,6 +65,57 @@ TEST_F(ProblemFile, LabelsNeedNoWordOfTheVariation) {
                 ": reflectance.labels: expected this key with variation: "
                 "labels, found nothing",
             CheckSolvable(*without).message());
+}
+
+TEST_F(ProblemFile, ImagesAreOfOneViewUnderSeveralLights) {
+  const StatusOr<Problem> problem = Read(
+      "images: [a.png, b.png, c.png]\nimage: {mask: m.png}\n"
+      "geometry: {sphere: {}}\n");
+  ASSERT_TRUE(problem.ok()) << problem.status().message();
+  EXPECT_TRUE(CheckSolvable(*problem).ok());
+  EXPECT_EQ(dir_.File("a.png"), problem->image.file);
+  EXPECT_EQ(dir_.File("m.png"), problem->image.mask);
+  EXPECT_EQ(std::vector<std::string>({dir_.File("b.png"), dir_.File("c.png")}),
+            problem->image.other_lights);
+  EXPECT_EQ(ReflectanceVariation::kAlbedo, problem->reflectance.variation);
+  const nlohmann::json json = ProblemToJson(*problem);
+  const StatusOr<Problem> again = Read(json.dump());
+  ASSERT_TRUE(again.ok()) << again.status().message();
+  EXPECT_EQ(json, ProblemToJson(*again));
+
+  const StatusOr<Problem> one =
+      Read("images: [a.png]\ngeometry: {sphere: {}}\n");
+  ASSERT_TRUE(one.ok()) << one.status().message();
+  EXPECT_TRUE(one->image.other_lights.empty());
+  EXPECT_EQ(ReflectanceVariation::kAuto, one->reflectance.variation);
+}
+
+TEST_F(ProblemFile, ImagesUnderSeveralLightsNeedPaintAndUnknownLight) {
+  std::string many = "images: [a";
+  for (size_t k = 0; k <= kMaxOtherLights; ++k) many += ", a";
+  const std::string two = "images: [a, b]\ngeometry: {sphere: {}}\n";
+  for (const Refusal& refusal : std::vector<Refusal>{
+           {"images: []\ngeometry: {sphere: {}}\n",
+            "images: expected a list of files' names"},
+           {many + "]\ngeometry: {sphere: {}}\n",
+            "images: expected at most 16 files"},
+           {two + "image: {file: a}\n", "images: expected without image.file"},
+           {two + "image: {width: 4, height: 4}\n",
+            "images: expected without image.file"},
+           {two + "views: {colmap: d}\n", "images: expected without views"},
+           {two + "problem: reflectance\nillumination: {known: m.hdr}\n",
+            "images: several need problem: joint"},
+           {two + "image: {response: unknown}\n",
+            "images: several need a known image.response"},
+           {two + "reflectance: {variation: none}\n",
+            "images: several need reflectance.variation: albedo"},
+           {two + "reflectance: {labels: l.png}\n",
+            "images: several need reflectance.variation: albedo"},
+           {two + "solver: {estimator: maximum}\n",
+            "reflectance.variation: expected none"}}) {
+    EXPECT_NE(std::string::npos, ErrorOf(refusal.text).find(refusal.error))
+        << refusal.text << ErrorOf(refusal.text);
+  }
 }
 
 }  // namespace

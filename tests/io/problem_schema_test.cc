@@ -67,6 +67,9 @@ Setting SettingOf(const ProblemKey& key) {
   if (map == "geometry.frame") {
     return setting.With("geometry", "{normals: n.exr}");
   }
+  if (key.path == "images") {  // in place of the image's file
+    return {"images: [a.exr]\ngeometry: {sphere: {}}\n", {}};
+  }
   // They are of what such a file names.
   if (key.path == "views.images" || key.path == "views.masks") {
     return {"geometry: {mesh: m.obj}\nviews: {transforms: t.json}\n", {}};

@@ -37,9 +37,10 @@ Painted MakePainted(double shading_error) {
   return out;
 }
 
-std::vector<double> Fit(const Painted& p) {
-  return FitAlbedo(p.unpainted, MakeObservations(p.radiance), p.neighbours,
-                   AlbedoFitOptions());
+std::vector<double> Fit(const Painted& p,
+                        const AlbedoFitOptions& options = AlbedoFitOptions()) {
+  const Observations observed = MakeObservations(p.radiance);
+  return FitAlbedo({{&p.unpainted, &observed}}, p.neighbours, options);
 }
 
 double Rmse(const std::vector<double>& a, const std::vector<double>& b) {
@@ -117,13 +118,51 @@ TEST(FitAlbedo, KeepsLargeFieldsOfOneChromaApart) {
   }
   AlbedoFitOptions by_chroma;
   by_chroma.luminance_turns = 0;
-  const double without =
-      AlignedRmse(FitAlbedo(p.unpainted, MakeObservations(p.radiance),
-                            p.neighbours, by_chroma),
-                  p.log_albedo);
+  const double without = AlignedRmse(Fit(p, by_chroma), p.log_albedo);
   const double with = AlignedRmse(Fit(p), p.log_albedo);
   EXPECT_GT(without, 0.15);
   EXPECT_LT(with, 0.6 * without);
+}
+
+// In each image a field is in a shadow that the render has not, another field
+// in each: in one image it is a dark paint, in three the light's.
+TEST(FitAlbedo, TakesNoShadowThatMovesForPaint) {
+  const Painted lit = MakePainted(0.0);
+  const AlbedoFitOptions options = UnderKnownShading();
+  std::vector<Observations> observed;
+  for (size_t k = 0; k < 3; ++k) {
+    Painted shadowed = lit;
+    const size_t points = lit.radiance.size() / 3;
+    for (size_t i = k * points / 4; i < (k + 1) * points / 4; ++i) {
+      for (size_t c = 3 * i; c < 3 * i + 3; ++c) shadowed.radiance[c] *= 0.3;
+    }
+    observed.push_back(MakeObservations(shadowed.radiance));
+  }
+  const auto error = [&](size_t count) {
+    std::vector<PaintedImage> images;
+    for (size_t k = 0; k < count; ++k) {
+      images.push_back({&lit.unpainted, &observed[k]});
+    }
+    return AlignedRmse(FitAlbedo(images, lit.neighbours, options),
+                       lit.log_albedo);
+  };
+  EXPECT_GT(error(1), 0.3);
+  EXPECT_LT(error(2), 0.5 * error(1));
+  EXPECT_LT(error(3), 0.1 * error(1));
+}
+
+// Nobody knows how bright, or of which colour, one light is beside another.
+TEST(FitAlbedo, LevelAndHueOfAnImagesLightChangeNothing) {
+  const Painted p = MakePainted(0.2);
+  const Observations first = MakeObservations(p.radiance);
+  UnpaintedRadiance dim = p.unpainted;
+  const double scale[] = {0.5, 0.03, 0.125};
+  for (size_t i = 0; i < p.radiance.size(); ++i) dim.matte[i] *= scale[i % 3];
+  const std::vector<double> alone = Fit(p);
+  const std::vector<double> twice =
+      FitAlbedo({{&p.unpainted, &first}, {&dim, &first}}, p.neighbours,
+                AlbedoFitOptions());
+  EXPECT_LT(Rmse(alone, twice), 1e-4);
 }
 
 TEST(FitAlbedo, IsFiniteWhereNothingIsSeen) {

@@ -18,8 +18,10 @@ ShadingLight SomeLamp() {
 }
 
 FirstPaint Find(const PaintedBall& ball) {
-  return FindFirstPaint(ball.points, MakeObservations(ball.radiance),
-                        NeighboursOf(ball.points, kBallWidth));
+  const Observations observed = MakeObservations(ball.radiance);
+  return FindFirstPaints(ball.points, {&observed},
+                         NeighboursOf(ball.points, kBallWidth))
+      .front();
 }
 
 TEST(FirstPaint, IsThePaintWithoutTheShading) {
@@ -70,6 +72,34 @@ TEST(FirstPaint, SaysHowMuchLikeNormalsDiffer) {
   const double deviation = Find(ball).deviation;
   EXPECT_GT(deviation, 0.03);
   EXPECT_LT(deviation, 0.15);
+}
+
+// A shadow in each of three photographs, by a lamp at another place in each.
+TEST(FirstPaint, OfSeveralPhotographsIsTheirCommonOne) {
+  std::vector<PaintedBall> balls;
+  for (int k = 0; k < 3; ++k) {
+    ShadingLight lamp = SomeLamp();
+    lamp.direction = Eigen::Vector3d(0.6 * (k - 1), 0.3, 0.7).normalized();
+    balls.push_back(MakePaintedBall(lamp));
+    const size_t points = balls[k].points.size();
+    for (size_t i = (k + 1) * points / 5; i < (k + 2) * points / 5; ++i) {
+      for (int c = 0; c < 3; ++c) balls[k].radiance[3 * i + c] *= 0.4;
+    }
+  }
+  std::vector<Observations> observed;
+  for (const PaintedBall& ball : balls) {
+    observed.push_back(MakeObservations(ball.radiance));
+  }
+  const std::vector<FirstPaint> found = FindFirstPaints(
+      balls[0].points, {&observed[0], &observed[1], &observed[2]},
+      NeighboursOf(balls[0].points, kBallWidth));
+  ASSERT_EQ(3u, found.size());
+  const std::vector<double>& truth = balls[0].log_albedo;
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(found[0].log_albedo, found[k].log_albedo);
+    EXPECT_LT(AlignedRmse(found[k].log_albedo, truth),
+              0.4 * AlignedRmse(Find(balls[k]).log_albedo, truth));
+  }
 }
 
 TEST(FirstPaint, OfOnePixelIsFinite) {

@@ -71,9 +71,11 @@ TEST(SmoothShading, IsTheSkysUnderGrain) {
 // there.
 TEST(SmoothShading, TellsGrainInTheFirstPaint) {
   const PaintedBall ball = BallUnderSky(WoodGrain);
+  const Observations observed = MakeObservations(ball.radiance);
+  const std::vector<NeighbourPair> neighbours =
+      NeighboursOf(ball.points, kBallWidth);
   const FirstPaint found =
-      FindFirstPaint(ball.points, MakeObservations(ball.radiance),
-                     NeighboursOf(ball.points, kBallWidth));
+      FindFirstPaints(ball.points, {&observed}, neighbours).front();
   EXPECT_TRUE(found.natural_light);
   EXPECT_FALSE(found.options.chroma_drifts);
   UnpaintedRadiance even;
@@ -82,8 +84,7 @@ TEST(SmoothShading, TellsGrainInTheFirstPaint) {
   AlbedoFitOptions drift;
   drift.chroma_drifts = true;
   const std::vector<double> summed =
-      FitAlbedo(even, MakeObservations(ball.radiance),
-                NeighboursOf(ball.points, kBallWidth), drift);
+      FitAlbedo({{&even, &observed}}, neighbours, drift);
   EXPECT_LT(AlignedRmse(found.log_albedo, ball.log_albedo),
             0.4 * AlignedRmse(summed, ball.log_albedo));
 }

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 ProblemFlags Flags() {
   ProblemFlags flags;
-  flags.photo = "photo.exr";
+  flags.photos = {"photo.exr"};
   flags.normals = "n.npy";
   flags.mask = "m.png";
   flags.command = "ibrdf_solve photo.exr";
@@ -47,15 +47,33 @@ TEST(ProblemFromFlags, IsTheProblemOfTheSameFile) {
   EXPECT_TRUE(made->notes.empty());
 }
 
+TEST(ProblemFromFlags, SeveralPhotographsAreOfOneView) {
+  ProblemFlags flags = Flags();
+  flags.photos = {"lamp one.exr", "b.exr"};
+  const StatusOr<FlagProblem> made = ProblemFromFlags(flags);
+  ASSERT_TRUE(made.ok()) << made.status().message();
+  const StatusOr<Problem> file =
+      ParseProblem("out/problem.yaml",
+                   "images: [../lamp one.exr, ../b.exr]\n"
+                   "image: {mask: ../m.png}\n"
+                   "geometry: {normals: ../n.npy}\n",
+                   {});
+  ASSERT_TRUE(file.ok()) << file.status().message();
+  EXPECT_EQ(ProblemToJson(*file), ProblemToJson(made->problem));
+  flags.photos = {"a.exr", "\xff.exr"};
+  EXPECT_EQ("command line: the photograph: expected a name in UTF-8",
+            ErrorOf(flags));
+}
+
 TEST(ProblemFromFlags, TheTextGivesTheSameProblemAgain) {
   ProblemFlags flags = Flags();
-  flags.photo = "my photos/it's #1 \"best\".exr";
+  flags.photos = {"my photos/it's #1 \"best\".exr"};
   flags.normals = "/data/caf\xc3\xa9/{n: 1}.npy";
   flags.mask = "- [mask]: *x.png";
   flags.out = "results/a b";
   const StatusOr<FlagProblem> made = ProblemFromFlags(flags);
   ASSERT_TRUE(made.ok()) << made.status().message();
-  EXPECT_EQ(flags.photo, made->problem.image.file);
+  EXPECT_EQ(flags.photos.front(), made->problem.image.file);
   EXPECT_EQ(flags.normals, made->problem.geometry.file);
   EXPECT_EQ(flags.mask, made->problem.image.mask);
   const StatusOr<Problem> again =
@@ -91,7 +109,7 @@ TEST(ProblemFromFlags, PathsOfOverridesAreAsThoseOfFlags) {
 
 TEST(ProblemFromFlags, PathsOfListsFollowTheFolderToo) {
   ProblemFlags flags = Flags();
-  flags.photo = "a.png";
+  flags.photos = {"a.png"};
   flags.overrides = {"image.brackets=[b.png, /c.png]",
                      "image.bracket_exposures=[0.1, 10]"};
   const StatusOr<FlagProblem> made = ProblemFromFlags(flags);
@@ -127,7 +145,7 @@ TEST(ProblemFromFlags, ErrorsNameTheCommandLineAndTheKey) {
   flags.overrides = {"solver"};
   EXPECT_NE(std::string::npos, ErrorOf(flags).find("key.path=value"));
   flags = Flags();
-  flags.photo = "\xff.exr";
+  flags.photos = {"\xff.exr"};
   EXPECT_NE(std::string::npos, ErrorOf(flags).find("UTF-8"));
   EXPECT_NE(std::string::npos, ErrorOf({}).find("expected a photograph"));
 }
