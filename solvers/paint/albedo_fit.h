@@ -65,7 +65,7 @@ AlbedoFitOptions InViews(AlbedoFitOptions options,
 //
 // Of several images of the same points, each under its own light, at least one:
 // shading and shadows change with the light, paint does not. So a step is the
-// median of theirs (Weiss 2001, Eq. 7), and so is a point's paint, each image's
+// median of theirs (Weiss 2001), and so is a point's paint, each image's
 // level taken off by the median of its quotient with the first's.
 std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
                               const std::vector<NeighbourPair>& neighbours,

@@ -139,30 +139,21 @@ double DeviationAtLikeNormals(const std::vector<ShadingPoint>& points,
              : kDeviationOverMad * UpperMedian(std::move(deviations));
 }
 
-// What an image says by itself: its light, and what that makes of a white
-// matte object.
-struct ImageShading {
-  FirstPaint paint;
-  UnpaintedRadiance unpainted;
-};
-
-// FitAlbedo of a matte object of those shadings, its mean 0 in each channel.
-std::vector<double> PaintOf(
-    const std::vector<ShadingPoint>& points,
-    const std::vector<const Observations*>& images,
-    const std::vector<const UnpaintedRadiance*>& unpainted,
-    const std::vector<NeighbourPair>& neighbours,
-    const AlbedoFitOptions& options) {
+// FitAlbedo of a matte object in these images, its mean 0 in each channel.
+std::vector<double> PaintOf(const std::vector<ShadingPoint>& points,
+                            const std::vector<PaintedImage>& images,
+                            const std::vector<NeighbourPair>& neighbours,
+                            const AlbedoFitOptions& options) {
   std::vector<Observations> matte;
-  for (size_t k = 0; k < images.size(); ++k) {
-    matte.push_back(WithoutHighlights(points, *images[k], unpainted[k]->matte));
+  for (const auto& [unpainted, observed] : images) {
+    matte.push_back(WithoutHighlights(points, *observed, unpainted->matte));
   }
-  std::vector<PaintedImage> painted;
+  std::vector<PaintedImage> of_matte;
   for (size_t k = 0; k < images.size(); ++k) {
-    painted.push_back({unpainted[k], &matte[k]});
+    of_matte.push_back({images[k].unpainted, &matte[k]});
   }
   std::vector<double> log_albedo =
-      FitAlbedo(painted, neighbours, InViews(options, points));
+      FitAlbedo(of_matte, neighbours, InViews(options, points));
   Eigen::Map<Eigen::Matrix3Xd> a(log_albedo.data(), 3,
                                  static_cast<Eigen::Index>(points.size()));
   const Eigen::Vector3d mean = a.rowwise().mean();
@@ -170,92 +161,69 @@ std::vector<double> PaintOf(
   return log_albedo;
 }
 
-// The paint under SmoothShading in place of the image's, where it has fewer
+// The paint under SmoothShading in place of that of `out`, where it has fewer
 // colours.
 void TakeIfSimpler(const std::vector<ShadingPoint>& points,
                    const Observations& observed,
                    const std::vector<NeighbourPair>& neighbours,
-                   ImageShading* out) {
+                   FirstPaint* out) {
   UnpaintedRadiance other;
   other.matte = SmoothShading(points, observed, neighbours);
-  other.gloss = out->unpainted.gloss;
+  other.gloss = out->shading.gloss;
   AlbedoFitOptions options;
   options.edge = options.chroma_edge = kAnyStep;
   options.edge_by_turn = 0.0;
   std::vector<double> paint =
-      PaintOf(points, {&observed}, {&other}, neighbours, options);
+      PaintOf(points, {{&other, &observed}}, neighbours, options);
   if (ColourEntropy(points, observed, paint) + kFewerColours >
-      ColourEntropy(points, observed, out->paint.log_albedo)) {
+      ColourEntropy(points, observed, out->log_albedo)) {
     return;
   }
-  out->unpainted = std::move(other);
-  out->paint.log_albedo = std::move(paint);
-  out->paint.options = options;
-}
-
-ImageShading ShadingOf(const std::vector<ShadingPoint>& points,
-                       const Observations& observed,
-                       const std::vector<NeighbourPair>& neighbours) {
-  ImageShading out;
-  out.paint.light = FindShadingLight(points, observed);
-  const ShadingLight light = out.paint.light.value_or(ShadingLight());
-  out.paint.natural_light = light.strength < kStrongLamp;
-  out.paint.options.chroma_drifts = out.paint.natural_light;
-  out.unpainted.gloss.assign(3 * points.size(), 0.0);
-  for (const ShadingPoint& point : points) {
-    const Eigen::Array3d irradiance =
-        Irradiance(light, point.normal.cast<double>());
-    out.unpainted.matte.insert(out.unpainted.matte.end(), irradiance.begin(),
-                               irradiance.end());
-  }
-  out.paint.log_albedo = PaintOf(points, {&observed}, {&out.unpainted},
-                                 neighbours, out.paint.options);
-  if (out.paint.natural_light) {
-    TakeIfSimpler(points, observed, neighbours, &out);
-  }
-  return out;
-}
-
-// Gives each image the paint that all show. Shading that no light's model has
-// is mostly gone from the median of several lights.
-void ShareThePaint(const std::vector<ShadingPoint>& points,
-                   const std::vector<const Observations*>& images,
-                   const std::vector<NeighbourPair>& neighbours,
-                   std::vector<ImageShading>* shadings) {
-  AlbedoFitOptions options = UnderKnownShading();
-  options.chroma_drifts = true;
-  std::vector<const UnpaintedRadiance*> unpainted;
-  for (const ImageShading& shading : *shadings) {
-    options.chroma_drifts &= shading.paint.options.chroma_drifts;
-    unpainted.push_back(&shading.unpainted);
-  }
-  const std::vector<double> log_albedo =
-      PaintOf(points, images, unpainted, neighbours, options);
-  for (ImageShading& shading : *shadings) {
-    shading.paint.log_albedo = log_albedo;
-    shading.paint.options = options;
-  }
+  out->shading = std::move(other);
+  out->log_albedo = std::move(paint);
+  out->options = options;
 }
 
 }  // namespace
 
-std::vector<FirstPaint> FindFirstPaints(
-    const std::vector<ShadingPoint>& points,
-    const std::vector<const Observations*>& images,
-    const std::vector<NeighbourPair>& neighbours) {
-  if (points.empty()) return std::vector<FirstPaint>(images.size());
-  std::vector<ImageShading> shadings;
-  for (const Observations* observed : images) {
-    shadings.push_back(ShadingOf(points, *observed, neighbours));
+FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
+                          const Observations& observed,
+                          const std::vector<NeighbourPair>& neighbours) {
+  FirstPaint out;
+  if (points.empty()) return out;
+  out.light = FindShadingLight(points, observed);
+  const ShadingLight light = out.light.value_or(ShadingLight());
+  out.natural_light = light.strength < kStrongLamp;
+  out.options.chroma_drifts = out.natural_light;
+  std::vector<double>& matte = out.shading.matte;
+  out.shading.gloss.assign(3 * points.size(), 0.0);
+  for (const ShadingPoint& point : points) {
+    const Eigen::Array3d irradiance =
+        Irradiance(light, point.normal.cast<double>());
+    matte.insert(matte.end(), irradiance.begin(), irradiance.end());
   }
-  if (images.size() > 1) ShareThePaint(points, images, neighbours, &shadings);
-  std::vector<FirstPaint> out;
-  for (size_t k = 0; k < images.size(); ++k) {
-    ImageShading& shading = shadings[k];
-    shading.paint.deviation = DeviationAtLikeNormals(
-        points, *images[k], shading.unpainted, shading.paint.log_albedo);
-    out.push_back(std::move(shading.paint));
+  out.log_albedo =
+      PaintOf(points, {{&out.shading, &observed}}, neighbours, out.options);
+  if (out.natural_light) TakeIfSimpler(points, observed, neighbours, &out);
+  out.deviation =
+      DeviationAtLikeNormals(points, observed, out.shading, out.log_albedo);
+  return out;
+}
+
+SharedPaint FindSharedPaint(const std::vector<ShadingPoint>& points,
+                            const std::vector<const Observations*>& observed,
+                            const std::vector<FirstPaint>& of_images,
+                            const std::vector<NeighbourPair>& neighbours) {
+  SharedPaint out;
+  // Shading that no light's model has is mostly gone from the median.
+  out.options = UnderKnownShading();
+  out.options.chroma_drifts = true;
+  std::vector<PaintedImage> images;
+  for (size_t k = 0; k < observed.size(); ++k) {
+    out.options.chroma_drifts &= of_images[k].options.chroma_drifts;
+    images.push_back({&of_images[k].shading, observed[k]});
   }
+  out.log_albedo = PaintOf(points, images, neighbours, out.options);
   return out;
 }
 
@@ -265,7 +233,7 @@ std::vector<double> FirstPaintUnder(
   UnpaintedRadiance unpainted;
   unpainted.matte = std::move(shading);
   unpainted.gloss.assign(3 * points.size(), 0.0);
-  return PaintOf(points, {&observed}, {&unpainted}, neighbours,
+  return PaintOf(points, {{&unpainted, &observed}}, neighbours,
                  AlbedoFitOptions());
 }
 

@@ -14,6 +14,7 @@ namespace ibrdf {
 
 struct FirstPaint {
   std::optional<ShadingLight> light;
+  UnpaintedRadiance shading;  // of a white matte object under it
   // Log albedo [points * 3], its mean over the points 0 in each channel.
   std::vector<double> log_albedo;
   // Whether no lamp outshines the room: the light's colour then varies with its
@@ -33,13 +34,22 @@ struct FirstPaint {
 // also under SmoothShading, which takes wood's grain for paint where the former
 // takes its drift for light; the one with fewer colours is the simpler
 // explanation. Highlights say nothing of paint and are filled in from around.
-//
-// images: of the same points, each under its own light, at least one. Returns
-// one for each; the paint is that of all, and so is how it was fitted.
-std::vector<FirstPaint> FindFirstPaints(
-    const std::vector<ShadingPoint>& points,
-    const std::vector<const Observations*>& images,
-    const std::vector<NeighbourPair>& neighbours);
+FirstPaint FindFirstPaint(const std::vector<ShadingPoint>& points,
+                          const Observations& observed,
+                          const std::vector<NeighbourPair>& neighbours);
+
+// What several images of the same points tell of the paint, each under its own
+// light.
+struct SharedPaint {
+  std::vector<double> log_albedo;  // as FirstPaint has it
+  AlbedoFitOptions options;        // how it was fitted, and is to be
+};
+
+// of_images: FindFirstPaint of each, at least one.
+SharedPaint FindSharedPaint(const std::vector<ShadingPoint>& points,
+                            const std::vector<const Observations*>& observed,
+                            const std::vector<FirstPaint>& of_images,
+                            const std::vector<NeighbourPair>& neighbours);
 
 // The log albedo alone, [points * 3] of mean 0, where the shading is known:
 // the radiance [points * 3] of a white matte object.

@@ -446,11 +446,13 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   const auto name_of = [](const std::string& path) {
     return std::filesystem::path(path).filename().string();
   };
+  const size_t others = solved.inverse.other_photographs.size();
   input.title =
       name_of(solved.problem.path) + ": " +
       (solved.inverse.sheet.empty()
            ? name_of(solved.problem.image.file)
-           : std::to_string(solved.inverse.sheet.views.size()) + " views");
+           : std::to_string(solved.inverse.sheet.views.size()) + " views") +
+      (others > 0 ? " and " + std::to_string(others) + " other lights" : "");
   input.input = solved.inverse.image;
   input.mask = ObjectMask(solved.inverse);
   input.render = solved.solution.render;

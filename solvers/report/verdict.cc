@@ -276,6 +276,11 @@ std::string NextSentence(const VerdictNumbers& n) {
     return "Next, take a shorter exposure or an HDR image, as clipped "
            "highlights hide the lamps.";
   }
+  if (PaintMayBeGloss(n) && n.num_photographs == 1) {
+    return "Next, leave camera and object, move the lamp, and give three or "
+           "four "
+           "photographs at once: paint is what they share.";
+  }
   if (misfit && !n.has_mask) return "Next, give a mask of the object.";
   if (n.out_of_time) return "Next, give it more time: --set solver.seconds=...";
   if (misfit) {
@@ -403,6 +408,8 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
   n.used_pixels = solution.pixels_used;
   if (solved.inverse.look != nullptr) TakeLook(solved.inverse.look->check, &n);
   n.has_paint = solution.has_paint();
+  n.num_photographs = std::max<size_t>(solved.inverse.sheet.views.size(), 1) +
+                      solved.inverse.other_photographs.size();
   // What is sought is not taken for light.
   if (solution.has_paint() || solution.materials.size() > 1) {
     n.several_materials = false;

@@ -43,6 +43,7 @@ struct VerdictNumbers {
   double floor = 0.0;     // what like normals leave of it for any one material
   bool several_materials = false;  // as colours of like normals say
   bool has_paint = false;          // that was estimated
+  size_t num_photographs = 1;      // views or lights
   bool has_mask = true;
   std::string normals_advice;  // where other normals would be more plausible
   int64_t object_pixels = 0, used_pixels = 0, clipped_pixels = 0;

@@ -23,15 +23,14 @@ constexpr int kLightTurns = 2;  // of light and paint
 // A painted object in its photographs: what is known so far.
 class PaintedObject {
  public:
-  // `setup` and `first`, of each photograph, must outlive this.
+  // `setup` must outlive this.
   PaintedObject(const SolveSetup& setup, std::vector<LitPhotograph> others,
-                std::vector<NeighbourPair> neighbours,
-                const std::vector<FirstPaint>& first)
+                std::vector<NeighbourPair> neighbours, SharedPaint paint)
       : setup_(setup),
         others_(std::move(others)),
         neighbours_(std::move(neighbours)),
-        options_(InViews(first.front().options, setup.pixels.points)),
-        log_albedo_(first.front().log_albedo) {}
+        options_(InViews(paint.options, setup.pixels.points)),
+        log_albedo_(std::move(paint.log_albedo)) {}
 
   // The reflectance that was found, and the paint under what that says of the
   // light; several photographs have told as much before.
@@ -106,13 +105,19 @@ StatusOr<Solution> PaintedObject::TakeTurn(const ReflectanceEstimate& found,
   return solution;
 }
 
-// The paint of each photograph.
-std::vector<FirstPaint> FirstPaintsOf(
-    const SolveSetup& setup, const std::vector<LitPhotograph>& others,
-    const std::vector<NeighbourPair>& neighbours) {
-  std::vector<const Observations*> images = {&setup.pixels.observed};
-  for (const LitPhotograph& other : others) images.push_back(&other.observed);
-  return FindFirstPaints(setup.pixels.points, images, neighbours);
+// What all photographs tell of the paint; one tells what it told before.
+SharedPaint SharedPaintOf(const SolveSetup& setup, const FirstPaint& first,
+                          const std::vector<LitPhotograph>& others,
+                          const std::vector<NeighbourPair>& neighbours) {
+  if (others.empty()) return {first.log_albedo, first.options};
+  const std::vector<ShadingPoint>& points = setup.pixels.points;
+  std::vector<const Observations*> observed = {&setup.pixels.observed};
+  std::vector<FirstPaint> of_images = {first};
+  for (const LitPhotograph& other : others) {
+    observed.push_back(&other.observed);
+    of_images.push_back(FindFirstPaint(points, other.observed, neighbours));
+  }
+  return FindSharedPaint(points, observed, of_images, neighbours);
 }
 
 }  // namespace
@@ -124,10 +129,12 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
   StatusOr<std::vector<LitPhotograph>> others =
       OtherPhotographsOf(*setup.problem);
   if (!others.ok()) return others.status();
-  const std::vector<FirstPaint> first =
-      FirstPaintsOf(setup, *others, neighbours);
+  const FirstPaint first =
+      FindFirstPaint(setup.pixels.points, setup.pixels.observed, neighbours);
+  // What the lamp gets wrong of the first photograph's shading must stay in its
+  // own paint here, or lobes explain it.
   const StatusOr<ReflectanceEstimate> found =
-      EstimateReflectance(setup, context, &first.front());
+      EstimateReflectance(setup, context, &first);
   if (!found.ok() && found.status().code() != StatusCode::kNoImprovement) {
     return found.status();
   }
@@ -135,7 +142,8 @@ StatusOr<Solution> SolvePainted(const SolveSetup& setup,
     LOG(WARNING) << "no paint was told from the light";
     return Summarise(setup, ConstantLight(setup, MeanMaterial(setup)), context);
   }
-  PaintedObject object(setup, *std::move(others), neighbours, first);
+  SharedPaint paint = SharedPaintOf(setup, first, *others, neighbours);
+  PaintedObject object(setup, *std::move(others), neighbours, std::move(paint));
   object.Begin(*found);
   Turns turns(kLightTurns, context);
   StatusOr<Solution> solution = object.TakeTurn(*found, context);

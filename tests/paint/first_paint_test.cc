@@ -18,10 +18,8 @@ ShadingLight SomeLamp() {
 }
 
 FirstPaint Find(const PaintedBall& ball) {
-  const Observations observed = MakeObservations(ball.radiance);
-  return FindFirstPaints(ball.points, {&observed},
-                         NeighboursOf(ball.points, kBallWidth))
-      .front();
+  return FindFirstPaint(ball.points, MakeObservations(ball.radiance),
+                        NeighboursOf(ball.points, kBallWidth));
 }
 
 TEST(FirstPaint, IsThePaintWithoutTheShading) {
@@ -75,30 +73,29 @@ TEST(FirstPaint, SaysHowMuchLikeNormalsDiffer) {
 }
 
 // A shadow in each of three photographs, by a lamp at another place in each.
-TEST(FirstPaint, OfSeveralPhotographsIsTheirCommonOne) {
+TEST(SharedPaint, IsBetterThanThatOfEachPhotograph) {
   std::vector<PaintedBall> balls;
+  std::vector<FirstPaint> alone;
+  std::vector<Observations> observed;
   for (int k = 0; k < 3; ++k) {
     ShadingLight lamp = SomeLamp();
     lamp.direction = Eigen::Vector3d(0.6 * (k - 1), 0.3, 0.7).normalized();
-    balls.push_back(MakePaintedBall(lamp));
-    const size_t points = balls[k].points.size();
+    PaintedBall ball = MakePaintedBall(lamp);
+    const size_t points = ball.points.size();
     for (size_t i = (k + 1) * points / 5; i < (k + 2) * points / 5; ++i) {
-      for (int c = 0; c < 3; ++c) balls[k].radiance[3 * i + c] *= 0.4;
+      for (int c = 0; c < 3; ++c) ball.radiance[3 * i + c] *= 0.4;
     }
-  }
-  std::vector<Observations> observed;
-  for (const PaintedBall& ball : balls) {
+    alone.push_back(Find(ball));
     observed.push_back(MakeObservations(ball.radiance));
+    balls.push_back(std::move(ball));
   }
-  const std::vector<FirstPaint> found = FindFirstPaints(
-      balls[0].points, {&observed[0], &observed[1], &observed[2]},
+  const SharedPaint shared = FindSharedPaint(
+      balls[0].points, {&observed[0], &observed[1], &observed[2]}, alone,
       NeighboursOf(balls[0].points, kBallWidth));
-  ASSERT_EQ(3u, found.size());
   const std::vector<double>& truth = balls[0].log_albedo;
-  for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(found[0].log_albedo, found[k].log_albedo);
-    EXPECT_LT(AlignedRmse(found[k].log_albedo, truth),
-              0.4 * AlignedRmse(Find(balls[k]).log_albedo, truth));
+  for (const FirstPaint& one : alone) {
+    EXPECT_LT(AlignedRmse(shared.log_albedo, truth),
+              0.4 * AlignedRmse(one.log_albedo, truth));
   }
 }
 

@@ -71,11 +71,9 @@ TEST(SmoothShading, IsTheSkysUnderGrain) {
 // there.
 TEST(SmoothShading, TellsGrainInTheFirstPaint) {
   const PaintedBall ball = BallUnderSky(WoodGrain);
-  const Observations observed = MakeObservations(ball.radiance);
-  const std::vector<NeighbourPair> neighbours =
-      NeighboursOf(ball.points, kBallWidth);
   const FirstPaint found =
-      FindFirstPaints(ball.points, {&observed}, neighbours).front();
+      FindFirstPaint(ball.points, MakeObservations(ball.radiance),
+                     NeighboursOf(ball.points, kBallWidth));
   EXPECT_TRUE(found.natural_light);
   EXPECT_FALSE(found.options.chroma_drifts);
   UnpaintedRadiance even;
@@ -83,8 +81,9 @@ TEST(SmoothShading, TellsGrainInTheFirstPaint) {
   even.gloss.assign(ball.radiance.size(), 0.0);
   AlbedoFitOptions drift;
   drift.chroma_drifts = true;
-  const std::vector<double> summed =
-      FitAlbedo({{&even, &observed}}, neighbours, drift);
+  const Observations observed = MakeObservations(ball.radiance);
+  const std::vector<double> summed = FitAlbedo(
+      {{&even, &observed}}, NeighboursOf(ball.points, kBallWidth), drift);
   EXPECT_LT(AlignedRmse(found.log_albedo, ball.log_albedo),
             0.4 * AlignedRmse(summed, ball.log_albedo));
 }

@@ -102,6 +102,18 @@ TEST(Verdict, PaintTakesFromWhatIsKnownOfGlossAlone) {
       << v.doubt;
 }
 
+TEST(Verdict, OnePhotographOfPaintAsksForMoreLights) {
+  VerdictNumbers n = Good();
+  n.has_paint = true;
+  n.misfit = 0.2;
+  EXPECT_TRUE(Contains(MakeVerdict(n).next, "move the lamp"));
+  n.num_photographs = 3;
+  EXPECT_FALSE(Contains(MakeVerdict(n).next, "move the lamp"));
+  n.num_photographs = 1;
+  n.kind = ProblemKind::kReflectance;
+  EXPECT_FALSE(Contains(MakeVerdict(n).next, "move the lamp"));
+}
+
 TEST(Verdict, KnownLightTellsGlossFromPaint) {
   VerdictNumbers n = Good();
   n.kind = ProblemKind::kReflectance;
