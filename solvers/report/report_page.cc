@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/io/problem_json.h"
@@ -50,14 +52,19 @@ std::string Summary(const SolvedProblem& solved) {
 std::string VerdictSection(const SolvedProblem& solved) {
   const Verdict verdict = MakeVerdict(solved);
   const TrustRatings& r = verdict.ratings;
+  std::vector<std::string> names = {"light's directions", "hue", "gloss",
+                                    "brightness"};
+  std::vector<std::string> ratings = {NameOf(r.light), NameOf(r.hue),
+                                      NameOf(r.gloss), NameOf(r.level)};
+  if (r.paint) {
+    names.emplace_back("paint");
+    ratings.emplace_back(NameOf(*r.paint));
+  }
   std::string text;
   for (const std::string& sentence : verdict.Sentences()) {
     text += HtmlElement("p", sentence) + "\n";
   }
-  return "<section class=\"verdict\">\n" + text +
-         HtmlTable({"light's directions", "hue", "gloss", "brightness"},
-                   {{NameOf(r.light), NameOf(r.hue), NameOf(r.gloss),
-                     NameOf(r.level)}}) +
+  return "<section class=\"verdict\">\n" + text + HtmlTable(names, {ratings}) +
          "</section>\n";
 }
 

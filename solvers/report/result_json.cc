@@ -42,14 +42,15 @@ const char* StatusName(const Status& status) {
 
 Json VerdictJson(const Verdict& verdict) {
   const TrustRatings& ratings = verdict.ratings;
+  Json rated = {{"light_directions", NameOf(ratings.light)},
+                {"hue", NameOf(ratings.hue)},
+                {"gloss", NameOf(ratings.gloss)},
+                {"level", NameOf(ratings.level)}};
+  if (ratings.paint) rated["paint"] = NameOf(*ratings.paint);
   return {{"trust", verdict.trust},
           {"doubt", verdict.doubt},
           {"next", verdict.next},
-          {"ratings",
-           {{"light_directions", NameOf(ratings.light)},
-            {"hue", NameOf(ratings.hue)},
-            {"gloss", NameOf(ratings.gloss)},
-            {"level", NameOf(ratings.level)}}}};
+          {"ratings", std::move(rated)}};
 }
 
 Json VisibilityJson(const InverseProblem& inverse) {

@@ -40,6 +40,17 @@ double ClippedShare(const VerdictNumbers& n) {
                              : 0.0;
 }
 
+// What is left in log albedo, after the best scale, of photographed objects: of
+// one under a lamp, in the mean over both lamps of six objects; of those under
+// several (experiments/painted). Under known light, of a ball
+// (docs/notes/paint.md).
+constexpr double kPaintErrorOfOneLight = 0.29;
+constexpr double kPaintErrorOfSeveral = 0.18;
+constexpr double kPaintErrorUnderKnownLight = 0.1;
+// So many lights tell shadows from paint: a shadow is in less than half of
+// them.
+constexpr size_t kSeveralLights = 3;
+
 // Whether there is no estimate to speak of.
 bool TellsNothing(const VerdictNumbers& n) {
   return (n.status != StatusCode::kOk &&
@@ -78,8 +89,22 @@ bool PaintMayBeGloss(const VerdictNumbers& n) {
   return n.has_paint && n.kind == ProblemKind::kJoint;
 }
 
+// What one light leaves unexplained may be in the paint; a median of several
+// lights leaves it out.
+Trust RatePaint(const VerdictNumbers& n) {
+  if (TellsNothing(n)) return Trust::kNotDetermined;
+  if (n.num_lights >= kSeveralLights) {
+    return Rate(kPaintErrorOfSeveral, kGoodError, kFairError);
+  }
+  const bool known = n.kind == ProblemKind::kReflectance;
+  return Lower(Rate(known ? kPaintErrorUnderKnownLight : kPaintErrorOfOneLight,
+                    kGoodError, kFairError),
+               LevelsLost(n) + (known ? 0 : 1));
+}
+
 TrustRatings RatingsOf(const VerdictNumbers& n) {
   TrustRatings ratings;
+  if (n.has_paint) ratings.paint = RatePaint(n);
   if (!TellsNothing(n)) {
     const int lost = LevelsLost(n);
     const int clipped = ClippedShare(n) > kClippedDoubt ? 1 : 0;
@@ -113,10 +138,12 @@ struct Rated {
 };
 
 std::vector<Rated> ListRatings(const TrustRatings& r) {
-  return {{"the light's directions", r.light},
-          {"the object's hue", r.hue},
-          {"the object's gloss", r.gloss},
-          {"the object's brightness (albedo)", r.level}};
+  std::vector<Rated> all = {{"the light's directions", r.light},
+                            {"the object's hue", r.hue},
+                            {"the object's gloss", r.gloss},
+                            {"the object's brightness (albedo)", r.level}};
+  if (r.paint) all.insert(all.begin(), {"the object's paint", *r.paint});
+  return all;
 }
 
 std::string Capitalised(std::string text) {
@@ -410,6 +437,7 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
   n.has_paint = solution.has_paint();
   n.num_photographs = std::max<size_t>(solved.inverse.sheet.views.size(), 1) +
                       solved.inverse.other_photographs.size();
+  n.num_lights = 1 + solution.other_lights.size();
   // What is sought is not taken for light.
   if (solution.has_paint() || solution.materials.size() > 1) {
     n.several_materials = false;

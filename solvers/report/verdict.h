@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct TrustRatings {
   Trust hue = Trust::kNotDetermined;    // of the reflectance
   Trust gloss = Trust::kNotDetermined;  // the reflectance's shape over angles
   Trust level = Trust::kNotDetermined;  // the reflectance's scale: albedo
+  // How the albedo varies, after the best scale; unset: no paint was sought.
+  std::optional<Trust> paint;
 };
 
 struct Verdict {
@@ -44,6 +47,7 @@ struct VerdictNumbers {
   bool several_materials = false;  // as colours of like normals say
   bool has_paint = false;          // that was estimated
   size_t num_photographs = 1;      // views or lights
+  size_t num_lights = 1;           // of one view
   bool has_mask = true;
   std::string normals_advice;  // where other normals would be more plausible
   int64_t object_pixels = 0, used_pixels = 0, clipped_pixels = 0;

@@ -114,6 +114,25 @@ TEST(Verdict, OnePhotographOfPaintAsksForMoreLights) {
   EXPECT_FALSE(Contains(MakeVerdict(n).next, "move the lamp"));
 }
 
+// A shadow is left out by the median of three lights, and in the paint of one.
+TEST(Verdict, SeveralLightsTellPaintInSpiteOfTheMisfit) {
+  VerdictNumbers n = Good();
+  EXPECT_FALSE(MakeVerdict(n).ratings.paint.has_value());
+  n.has_paint = true;
+  EXPECT_EQ(Trust::kFair, MakeVerdict(n).ratings.paint);
+  n.misfit = 0.35;
+  EXPECT_EQ(Trust::kNotDetermined, MakeVerdict(n).ratings.paint);
+  EXPECT_TRUE(Contains(MakeVerdict(n).doubt, "the object's paint"));
+  n.num_lights = 3;
+  const Verdict v = MakeVerdict(n);
+  EXPECT_EQ(Trust::kGood, v.ratings.paint);
+  EXPECT_TRUE(Contains(v.trust, "Trust the object's paint")) << v.trust;
+  n.num_lights = 1;
+  n.misfit = 0.02;
+  n.kind = ProblemKind::kReflectance;
+  EXPECT_EQ(Trust::kGood, MakeVerdict(n).ratings.paint);
+}
+
 TEST(Verdict, KnownLightTellsGlossFromPaint) {
   VerdictNumbers n = Good();
   n.kind = ProblemKind::kReflectance;
