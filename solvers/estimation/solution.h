@@ -108,7 +108,8 @@ struct Solution : MaterialSolution {
   // Where the albedo varies, has_paint(): that of what is matte, at the
   // object's pixels, else 0; and the radiance that is gloss. Else empty.
   Image albedo, gloss;
-  // Of the problem's other photographs; empty where they took no part.
+  // The lights of the problem's other photographs; empty where they took no
+  // part.
   std::vector<OtherLight> other_lights;
   bool has_paint() const { return !albedo.empty(); }
   // Stray light beside the known map's, in `render` too; 0: none.

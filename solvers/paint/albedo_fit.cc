@@ -6,6 +6,7 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -82,22 +83,44 @@ double MedianStep(std::vector<double> steps) {
                     steps[steps.size() / 2]);
 }
 
+// Luminance and the two axes of chroma.
+using PaintColour = std::array<double, 3>;
+
+PaintColour ColourAt(const ApparentPaint& paint, size_t point) {
+  return {paint.luminance[point], paint.chroma[point][0],
+          paint.chroma[point][1]};
+}
+
+PaintColour Minus(const PaintColour& a, const PaintColour& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+// By coordinate; `median` of a list of numbers. colours: at least one.
+template <typename Median>
+PaintColour MedianColour(const std::vector<PaintColour>& colours,
+                         Median median) {
+  if (colours.size() == 1) return colours[0];
+  PaintColour out;
+  for (size_t axis = 0; axis < out.size(); ++axis) {
+    std::vector<double> values;
+    for (const PaintColour& colour : colours) values.push_back(colour[axis]);
+    out[axis] = median(std::move(values));
+  }
+  return out;
+}
+
 // Moves an image's paint to the level and hue of another's.
 void TakeLevelOf(const ApparentPaint& first, ApparentPaint* image) {
-  std::vector<double> luminance, u, v;
+  std::vector<PaintColour> apart;
   for (size_t i = 0; i < first.seen.size(); ++i) {
     if (first.seen[i] == 0.0 || image->seen[i] == 0.0) continue;
-    luminance.push_back(image->luminance[i] - first.luminance[i]);
-    u.push_back(image->chroma[i][0] - first.chroma[i][0]);
-    v.push_back(image->chroma[i][1] - first.chroma[i][1]);
+    apart.push_back(Minus(ColourAt(*image, i), ColourAt(first, i)));
   }
-  if (luminance.empty()) return;
-  const double level = UpperMedian(std::move(luminance));
-  const Eigen::Array2d hue(UpperMedian(std::move(u)),
-                           UpperMedian(std::move(v)));
+  if (apart.empty()) return;
+  const auto [level, u, v] = MedianColour(apart, UpperMedian<double>);
   for (size_t i = 0; i < first.seen.size(); ++i) {
     image->luminance[i] -= level;
-    image->chroma[i] -= hue;
+    image->chroma[i] -= Eigen::Array2d(u, v);
   }
 }
 
@@ -106,17 +129,15 @@ void TakeLevelOf(const ApparentPaint& first, ApparentPaint* image) {
 ApparentPaint Together(const std::vector<ApparentPaint>& images) {
   ApparentPaint out = images.front();
   for (size_t i = 0; images.size() > 1 && i < out.seen.size(); ++i) {
-    std::vector<double> luminance, u, v;
+    std::vector<PaintColour> colours;
     for (const ApparentPaint& image : images) {
-      if (image.seen[i] == 0.0) continue;
-      luminance.push_back(image.luminance[i]);
-      u.push_back(image.chroma[i][0]);
-      v.push_back(image.chroma[i][1]);
+      if (image.seen[i] != 0.0) colours.push_back(ColourAt(image, i));
     }
-    if (luminance.empty()) continue;
+    if (colours.empty()) continue;
+    const auto [luminance, u, v] = MedianColour(colours, UpperMedian<double>);
     out.seen[i] = 1.0;
-    out.luminance[i] = UpperMedian(std::move(luminance));
-    out.chroma[i] = {UpperMedian(std::move(u)), UpperMedian(std::move(v))};
+    out.luminance[i] = luminance;
+    out.chroma[i] = {u, v};
   }
   return out;
 }
@@ -216,18 +237,15 @@ struct ImageStep {
 
 ImageStep StepOf(const std::vector<ApparentPaint>& images,
                  const NeighbourPair& pair) {
-  const int a = pair.first, b = pair.second;
-  std::vector<double> luminance, u, v;
+  const size_t a = pair.first, b = pair.second;
+  std::vector<PaintColour> steps;
   for (const ApparentPaint& image : images) {
     if (image.seen[a] == 0.0 || image.seen[b] == 0.0) continue;
-    luminance.push_back(image.luminance[b] - image.luminance[a]);
-    u.push_back(image.chroma[b][0] - image.chroma[a][0]);
-    v.push_back(image.chroma[b][1] - image.chroma[a][1]);
+    steps.push_back(Minus(ColourAt(image, b), ColourAt(image, a)));
   }
-  if (luminance.empty()) return {};
-  return {MedianStep(std::move(luminance)),
-          {MedianStep(std::move(u)), MedianStep(std::move(v))},
-          true};
+  if (steps.empty()) return {};
+  const auto [luminance, u, v] = MedianColour(steps, MedianStep);
+  return {luminance, {u, v}, true};
 }
 
 PaintSteps StepsOf(const std::vector<ApparentPaint>& images,
@@ -358,6 +376,11 @@ std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
     for (int c = 0; c < 3; ++c) out[3 * i + c] = luminance[i] + log_colour[c];
   }
   return out;
+}
+
+std::vector<double> MatteGain(std::vector<double> log_albedo) {
+  for (double& a : log_albedo) a = std::exp(a);
+  return log_albedo;
 }
 
 std::vector<double> PaintGain(const UnpaintedRadiance& unpainted,

@@ -71,6 +71,9 @@ std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
                               const std::vector<NeighbourPair>& neighbours,
                               const AlbedoFitOptions& options);
 
+// e^a [points * 3]: PaintGain where nothing is gloss.
+std::vector<double> MatteGain(std::vector<double> log_albedo);
+
 // (e^a matte + gloss) / (matte + gloss) [points * 3].
 std::vector<double> PaintGain(const UnpaintedRadiance& unpainted,
                               const std::vector<double>& log_albedo);

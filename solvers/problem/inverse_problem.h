@@ -42,8 +42,9 @@ struct InverseProblem {
   // Where the file bounds radiance alone, as whole numbers do: the ends. An
   // image's value is then in its interval, or its one end.
   std::optional<RadianceBounds> bounds;
-  // Of painted objects under unknown light (SolvePainted).
-  std::vector<OtherPhotograph> other_photographs;
+  // Painted objects under unknown light may have them (SolvePainted). Copies of
+  // the problem share them.
+  std::vector<std::shared_ptr<const OtherPhotograph>> other_photographs;
   // Codes of a curve that is to be found; image and bounds are then of a first
   // guess.
   std::optional<UnknownCurve> unknown_curve;

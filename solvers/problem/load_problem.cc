@@ -223,7 +223,9 @@ Status LoadOtherPhotographs(const Problem& problem, InverseProblem* inverse) {
       inverse->warnings.push_back(std::move(warning));
     }
     inverse->other_photographs.push_back(
-        {file, std::move(photograph->radiance), std::move(photograph->bounds)});
+        std::make_shared<const OtherPhotograph>(
+            OtherPhotograph{file, std::move(photograph->radiance),
+                            std::move(photograph->bounds)}));
   }
   return OkStatus();
 }

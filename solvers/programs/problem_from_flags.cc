@@ -43,13 +43,17 @@ ConfigNode* At(ConfigNode* root, const std::string& path, bool make) {
 }
 
 // Text, whatever it looks like in YAML.
+ConfigNode TextNode(const std::string& value) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::kScalar;
+  node.scalar = value;
+  node.quoted = true;
+  return node;
+}
+
 void SetText(ConfigNode* root, const std::string& path,
              const std::string& value) {
-  if (value.empty()) return;
-  ConfigNode* const node = At(root, path, true);
-  node->kind = ConfigNode::Kind::kScalar;
-  node->scalar = value;
-  node->quoted = true;
+  if (!value.empty()) *At(root, path, true) = TextNode(value);
 }
 
 // One photograph, or several under lights of their own.
@@ -58,11 +62,7 @@ void SetPhotos(const std::vector<std::string>& photos, ConfigNode* root) {
   ConfigNode* const images = At(root, "images", true);
   images->kind = ConfigNode::Kind::kList;
   for (const std::string& photo : photos) {
-    ConfigNode one;
-    one.kind = ConfigNode::Kind::kScalar;
-    one.scalar = photo;
-    one.quoted = true;
-    images->items.push_back(one);
+    images->items.push_back(TextNode(photo));
   }
 }
 
@@ -80,18 +80,17 @@ ConfigNode TreeOf(const ProblemFlags& flags) {
 }
 
 Status CheckText(const ProblemFlags& flags) {
+  std::vector<std::pair<std::string, std::string>> texts;
   for (const std::string& photo : flags.photos) {
-    if (!IsUtf8(photo)) {
-      return InvalidInput(std::string(kCommandLine) + ": the photograph",
-                          "expected a name in UTF-8");
-    }
+    texts.emplace_back("the photograph", photo);
   }
-  for (const auto& [option, text] : {std::pair("--mask", flags.mask),
-                                     {"--response", flags.response},
-                                     {"--normals", flags.normals},
-                                     {"--mesh", flags.mesh},
-                                     {"--known-light", flags.known_light},
-                                     {"--out", flags.out}}) {
+  texts.insert(texts.end(), {{"--mask", flags.mask},
+                             {"--response", flags.response},
+                             {"--normals", flags.normals},
+                             {"--mesh", flags.mesh},
+                             {"--known-light", flags.known_light},
+                             {"--out", flags.out}});
+  for (const auto& [option, text] : texts) {
     if (!IsUtf8(text)) {
       return InvalidInput(std::string(kCommandLine) + ": " + option,
                           "expected a name in UTF-8");

@@ -36,7 +36,7 @@ Status WriteOne(const SolvedProblem& solved, size_t k,
   IBRDF_RETURN_IF_ERROR(WriteExr(residual, folder + "/residual.exr"));
   ResultPreviewInput preview;
   preview.title = NameOf(solved.problem.path) + ": " +
-                  NameOf(solved.inverse.other_photographs[k].file);
+                  NameOf(solved.inverse.other_photographs[k]->file);
   preview.input = inverse.image;
   preview.mask = ObjectMask(inverse);
   preview.render = light.render;
@@ -83,7 +83,7 @@ std::string OddPhotographs(const SolvedProblem& solved) {
   for (size_t k = 0; k < lights.size(); ++k) {
     if (!(lights[k].misfit > usual)) continue;
     names += (names.empty() ? "" : ", ") +
-             solved.inverse.other_photographs[k].file + " (misfit " +
+             solved.inverse.other_photographs[k]->file + " (misfit " +
              Format("%.2g", lights[k].misfit) + ")";
   }
   return names;

@@ -15,8 +15,8 @@ std::string PhotographFolder(const std::string& folder, size_t k);
 std::vector<std::string> OtherLightPaths(size_t begin, size_t end,
                                          const std::string& folder);
 
-// Of each photograph beside the first: illumination.exr, render.exr,
-// residual.exr and the pictures of them (WriteResultPreviews).
+// Writes illumination.exr, render.exr, residual.exr and the pictures of them
+// (WriteResultPreviews) of each photograph beside the first.
 Status WriteOtherLights(const SolvedProblem& solved, const std::string& folder);
 
 // Those that fit far worse than the first, with their misfits, in words; empty:

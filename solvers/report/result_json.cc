@@ -302,7 +302,7 @@ Json OtherLightsJson(const SolvedProblem& solved) {
   Json lights = Json::array();
   for (size_t k = 0; k < solved.solution.other_lights.size(); ++k) {
     lights.push_back(
-        {{"file", solved.inverse.other_photographs[k].file},
+        {{"file", solved.inverse.other_photographs[k]->file},
          {"results", PhotographFolder("", k)},
          {"misfit", Finite(solved.solution.other_lights[k].misfit)}});
   }

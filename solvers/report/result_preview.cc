@@ -464,7 +464,7 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   for (size_t k = 0; k < solved.solution.other_lights.size(); ++k) {
     const OtherLight& other = solved.solution.other_lights[k];
     input.other_lights.emplace_back(
-        name_of(solved.inverse.other_photographs[k].file) +
+        name_of(solved.inverse.other_photographs[k]->file) +
             Format(", misfit %.2g", other.misfit),
         other.map);
   }

@@ -30,7 +30,7 @@ struct ResultPreviewInput {
   Image illumination;               // in the library's frame
   bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;
-  // Of other photographs of the object, each with its label.
+  // The lights of other photographs of the object, each with its label.
   std::vector<std::pair<std::string, Image>> other_lights;
   std::string middle_of_map = "-z";  // of the pictures of maps, in words
   MerlTable brdf;

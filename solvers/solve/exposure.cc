@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "ibrdf/solvers/costs/observations.h"
 #include "ibrdf/solvers/observation/observation.h"
@@ -16,6 +19,12 @@ void Scale(double factor, Image* image) {
     if (!std::isfinite(v)) continue;  // bad pixels stay bad
     v = static_cast<float>(std::clamp(v * factor, -kMost, kMost));
   }
+}
+
+void Scale(double factor, std::optional<RadianceBounds>* bounds) {
+  if (!bounds->has_value()) return;
+  Scale(factor, &(*bounds)->low);
+  Scale(factor, &(*bounds)->high);
 }
 
 }  // namespace
@@ -34,17 +43,14 @@ double ExposureOf(const InverseProblem& problem) {
 InverseProblem InUnitsOf(double exposure, const InverseProblem& problem) {
   InverseProblem out = problem;
   Scale(1.0 / exposure, &out.image);
-  if (out.bounds) {
-    Scale(1.0 / exposure, &out.bounds->low);
-    Scale(1.0 / exposure, &out.bounds->high);
-  }
+  Scale(1.0 / exposure, &out.bounds);
   if (out.known_map) Scale(1.0 / exposure, &*out.known_map);
   if (out.epsilon) *out.epsilon /= exposure;
-  for (OtherPhotograph& other : out.other_photographs) {
-    Scale(1.0 / exposure, &other.image);
-    if (!other.bounds) continue;
-    Scale(1.0 / exposure, &other.bounds->low);
-    Scale(1.0 / exposure, &other.bounds->high);
+  for (auto& other : out.other_photographs) {
+    OtherPhotograph scaled = *other;
+    Scale(1.0 / exposure, &scaled.image);
+    Scale(1.0 / exposure, &scaled.bounds);
+    other = std::make_shared<const OtherPhotograph>(std::move(scaled));
   }
   out.dark.ambient /= exposure;
   out.dark.ambient_deviation /= exposure;

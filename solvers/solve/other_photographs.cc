@@ -18,7 +18,7 @@ StatusOr<std::vector<LitPhotograph>> OtherPhotographsOf(
     one.problem = OfPhotograph(problem, k);
     const StatusOr<SolveSetup> setup = SetUp(one.problem);
     if (!setup.ok()) {
-      return InvalidInput(problem.other_photographs[k].file,
+      return InvalidInput(problem.other_photographs[k]->file,
                           setup.status().message());
     }
     one.observed = setup->pixels.observed;

@@ -2,7 +2,6 @@
 
 #include <glog/logging.h>
 
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -61,14 +60,11 @@ void PaintedObject::Begin(const ReflectanceEstimate& found) {
   if (others_.empty()) FitPaint();
 }
 
-// A matte object's, before the light is known.
+// Before its light is known, the object counts as matte.
 std::vector<double> PaintedObject::GainOf(const LitPhotograph& other) const {
-  if (!other.unpainted.matte.empty()) {
-    return PaintGain(other.unpainted, log_albedo_);
-  }
-  std::vector<double> gain = log_albedo_;
-  for (double& g : gain) g = std::exp(g);
-  return gain;
+  return other.unpainted.matte.empty()
+             ? MatteGain(log_albedo_)
+             : PaintGain(other.unpainted, log_albedo_);
 }
 
 void PaintedObject::FitPaint() {

@@ -1,6 +1,5 @@
 #include "ibrdf/solvers/solve/painted_known_light.h"
 
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -74,10 +73,9 @@ StatusOr<Solution> SolvePaintedUnderKnownLight(const SolveSetup& setup,
                                                SolveContext* context) {
   const std::vector<NeighbourPair> neighbours =
       NeighboursOf(setup.pixels.points, setup.problem->image.width);
-  std::vector<double> gain =
-      FirstPaintUnder(setup.pixels.points, setup.pixels.observed, neighbours,
-                      MatteShading(setup));
-  for (double& g : gain) g = std::exp(g);
+  const std::vector<double> gain =
+      MatteGain(FirstPaintUnder(setup.pixels.points, setup.pixels.observed,
+                                neighbours, MatteShading(setup)));
   Turn turn(setup, neighbours);
   Turns turns(kReflectanceTurns, context);
   StatusOr<Solution> solution = turn.Take(gain, context);
