@@ -33,6 +33,21 @@ constexpr double kPaintedLightChroma = 0.1;
 // it: a paper cup came out with 14 times its gloss (docs/notes/paint.md).
 constexpr double kLeftOfShading = 0.15;
 
+// One photograph leaves hardly a material without a light that explains it.
+// Several contradict all but the object's own, and none of the model is that.
+// At the search's deviation of bins what is like it costs more than mirrors,
+// whose misfit light inside texels excuses (docs/notes/search.md). So the
+// search of several views begins with larger ones.
+constexpr double kTolerance = 3.0, kNextTolerance = 1.5;
+
+void TolerateUnlikeMaterials(ReflectanceSearchOptions* o) {
+  o->ranking_tolerances = {1.0, kTolerance};
+  o->coarse_stages[0].tolerance = kTolerance;
+  if (o->coarse_stages.size() > 1) {
+    o->coarse_stages[1].tolerance = kNextTolerance;
+  }
+}
+
 // Before the light is known, pixels tell paint and a lamp by themselves; what
 // is left is small. Under a lamp its chroma is hardly the light's, which else
 // would explain paint at no cost. A weak one is the sky's brighter half, not a
@@ -100,6 +115,7 @@ StatusOr<std::vector<ModelOptima>> Search(
     const std::vector<const SolveSetup*>& setups, ReflectanceSearchOptions o) {
   const InverseProblem& problem = *setups.front()->problem;
   o.covariance = problem.solver.max_iterations > 0;
+  if (problem.sheet.views.size() > 1) TolerateUnlikeMaterials(&o);
   std::vector<SearchedModel> models;
   for (const SolveSetup* setup : setups) models.push_back(ModelOf(*setup, o));
   const StatusOr<std::vector<ReflectanceSearchResult>> found =

@@ -19,6 +19,9 @@ namespace {
 constexpr int kMaxIterations = 60;
 constexpr double kSmallestStepLength = 1e-4;
 constexpr double kLongestStep = 6.0;
+// After so many steps of Newton's method they are damped.
+constexpr int kUndampedIterations = 20;
+constexpr double kMostDamping = 1e6, kLeastDamping = 0.1;
 // A step must bring this share of the gain that its quadratic model promises.
 constexpr double kPromisedShare = 0.1;
 constexpr double kSmallestRadiance = 1e-200;
@@ -28,6 +31,16 @@ constexpr int kMaxHessianSteps = 30;
 constexpr double kNewtonTolerance = 1e-3;
 // Deviations that FindNoise begins with, log radiance.
 constexpr double kFirstSigma = 0.15;
+
+// Levenberg and Marquardt's, by the share of the last step that was taken and
+// the largest change of log radiance that it proposed.
+double NextDamping(double damping, double taken, double longest) {
+  if (taken < 0.5) {
+    return std::max({1.0, 4.0 * damping, longest / kLongestStep});
+  }
+  if (taken < 1.0) return damping;
+  return damping < kLeastDamping ? 0.0 : 0.25 * damping;
+}
 
 }  // namespace
 
@@ -267,7 +280,7 @@ MarginalLikelihood::DataTerm MarginalLikelihood::DataAt(
 
 std::unique_ptr<const MarginalLikelihood::Linearisation>
 MarginalLikelihood::Linearise(const Given& given, const Point& point,
-                              const DataTerm& data) const {
+                              const DataTerm& data, double damping) const {
   const Light& light = given.light;
   const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
   auto linear = std::make_unique<Linearisation>();
@@ -278,6 +291,7 @@ MarginalLikelihood::Linearise(const Given& given, const Point& point,
     light.correlation.Multiply(linear->jacobian[c].leftCols(t), &linear->JC[c]);
   });
   linear->matte_share = given.matte_share;
+  linear->damping = damping;
   linear->row_scale = Eigen::VectorXd::Ones(3 * P);
   linear->diagonal = given.noise;
   for (Eigen::Index p = 0; p < low_.size(); ++p) {
@@ -301,7 +315,7 @@ MarginalLikelihood::Linearise(const Given& given, const Point& point,
     ScaleBlock(*linear, c, d, &block);
     A.block(c * P, d * P, P, P) = block;
   });
-  A.diagonal() += linear->diagonal;
+  A.diagonal() += (1.0 + damping) * linear->diagonal;
   if (!A.allFinite() || !Factorise(&A)) return nullptr;
   return linear;
 }
@@ -375,7 +389,9 @@ Eigen::VectorXd MarginalLikelihood::SolveRepresenters(
   Eigen::VectorXd a = linear.row_scale.cwiseProduct(
       ApplyJacobian(linear, ApplyCovariance(light, x)));
   SolveFactored(linear.factor, a.data());
-  return x - ApplyJacobianTransposed(linear, linear.row_scale.cwiseProduct(a));
+  return (x -
+          ApplyJacobianTransposed(linear, linear.row_scale.cwiseProduct(a))) /
+         (1.0 + linear.damping);
 }
 
 Eigen::VectorXd MarginalLikelihood::LightJacobianTimes(
@@ -448,7 +464,8 @@ Eigen::VectorXd MarginalLikelihood::SolveHessian(
     p = k == 0 ? z : Eigen::VectorXd(z + beta * p);
     rho = next_rho;
     const Eigen::VectorXd Hp =
-        HessianTimes(given, point, data, curvature, p_representers, p);
+        HessianTimes(given, point, data, curvature, p_representers, p) +
+        linear.damping * p_representers;
     const double square = p.dot(Hp);
     if (!(square > 0.0)) {
       // Not convex here: the preconditioner's direction descends all the same.
@@ -523,18 +540,25 @@ bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
                                   Point* point, DataTerm* data,
                                   LightMode* mode) const {
   std::unique_ptr<const Linearisation> linear;
+  double damping = 0.0;
   for (int k = 0; k < kMaxIterations; ++k) {
     if (linear == nullptr) {
-      linear = Linearise(given, *point, *data);
+      linear = Linearise(given, *point, *data, damping);
       if (linear == nullptr) return false;
     }
     const NewtonStep step =
         FindNewtonStep(given, *linear, *point, *data, *mode);
     if (!step.l.allFinite()) return false;
     const double taken = TakeStep(given, step, point, data, mode);
-    if (0.5 * step.promise < tolerance || taken == 0.0) break;
+    if (0.5 * (1.0 + damping) * step.promise < tolerance) break;
+    const double longest = step.l.lpNorm<Eigen::Infinity>();
+    const double last = damping;
+    if (k >= kUndampedIterations || taken == 0.0 || damping > 0.0) {
+      damping = NextDamping(damping, taken, longest);
+      if (damping > kMostDamping) break;
+    }
     // Far from where it was made a linearisation is a poor preconditioner.
-    if (taken * step.l.lpNorm<Eigen::Infinity>() > 1.0) linear = nullptr;
+    if (taken * longest > 1.0 || damping != last) linear = nullptr;
   }
   return true;
 }

@@ -263,7 +263,9 @@ class MarginalLikelihood {
     std::array<RowMatrix, 3> JC;        // that of texels * correlation
     // Of rows [3 * points]: 1 and D; of an interval's, W^1/2 and 1.
     Eigen::VectorXd row_scale, diagonal;
-    RowMatrix factor;             // of diagonal + row_scale J K J^T row_scale
+    double damping = 0.0;
+    // Of (1 + damping) diagonal + row_scale J K J^T row_scale.
+    RowMatrix factor;
     Eigen::VectorXd matte_share;  // [3 * points] or empty
   };
   // exp(m + l) [3 * sources], and T L [3 * points], which it keeps above 0.
@@ -273,9 +275,11 @@ class MarginalLikelihood {
   // Radiance and residuals at l.
   Point At(const Given& given, double level, const Eigen::VectorXd& l) const;
   // Null where the normal equations are not positive definite.
+  // damping: see FindMode.
   std::unique_ptr<const Linearisation> Linearise(const Given& given,
                                                  const Point& point,
-                                                 const DataTerm& data) const;
+                                                 const DataTerm& data,
+                                                 double damping = 0.0) const;
   // K g.
   Eigen::VectorXd ApplyCovariance(const Light& light,
                                   const Eigen::VectorXd& g) const;
@@ -335,8 +339,9 @@ class MarginalLikelihood {
   // 0 where none gains.
   double TakeStep(const Given& given, const NewtonStep& step, Point* point,
                   DataTerm* data, LightMode* mode) const;
-  // Newton's method from `point`. False: the equations are not positive
-  // definite, or not finite.
+  // Newton's method from `point`. Where steps fail, or do not end, they are
+  // damped (Levenberg and Marquardt): `damping` times K^-1 joins the Hessian.
+  // False: the equations are not positive definite, or not finite.
   bool FindMode(const Given& given, double tolerance, Point* point,
                 DataTerm* data, LightMode* mode) const;
 

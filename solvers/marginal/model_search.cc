@@ -95,9 +95,9 @@ void ModelSearch::RankAll(const SearchLevel& level, Ranking* ranking) const {
                 MaterialUnderLight& ranked = (*ranking)[i];
                 ranked.cost = kInfinity;
                 if (i > 0 && options_.Stopped()) return;
-                ranked.cost =
-                    level.Rank(ParametersOf(ranked, level),
-                               ranked.light.hyperparameters, &ranked.misfit);
+                ranked.cost = level.Rank(
+                    ParametersOf(ranked, level), ranked.light.hyperparameters,
+                    ranked.light.tolerance * options_.sigma, &ranked.misfit);
               });
   std::stable_sort(ranking->begin(), ranking->end(),
                    [](const MaterialUnderLight& a,
@@ -181,7 +181,7 @@ void ModelSearch::TakeBouncesOut() {
         LevelAt(best_level_->reflectance().resolution());
     std::swap(level_, next);
     std::vector<LocalOptimum> optima(1);
-    optima[0] = Refine(candidates_[0], options_.fine_iterations);
+    optima[0] = Refine(candidates_[0], 1.0, options_.fine_iterations);
     if (!Join(std::move(optima), "bounces ")) {
       std::swap(level_, next);
       return;

@@ -15,6 +15,8 @@ namespace ibrdf {
 struct LightGuess {
   LightHyperparameters hyperparameters;
   Eigen::VectorXd offsets;  // of the directional lights; empty: where they are
+  // Deviation of bins over ReflectanceSearchOptions::sigma.
+  double tolerance = 1.0;
 };
 
 // A material under light of one kind.
@@ -60,9 +62,10 @@ class ModelSearch {
   // What follows refines at the fine resolution.
   void Sharpen();
   // Refines a candidate at the present resolution; any thread may call it.
-  LocalOptimum Refine(const Candidate& candidate, int iterations) const {
+  LocalOptimum Refine(const Candidate& candidate, double tolerance,
+                      int iterations) const {
     return level_->Refine(candidate.parameters, candidate.hyperparameters,
-                          iterations);
+                          tolerance * options_.sigma, iterations);
   }
   // Refinements of all candidates, in order: those that came to something take
   // their places, the best first. False where none did, which leaves all as it

@@ -36,7 +36,7 @@ class Search {
   // image.
   bool RankAndRefine() {
     const std::vector<SearchStage>& stages = options_.coarse_stages;
-    Rank({{LightHyperparameters(), {}}, {LightHyperparameters::Harsh(), {}}});
+    Rank(FirstGuesses());
     for (ModelSearch& search : searches_) {
       TakeBest(stages.front().most, &search);
     }
@@ -46,7 +46,7 @@ class Search {
         search.KeepCandidates(stages[k].most);
       }
       if (k == 1 && options_.ranked_anew > 0) RankAnew();
-      if (!Refine("", stages[k].iterations)) return false;
+      if (!Refine("", stages[k].tolerance, stages[k].iterations)) return false;
       const ModelSearch& best = Best();
       Report("refine " + std::to_string(NumCandidates()), best.best_cost(),
              best.best_misfit());
@@ -63,9 +63,9 @@ class Search {
     for (ModelSearch& search : searches_) {
       if (!search.candidates().empty()) search.Sharpen();
     }
-    if (!Refine("", kTrialIterations)) return;
+    if (!Refine("", 1.0, kTrialIterations)) return;
     DropBeyond(options_.margin, 0);
-    Refine("finish ", options_.fine_iterations);
+    Refine("finish ", 1.0, options_.fine_iterations);
   }
 
   void TakeBouncesOut() {
@@ -90,6 +90,16 @@ class Search {
  private:
   void Report(const std::string& stage, double cost, double misfit) const {
     if (options_.report) options_.report(stage, cost, misfit);
+  }
+
+  // Average light and harsh light, at each tolerance.
+  std::vector<LightGuess> FirstGuesses() const {
+    std::vector<LightGuess> guesses;
+    for (const double tolerance : options_.ranking_tolerances) {
+      guesses.push_back({LightHyperparameters(), {}, tolerance});
+      guesses.push_back({LightHyperparameters::Harsh(), {}, tolerance});
+    }
+    return guesses;
   }
 
   // Each model's materials under these lights.
@@ -167,7 +177,7 @@ class Search {
 
   // Whole refinements of all candidates in parallel. False where none comes to
   // anything.
-  bool Refine(const std::string& what, int iterations) {
+  bool Refine(const std::string& what, double tolerance, int iterations) {
     std::vector<std::vector<LocalOptimum>> optima;
     std::vector<std::pair<size_t, size_t>> tasks;  // search, candidate
     for (size_t m = 0; m < searches_.size(); ++m) {
@@ -179,7 +189,7 @@ class Search {
                   if (task > 0 && options_.Stopped()) return;
                   const auto& [m, k] = tasks[task];
                   optima[m][k] = searches_[m].Refine(
-                      searches_[m].candidates()[k], iterations);
+                      searches_[m].candidates()[k], tolerance, iterations);
                 });
     bool any = false;
     for (size_t m = 0; m < searches_.size(); ++m) {

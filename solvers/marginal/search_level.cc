@@ -32,13 +32,13 @@ SearchLevel::SearchLevel(const LobeFactory& lobes, const MaterialPrior& prior,
 
 double SearchLevel::Rank(const Eigen::VectorXd& parameters,
                          const LightHyperparameters& hyperparameters,
-                         double* misfit) const {
+                         double sigma, double* misfit) const {
   LightMode mode;
   const std::array<RowMatrix, 3> matrices =
       reflectance_.Matrices(parameters.data());
   const MarginalLikelihood& likelihood = reflectance_.likelihood();
   const DataErrors errors = likelihood.FindErrors(
-      matrices, reflectance_.MatteMatrices(parameters.data()), options_.sigma,
+      matrices, reflectance_.MatteMatrices(parameters.data()), sigma,
       hyperparameters, kRankingTolerance, &mode);
   const MarginalValue value = likelihood.Evaluate(
       matrices, errors, hyperparameters, kRankingTolerance, &mode, nullptr);
@@ -55,12 +55,12 @@ double SearchLevel::Rank(const Eigen::VectorXd& parameters,
 
 LocalOptimum SearchLevel::Refine(const Eigen::VectorXd& parameters,
                                  const LightHyperparameters& hyperparameters,
-                                 int iterations) const {
+                                 double sigma, int iterations) const {
   LocalOptimum optimum;
   optimum.errors = reflectance_.likelihood().FindErrors(
       reflectance_.Matrices(parameters.data()),
-      reflectance_.MatteMatrices(parameters.data()), options_.sigma,
-      hyperparameters, MarginalObjective::kModeTolerance, &optimum.mode);
+      reflectance_.MatteMatrices(parameters.data()), sigma, hyperparameters,
+      MarginalObjective::kModeTolerance, &optimum.mode);
   const MarginalObjective objective = Objective(optimum.errors, &optimum.mode);
   optimum.y = objective.Whitened(parameters, hyperparameters);
   MarginalDescentOptions o;

@@ -42,14 +42,15 @@ class SearchLevel {
   }
 
   // -log posterior of parameters (MarginalReflectance's) at these
-  // hyperparameters of light; infinite, and `misfit` as it was, where they have
-  // none. That directional lights are moved costs nothing here.
+  // hyperparameters of light and this deviation of bins; infinite, and `misfit`
+  // as it was, where they have none. That directional lights are moved costs
+  // nothing here.
   double Rank(const Eigen::VectorXd& parameters,
-              const LightHyperparameters& hyperparameters,
+              const LightHyperparameters& hyperparameters, double sigma,
               double* misfit) const;
 
   LocalOptimum Refine(const Eigen::VectorXd& parameters,
-                      const LightHyperparameters& hyperparameters,
+                      const LightHyperparameters& hyperparameters, double sigma,
                       int iterations) const;
 
   // Mean log radiance of a mode's light, by channel.

@@ -12,10 +12,12 @@
 
 namespace ibrdf {
 
-// The best so far, at most so many, go on by so many steps of the descent.
+// The best so far, at most so many, go on by so many steps of the descent. The
+// deviation of bins is so many times ReflectanceSearchOptions::sigma.
 struct SearchStage {
   int most = 0;
   int iterations = 0;
+  double tolerance = 1.0;
 };
 
 struct ReflectanceSearchOptions {
@@ -26,6 +28,9 @@ struct ReflectanceSearchOptions {
   MarginalResolution coarse = {{12, 4, 0.2}, 24, 12, {48, 20, 12}};
   MarginalResolution fine = {{16, 4, 0.2}, 32, 16, {48, 20, 12}, {}};
   int kept = 10;  // of each ranking
+  // Materials are ranked with these multiples of sigma as the deviation of
+  // bins.
+  std::vector<double> ranking_tolerances = {1.0};
   // At the coarse resolution, the best of each going on to the next. The first
   // takes the rankings' best in turns.
   std::vector<SearchStage> coarse_stages = {{10, 2}, {8, 4}, {3, 6}};

@@ -351,7 +351,7 @@ TEST_F(ReflectanceSearchTest, MaterialsAreRankedAnewUnderTheLightThatWasFound) {
   EXPECT_EQ("refine 4", stages[3]);
 }
 
-// Hyperparameters and directional lights are those of the guess.
+// Hyperparameters, directional lights and tolerance are those of the guess.
 TEST_F(ReflectanceSearchTest, RankingTakesTheLightThatItIsTold) {
   const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
   const SearchedModel model = {FlowLobes::Factory(model_, 2, 1), &prior};
@@ -361,10 +361,11 @@ TEST_F(ReflectanceSearchTest, RankingTakesTheLightThatItIsTold) {
   search.Rank({{LightHyperparameters(), {}}});
   ASSERT_TRUE(search.Take(search.rankings()[0][0]));
   EXPECT_FALSE(search.Take(search.rankings()[0][0]));
-  ASSERT_TRUE(search.Join({search.Refine(search.candidates()[0], 2)}, ""));
-  const LightGuess light = search.LightAt(search.candidates()[0]);
+  ASSERT_TRUE(search.Join({search.Refine(search.candidates()[0], 1.0, 2)}, ""));
+  LightGuess light = search.LightAt(search.candidates()[0]);
   ASSERT_EQ(4, light.offsets.size());
   EXPECT_GT(light.offsets.norm(), 0.0);
+  light.tolerance = 2.0;
   search.Rank({light});
   const SearchLevel level(model.lobes, prior, points_, observed, options.coarse,
                           kDirectionalLights, options);
@@ -373,10 +374,38 @@ TEST_F(ReflectanceSearchTest, RankingTakesTheLightThatItIsTold) {
     Eigen::VectorXd parameters(14 + 4);
     parameters << prior.materials[ranked.material].parameters, light.offsets;
     double misfit = 0.0;
-    EXPECT_EQ(level.Rank(parameters, light.hyperparameters, &misfit),
+    EXPECT_EQ(level.Rank(parameters, light.hyperparameters, 2.0 * options.sigma,
+                         &misfit),
               ranked.cost);
     EXPECT_EQ(misfit, ranked.misfit);
+    EXPECT_NE(
+        level.Rank(parameters, light.hyperparameters, options.sigma, &misfit),
+        ranked.cost);
   }
+}
+
+// A first stage of larger tolerance ends at other candidates' costs, but the
+// optimum's is of sigma itself.
+TEST_F(ReflectanceSearchTest, TolerantFirstStagesEndAtTheSameOptimum) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  ReflectanceSearchOptions options = Options();
+  options.fine_iterations = 40;
+  const auto find = [&](double tolerance, std::vector<double>* costs) {
+    options.ranking_tolerances = {1.0, tolerance};
+    options.coarse_stages[0].tolerance = tolerance;
+    options.report = [&, costs](const std::string&, double cost, double) {
+      costs->push_back(cost);
+    };
+    const StatusOr<ReflectanceSearchResult> found =
+        SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,
+                          MakeObservations(radiance_), options);
+    EXPECT_TRUE(found.ok()) << found.status().message();
+    return found->cost;
+  };
+  std::vector<double> strict, tolerant;
+  const double strict_cost = find(1.0, &strict);
+  EXPECT_NEAR(strict_cost, find(3.0, &tolerant), 1.0);
+  EXPECT_NE(strict[1], tolerant[1]);
 }
 
 TEST_F(ReflectanceSearchTest, ModelThatExplainsNothingLeavesTheRace) {
