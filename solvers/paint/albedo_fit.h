@@ -3,23 +3,15 @@
 #include <vector>
 
 #include "ibrdf/scene/scene.h"
-#include "ibrdf/solvers/costs/observations.h"
+#include "ibrdf/solvers/paint/apparent_paint.h"
 #include "ibrdf/solvers/paint/neighbours.h"
 #include "ibrdf/solvers/priors/albedo_prior.h"
 
 namespace ibrdf {
 
-// What the unpainted object would show [points * 3]: the radiance of the part
-// that paint scales, and the rest.
-struct UnpaintedRadiance {
-  std::vector<double> matte, gloss;
-};
-
-// One photograph of the points, and what they would show in it without paint.
-struct PaintedImage {
-  const UnpaintedRadiance* unpainted = nullptr;
-  const Observations* observed = nullptr;
-};
+// Paints of one chroma differ by no more from their mean, in log luminance;
+// where the light is hardly known the image seems to say so.
+inline constexpr double kMostOfPaint = 3.0;
 
 struct AlbedoFitOptions {
   double colour_length = AlbedoPrior().colour_length;
