@@ -147,6 +147,7 @@ AlbedoFitOptions InViews(AlbedoFitOptions options,
   const double views = std::sqrt(static_cast<double>(NumViews(points)));
   options.reach /= views;
   options.parting_reach /= views;
+  options.error_reach /= views;
   return options;
 }
 
