@@ -106,8 +106,10 @@ struct Solution : MaterialSolution {
   Image map;     // [H, W]; the known one if known
   Image render;  // radiance at the object's pixels, else 0
   // Where the albedo varies, has_paint(): that of what is matte, at the
-  // object's pixels, else 0; and the radiance that is gloss. Else empty.
-  Image albedo, gloss;
+  // object's pixels, else 0; the radiance that is gloss; and the standard
+  // deviation of the log albedo's luminance, in three equal channels, its scale
+  // left out (AlbedoLogStd). Else empty.
+  Image albedo, gloss, albedo_log_std;
   // The lights of the problem's other photographs; empty where they took no
   // part.
   std::vector<OtherLight> other_lights;

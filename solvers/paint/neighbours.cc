@@ -29,4 +29,10 @@ std::vector<NeighbourPair> NeighboursOf(const std::vector<ShadingPoint>& points,
   return pairs;
 }
 
+double WeightOfTurn(double turn) {
+  constexpr double kCrease = 0.05;
+  const double of_crease = turn / kCrease;
+  return 1.0 / (1.0 + of_crease * of_crease);
+}
+
 }  // namespace ibrdf

@@ -75,6 +75,11 @@ void DrawText(cv::Mat* canvas, const std::string& text, int left, int top,
               kLabelFont, style.scale, style.colour, 1, cv::LINE_AA);
 }
 
+bool HasColourBar(PreviewPanel::Kind kind) {
+  return kind == PreviewPanel::Kind::kSignedResidual ||
+         kind == PreviewPanel::Kind::kDeviation;
+}
+
 double ChannelMean(const float* rgb) {
   return (static_cast<double>(rgb[0]) + rgb[1] + rgb[2]) / 3.0;
 }
@@ -105,7 +110,7 @@ cv::Mat DisplayColours(const PreviewPanel& panel, double range) {
       const size_t pixel = static_cast<size_t>(y) * image.width + x;
       if (!panel.mask.Holds(pixel) || std::isnan(rgb[0] + rgb[1] + rgb[2])) {
         out = {grey, grey, grey};
-      } else if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+      } else if (HasColourBar(panel.kind)) {
         uint8_t bytes[3];
         DivergingColour(ChannelMean(rgb) / range, bytes);
         for (int c = 0; c < 3; ++c) {
@@ -209,7 +214,7 @@ Placed MakePlaced(const PreviewPanel& panel, int max_width) {
   CheckPanel(panel);
   Placed placed;
   placed.kind = panel.kind;
-  const bool bar = panel.kind == PreviewPanel::Kind::kSignedResidual;
+  const bool bar = HasColourBar(panel.kind);
   if (bar) placed.range = ResidualRange(panel);
   const cv::Mat colours = SampledColours(panel, placed.range);
   double fit = std::min(static_cast<double>(max_width) / colours.cols,
@@ -226,21 +231,28 @@ Placed MakePlaced(const PreviewPanel& panel, int max_width) {
   return placed;
 }
 
-void DrawColourBar(cv::Mat* canvas, int left, int top, int height,
-                   double range) {
+// From -range, or from 0.
+void DrawColourBar(cv::Mat* canvas, int left, int top, int height, double range,
+                   bool from_zero) {
   for (int y = 0; y < height; ++y) {
+    const double share = (y + 0.5) / height;
     uint8_t rgb[3];
-    DivergingColour(1.0 - 2.0 * (y + 0.5) / height, rgb);
+    DivergingColour(1.0 - (from_zero ? 1.0 : 2.0) * share, rgb);
     cv::line(*canvas, {left, top + y}, {left + kBarWidth - 1, top + y},
              cv::Scalar(rgb[0], rgb[1], rgb[2]));
   }
   cv::rectangle(*canvas, {left, top, kBarWidth, height}, kFaintInk);
   const int x = left + kBarWidth + 6;
-  const int half_line = kCaptionStyle.line_height / 2;
-  DrawText(canvas, Format("+%.2g", range), x, top, kCaptionStyle);
-  DrawText(canvas, "0", x, top + height / 2 - half_line, kCaptionStyle);
-  DrawText(canvas, Format("-%.2g", range), x,
-           top + height - kCaptionStyle.line_height, kCaptionStyle);
+  const int line = kCaptionStyle.line_height;
+  DrawText(canvas, Format(from_zero ? "%.2g" : "+%.2g", range), x, top,
+           kCaptionStyle);
+  if (from_zero) {
+    DrawText(canvas, "0", x, top + height - line, kCaptionStyle);
+    return;
+  }
+  DrawText(canvas, "0", x, top + height / 2 - line / 2, kCaptionStyle);
+  DrawText(canvas, Format("-%.2g", range), x, top + height - line,
+           kCaptionStyle);
 }
 
 // Columns where the map looks along an axis; +y is the top, -y the bottom.
@@ -269,7 +281,7 @@ RowLayout LayOut(const std::vector<PreviewPanel>& row) {
   const int count = static_cast<int>(row.size());
   int free_width = kMaxWidth - 2 * kMargin - (count - 1) * kGap;
   for (const PreviewPanel& panel : row) {
-    if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+    if (HasColourBar(panel.kind)) {
       free_width -= kBarTotal;
     }
   }
@@ -315,9 +327,9 @@ void DrawRow(cv::Mat* canvas, const RowLayout& row, int top) {
                         panel.pixels.rows);
     panel.pixels.copyTo((*canvas)(area));
     int below = area.br().y;
-    if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+    if (HasColourBar(panel.kind)) {
       DrawColourBar(canvas, area.br().x + kBarGap, picture_top, area.height,
-                    panel.range);
+                    panel.range, panel.kind == PreviewPanel::Kind::kDeviation);
     } else if (panel.kind == PreviewPanel::Kind::kMap) {
       DrawMapAxes(canvas, left, below, area.width);
       below += kAxesHeight;
@@ -367,7 +379,7 @@ PanelPicture DrawPanel(const PreviewPanel& panel, int max_side) {
   CheckPanel(panel);
   CHECK_GT(max_side, 0);
   PanelPicture picture;
-  if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
+  if (HasColourBar(panel.kind)) {
     picture.range = ResidualRange(panel);
   }
   cv::Mat colours = SampledColours(panel, picture.range);

@@ -12,6 +12,7 @@ struct PreviewPanel {
   enum class Kind {
     kRadiance,        // image times exposure, as sRGB
     kSignedResidual,  // mean of the channels, in DivergingColour
+    kDeviation,       // the same of values >= 0: the colour bar begins at 0
     kMap,             // as kRadiance, in the frame camera, with the axes below
   };
   std::string label;  // printable ASCII, wrapped
@@ -23,15 +24,15 @@ struct PreviewPanel {
   // Columns and rows of the image that make one pixel of its picture, by their
   // mean in linear light: > 1 smooths outlines. Then it is not enlarged.
   int samples = 1;
-  // kSignedResidual: value at the ends of the colour bar; 0: the 98th
-  // percentile of the magnitude over the mask's pixels.
+  // Where there is a colour bar: the value at its ends; 0: the 98th percentile
+  // of the magnitude over the mask's pixels.
   double range = 0.0;
 };
 
 // The picture of one panel alone, without any text.
 struct PanelPicture {
   Rgb8Image pixels;
-  double range = 0.0;  // kSignedResidual: value at the ends of the colours
+  double range = 0.0;  // where there is a bar: value at the ends of the colours
 };
 
 // One pixel of the picture for one of the image, or fewer where a side would

@@ -25,6 +25,8 @@ ReportFigure Figure(const PreviewPanel& panel) {
   figure.map = panel.kind == PreviewPanel::Kind::kMap;
   if (panel.kind == PreviewPanel::Kind::kSignedResidual) {
     figure.bar = ReportFigure::Bar::kSigned;
+  } else if (panel.kind == PreviewPanel::Kind::kDeviation) {
+    figure.bar = ReportFigure::Bar::kPositive;
   }
   return figure;
 }
@@ -36,9 +38,8 @@ ReportFigure DeviationFigure(const Image& map_std) {
                 std::to_string(map_std.height) +
                 " texels). 0.1 is about 10 %, 0.7 a factor of two.";
   panel.image = MapForPicture(map_std);
-  panel.kind = PreviewPanel::Kind::kSignedResidual;
+  panel.kind = PreviewPanel::Kind::kDeviation;
   ReportFigure figure = Figure(panel);
-  figure.bar = ReportFigure::Bar::kPositive;
   figure.map = true;
   return figure;
 }
@@ -106,8 +107,8 @@ constexpr char kMapNote[] =
     "illumination_frame which frame the .exr files have.";
 
 constexpr char kPaintNote[] =
-    "What varies over the object, albedo.exr, and what lies over it, "
-    "gloss.exr. "
+    "What varies over the object, albedo.exr, how far to trust it, "
+    "albedo_log_std.exr, and what lies over it, gloss.exr. "
     "The image does not tell the paint's colour from the light's: a change of "
     "hue over the object is taken for paint. In the grey render only shading "
     "and gloss should be left. Paint that shows there was taken for light.";

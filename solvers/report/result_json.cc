@@ -254,6 +254,12 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
     out["brdf_log_rmse_expected"] = error.median;
     out["brdf_log_rmse_90"] = error.most;
   }
+  if (solution.has_paint()) {
+    const AlbedoDeviation albedo =
+        MeasureAlbedoDeviation(solution.albedo_log_std, inverse.points);
+    out["albedo_log_std_median"] = albedo.median;
+    out["albedo_log_std_90"] = albedo.most;
+  }
   out["alternatives"] = AlternativesJson(solution.alternatives);
   return out;
 }

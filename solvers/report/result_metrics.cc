@@ -4,6 +4,7 @@
 
 #include "ibrdf/base/format.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/priors/determined_directions.h"
 #include "ibrdf/solvers/report/result_images.h"
 
@@ -76,6 +77,15 @@ DeterminedLight MeasureDetermined(const Image& variance_left) {
   out.share /= all;
   out.variance_left /= all;
   return out;
+}
+
+AlbedoDeviation MeasureAlbedoDeviation(
+    const Image& log_std, const std::vector<ShadingPoint>& points) {
+  std::vector<double> values;
+  for (const ShadingPoint& point : points) {
+    values.push_back(log_std.rgb[size_t{3} * point.pixel]);
+  }
+  return {Percentile(values, 50.0), Percentile(values, 90.0)};
 }
 
 std::vector<NamedMetric> ListMetrics(const ResultMetrics& metrics) {

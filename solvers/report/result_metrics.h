@@ -48,6 +48,16 @@ struct DeterminedLight {
 // variance_left: a map as Solution::map_variance_left, not empty.
 DeterminedLight MeasureDetermined(const Image& variance_left);
 
+// The standard deviation of log albedo over an object's pixels.
+struct AlbedoDeviation {
+  double median = 0.0;
+  double most = 0.0;  // nine of ten pixels have less
+};
+
+// log_std: as Solution::albedo_log_std, not empty; points: at least one.
+AlbedoDeviation MeasureAlbedoDeviation(const Image& log_std,
+                                       const std::vector<ShadingPoint>& points);
+
 struct NamedMetric {
   const char* name;  // as in result.json
   double value;      // may be infinite or NaN

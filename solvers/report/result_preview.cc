@@ -104,6 +104,11 @@ Row PaintPanels(const ResultPreviewInput& input) {
   return {Picture("Albedo of the paint (" + White(of_albedo) +
                       ", its 99th percentile)",
                   Crop(input.albedo, box), mask, of_albedo),
+          Picture("Standard deviation of log albedo, its scale left out: 0.1 "
+                  "is about 10 %, 0.7 a factor of two. The colours end at the "
+                  "98th percentile",
+                  Crop(input.albedo_log_std, box), mask, 1.0,
+                  PreviewPanel::Kind::kDeviation),
           Picture("Gloss over it (the input's exposure)",
                   Crop(input.gloss, box), mask, of_input),
           Picture("Render repainted grey (the input's exposure)",
@@ -374,7 +379,8 @@ Status CheckInput(const ResultPreviewInput& input) {
     return InvalidInput("preview: residual mask",
                         "expected the size of the input");
   }
-  for (const Image* of_paint : {&input.albedo, &input.gloss}) {
+  for (const Image* of_paint :
+       {&input.albedo, &input.gloss, &input.albedo_log_std}) {
     if (!input.albedo.empty() && differs(of_paint->width, of_paint->height)) {
       return InvalidInput("preview: paint", "expected the size of the input");
     }
@@ -460,6 +466,7 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   input.residual_mask = UsedMask(solved.inverse);
   input.albedo = solved.solution.albedo;
   input.gloss = solved.solution.gloss;
+  input.albedo_log_std = solved.solution.albedo_log_std;
   input.illumination = solved.solution.map;
   for (size_t k = 0; k < solved.solution.other_lights.size(); ++k) {
     const OtherLight& other = solved.solution.other_lights[k];
@@ -511,11 +518,11 @@ Status WriteResultPreviews(const ResultPanels& rows,
     IBRDF_RETURN_IF_ERROR(WritePng(ComposePanels({{rows.images[i]}}, ""),
                                    out_dir + "/" + names[i]));
   }
-  if (!rows.paint.empty()) {
-    IBRDF_RETURN_IF_ERROR(WritePng(ComposePanels({{rows.paint[0]}}, ""),
-                                   out_dir + "/albedo.png"));
-    IBRDF_RETURN_IF_ERROR(
-        WritePng(ComposePanels({{rows.paint[1]}}, ""), out_dir + "/gloss.png"));
+  const char* const of_paint[] = {"albedo.png", "albedo_certainty.png",
+                                  "gloss.png"};
+  for (size_t i = 0; i < std::min<size_t>(rows.paint.size(), 3); ++i) {
+    IBRDF_RETURN_IF_ERROR(WritePng(ComposePanels({{rows.paint[i]}}, ""),
+                                   out_dir + "/" + of_paint[i]));
   }
   if (!rows.maps.empty()) {
     std::vector<Row> below;  // the maps one below the other

@@ -26,7 +26,7 @@ struct ResultPreviewInput {
   Image residual;
   Mask residual_mask;
   // What Solution has of a painted object, of their size; empty: unpainted.
-  Image albedo, gloss;
+  Image albedo, gloss, albedo_log_std;
   Image illumination;               // in the library's frame
   bool illumination_known = false;  // nothing to compare with a reference
   Image reference_illumination;
@@ -63,8 +63,9 @@ Rgb8Image MakeOverview(const ResultPreviewInput& input);
 // The overview's rows of panels; empty where there is nothing to show.
 struct ResultPanels {
   std::vector<PreviewPanel> images;  // input, render, residual, labels
-  std::vector<PreviewPanel> paint;   // albedo, gloss, repainted grey
-  std::vector<PreviewPanel> maps;    // estimate, reference; or known
+  // Albedo, its standard deviation, gloss, repainted grey.
+  std::vector<PreviewPanel> paint;
+  std::vector<PreviewPanel> maps;  // estimate, reference; or known
   std::vector<PreviewPanel> other_lights;
   // Estimate and reference under each light; or each material.
   std::vector<PreviewPanel> spheres;
@@ -77,9 +78,9 @@ struct ResultPanels {
 StatusOr<ResultPanels> MakeResultPanels(const ResultPreviewInput& input);
 
 // Writes overview.png, input.png, render.png, residual.png, albedo.png,
-// gloss.png, illumination.png and brdf.png into `out_dir`, which exists; each
-// whole or absent, and none for what is empty. Of the input, title and metrics
-// are read.
+// albedo_certainty.png, gloss.png, illumination.png and brdf.png into
+// `out_dir`, which exists; each whole or absent, and none for what is empty. Of
+// the input, title and metrics are read.
 Status WriteResultPreviews(const ResultPanels& panels,
                            const ResultPreviewInput& input,
                            const std::string& out_dir);

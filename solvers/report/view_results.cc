@@ -26,6 +26,7 @@ ResultPreviewInput OfView(const ResultPreviewInput& all,
   one.residual_mask = CutOut(all.residual_mask, view);
   one.albedo = CutOutOrEmpty(all.albedo, view);
   one.gloss = CutOutOrEmpty(all.gloss, view);
+  one.albedo_log_std = CutOutOrEmpty(all.albedo_log_std, view);
   one.labels = CutOutOrEmpty(all.labels, view);
   one.num_threads = all.num_threads;
   return one;
@@ -50,8 +51,9 @@ std::vector<ViewMisfit> OddViews(const std::vector<ViewMisfit>& views) {
 }
 
 const std::vector<std::string>& PaintFiles() {
-  static const std::vector<std::string> names = {"albedo.exr", "gloss.exr",
-                                                 "albedo.png", "gloss.png"};
+  static const std::vector<std::string> names = {
+      "albedo.exr", "gloss.exr", "albedo_log_std.exr",
+      "albedo.png", "gloss.png", "albedo_certainty.png"};
   return names;
 }
 
@@ -85,6 +87,8 @@ Status WriteViews(const SolvedProblem& solved, const ResultPreviewInput& all,
     if (solved.solution.has_paint()) {
       IBRDF_RETURN_IF_ERROR(WriteExr(one.albedo, own + "/albedo.exr"));
       IBRDF_RETURN_IF_ERROR(WriteExr(one.gloss, own + "/gloss.exr"));
+      IBRDF_RETURN_IF_ERROR(
+          WriteExr(one.albedo_log_std, own + "/albedo_log_std.exr"));
     }
     IBRDF_RETURN_IF_ERROR(WriteResultPreviews(one, own));
   }

@@ -104,6 +104,8 @@ Status WriteRadiance(const SolvedProblem& solved, const std::string& folder) {
   if (solution.has_paint()) {
     IBRDF_RETURN_IF_ERROR(WriteExr(solution.albedo, folder + "/albedo.exr"));
     IBRDF_RETURN_IF_ERROR(WriteExr(solution.gloss, folder + "/gloss.exr"));
+    IBRDF_RETURN_IF_ERROR(
+        WriteExr(solution.albedo_log_std, folder + "/albedo_log_std.exr"));
   }
   return WriteExr(LogResidual(solved.inverse, solution),
                   folder + "/residual.exr");

@@ -7,6 +7,7 @@
 
 #include "ibrdf/solvers/estimation/light_given_reflectance.h"
 #include "ibrdf/solvers/estimation/marginal_search.h"
+#include "ibrdf/solvers/paint/albedo_deviation.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
 #include "ibrdf/solvers/paint/first_paint.h"
 #include "ibrdf/solvers/solve/other_photographs.h"
@@ -40,6 +41,7 @@ class PaintedObject {
 
  private:
   std::vector<double> GainOf(const LitPhotograph& other) const;
+  std::vector<PaintedImage> Images() const;
   void FitPaint();
 
   const SolveSetup& setup_;
@@ -67,12 +69,16 @@ std::vector<double> PaintedObject::GainOf(const LitPhotograph& other) const {
              : PaintGain(other.unpainted, log_albedo_);
 }
 
-void PaintedObject::FitPaint() {
+std::vector<PaintedImage> PaintedObject::Images() const {
   std::vector<PaintedImage> images = {{&unpainted_, &setup_.pixels.observed}};
   for (const LitPhotograph& other : others_) {
     images.push_back({&other.unpainted, &other.observed});
   }
-  log_albedo_ = FitAlbedo(images, neighbours_, options_);
+  return images;
+}
+
+void PaintedObject::FitPaint() {
+  log_albedo_ = FitAlbedo(Images(), neighbours_, options_);
 }
 
 StatusOr<Solution> PaintedObject::TakeTurn(const ReflectanceEstimate& found,
@@ -97,7 +103,9 @@ StatusOr<Solution> PaintedObject::TakeTurn(const ReflectanceEstimate& found,
     solution.other_lights.push_back(other.light);
     ScalePixels(GainOf(other), points, &solution.other_lights.back().render);
   }
-  SetPaint(setup_, reflectance_, unpainted_, log_albedo_, &solution);
+  SetPaint(setup_, reflectance_, unpainted_, log_albedo_,
+           AlbedoLogStd(Images(), neighbours_, log_albedo_, options_),
+           &solution);
   return solution;
 }
 

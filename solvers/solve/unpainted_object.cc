@@ -69,13 +69,17 @@ InverseProblem WithoutPaint(const InverseProblem& problem,
 
 void SetPaint(const SolveSetup& setup, const UnpaintedReflectance& reflectance,
               const UnpaintedRadiance& unpainted,
-              const std::vector<double>& log_albedo, Solution* solution) {
-  std::vector<double> albedo(log_albedo.size());
+              const std::vector<double>& log_albedo,
+              const std::vector<double>& log_std, Solution* solution) {
+  std::vector<double> albedo(log_albedo.size()), of_channels;
   for (size_t i = 0; i < albedo.size(); ++i) {
     albedo[i] = reflectance.albedo[i % 3] * std::exp(log_albedo[i]);
   }
   solution->albedo = AtPixels(setup, albedo);
+  for (const double std : log_std)
+    of_channels.insert(of_channels.end(), 3, std);
   solution->gloss = AtPixels(setup, unpainted.gloss);
+  solution->albedo_log_std = AtPixels(setup, of_channels);
 }
 
 }  // namespace ibrdf

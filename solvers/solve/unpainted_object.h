@@ -43,9 +43,11 @@ InverseProblem WithoutPaint(const InverseProblem& problem,
                             const std::vector<double>& gain,
                             const std::vector<ShadingPoint>& points);
 
-// The paint's part of a solution: the albedo of what is matte, and the gloss.
+// The paint's part of a solution: the albedo of what is matte with its standard
+// deviation (AlbedoLogStd's), and the gloss.
 void SetPaint(const SolveSetup& setup, const UnpaintedReflectance& reflectance,
               const UnpaintedRadiance& unpainted,
-              const std::vector<double>& log_albedo, Solution* solution);
+              const std::vector<double>& log_albedo,
+              const std::vector<double>& log_std, Solution* solution);
 
 }  // namespace ibrdf

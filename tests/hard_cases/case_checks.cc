@@ -259,6 +259,7 @@ void CheckRun(const YAML::Node& holds, const YAML::Node& problem,
   } else if (holds["albedo"]) {
     ExpectRange(albedo, holds["albedo"]);
   }
+  EXPECT_EQ(fs::exists(albedo), fs::exists(run.folder + "/albedo_log_std.exr"));
   if (holds["renders"]) {
     ExpectRendersAgain(problem, run.folder, holds["renders"].as<double>());
   }

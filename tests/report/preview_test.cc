@@ -122,6 +122,27 @@ TEST(Preview, ResidualIsRedWhereTheRenderIsTooBright) {
   EXPECT_GT(blues, 300 * 300);
 }
 
+// A bar from 0 has no blue, and red where the values are largest.
+TEST(Preview, DeviationsBeginAtZero) {
+  Image deviation(2, 1);
+  std::fill_n(deviation.At(1, 0), 3, 0.4f);
+  PreviewPanel panel = Panel(deviation, PreviewPanel::Kind::kDeviation);
+  const auto blue = [](const Rgb8Image& picture) {
+    int count = 0;
+    for (size_t i = 0; i < picture.rgb.size(); i += 3) {
+      count += picture.rgb[i + 2] > picture.rgb[i] + 40;
+    }
+    return count;
+  };
+  EXPECT_EQ(0, blue(ComposePanels({{panel}}, "")));
+  const PanelPicture drawn = DrawPanel(panel, 16);
+  EXPECT_NEAR(0.4, drawn.range, 1e-6);
+  EXPECT_EQ(255, drawn.pixels.At(0, 0)[2]);
+  EXPECT_LT(drawn.pixels.At(1, 0)[2], drawn.pixels.At(1, 0)[0]);
+  panel.kind = PreviewPanel::Kind::kSignedResidual;
+  EXPECT_GT(blue(ComposePanels({{panel}}, "")), 0);
+}
+
 TEST(Preview, LargeImagesAreReducedToFitTheWidth) {
   const Rgb8Image one = ComposePanels({{Panel(Constant(3000, 100, 1.0f))}}, "");
   EXPECT_LE(one.width, 1440);

@@ -84,6 +84,18 @@ TEST(LogResidual, IsZeroWhereAPixelTookNoPart) {
 }
 
 // A row of texels counts by its solid angle.
+TEST(AlbedoDeviation, IsThatOfTheObjectsPixels) {
+  Image log_std(12, 1);
+  std::vector<ShadingPoint> points(11);
+  for (int x = 0; x < 11; ++x) {
+    points[x].pixel = x;
+    std::fill_n(log_std.At(x, 0), 3, 0.1f * static_cast<float>(x));
+  }
+  const AlbedoDeviation deviation = MeasureAlbedoDeviation(log_std, points);
+  EXPECT_NEAR(0.5, deviation.median, 1e-6);
+  EXPECT_NEAR(0.9, deviation.most, 1e-6);
+}
+
 TEST(DeterminedLight, IsWeighedBySolidAngle) {
   Image left(8, 4);
   for (int y = 0; y < 4; ++y) {

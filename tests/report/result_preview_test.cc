@@ -40,6 +40,22 @@ TEST(ResultPreview, WritesWhatThereIsAndNothingElse) {
   EXPECT_EQ(dir.CountFiles(), 6);
 }
 
+TEST(ResultPreview, PaintHasItsDeviationBesideIt) {
+  const TempDir dir;
+  ResultPreviewInput input = SmallInput();
+  input.render = input.gloss = input.albedo = input.albedo_log_std =
+      input.input;
+  const ResultPanels panels = *MakeResultPanels(input);
+  ASSERT_EQ(size_t{4}, panels.paint.size());
+  EXPECT_EQ(PreviewPanel::Kind::kDeviation, panels.paint[1].kind);
+  ASSERT_TRUE(WriteResultPreviews(panels, input, dir.path()).ok());
+  for (const char* name : {"albedo.png", "albedo_certainty.png", "gloss.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(dir.File(name))) << name;
+  }
+  input.albedo_log_std = Image(3, 3);
+  EXPECT_FALSE(MakeResultPanels(input).ok());
+}
+
 TEST(ResultPreview, ReferencesAddPanels) {
   ResultPreviewInput input = SmallInput();
   input.illumination = ProceduralSky(8, 16);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/brdf/matte_split.h"
@@ -89,6 +90,25 @@ class PaintedUnderKnownLightTest : public ::testing::Test {
     return std::sqrt(d.square().mean());
   }
 
+  // The share of points whose luminance is off by less than so many of the
+  // stated deviations.
+  double ShareWithin(double deviations, const Solution& e) const {
+    std::vector<double> off;
+    for (const ShadingPoint& point : problem_.points) {
+      const float* a = &e.albedo.rgb[3 * point.pixel];
+      off.push_back(std::log(a[0] * a[1] * a[2]) / 3.0 -
+                    LogPaint(point).mean());
+    }
+    const auto n = static_cast<double>(off.size());
+    const double mean = std::accumulate(off.begin(), off.end(), 0.0) / n;
+    double within = 0.0;
+    for (size_t i = 0; i < off.size(); ++i) {
+      const float std = e.albedo_log_std.rgb[3 * problem_.points[i].pixel];
+      within += std::abs(off[i] - mean) < deviations * std ? 1.0 / n : 0.0;
+    }
+    return within;
+  }
+
   InverseProblem problem_ = BallProblem(kPaintedSize);
   const Image map_ = SmoothMap(8, 16);
   BrdfGrid whole_, matte_;
@@ -105,7 +125,19 @@ TEST_F(PaintedUnderKnownLightTest, FindsThePaint) {
     EXPECT_NEAR(std::log(e.render.rgb[at]), std::log(problem_.image.rgb[at]),
                 0.5);
     EXPECT_GE(e.gloss.rgb[at], 0.0f);
+    EXPECT_GT(e.albedo_log_std.rgb[at], 0.0f);
+    EXPECT_LT(e.albedo_log_std.rgb[at], 0.5f);
   }
+  EXPECT_GT(ShareWithin(1.64, e), 0.75);
+  EXPECT_LT(ShareWithin(0.1, e), 0.5);
+}
+
+TEST_F(PaintedUnderKnownLightTest, UnitsDoNotChangeTheDeviation) {
+  problem_.solver.max_iterations = 1;
+  const Solution before = Solve();
+  for (float& v : problem_.image.rgb) v *= 64.0f;
+  for (float& v : problem_.known_map->rgb) v *= 64.0f;
+  EXPECT_EQ(before.albedo_log_std.rgb, Solve().albedo_log_std.rgb);
 }
 
 TEST_F(PaintedUnderKnownLightTest, IsSoughtWhereOneMaterialFails) {
@@ -136,6 +168,7 @@ TEST_F(PaintedUnderKnownLightTest, OneMaterialDoesNotExplainIt) {
   problem_.variation = ReflectanceVariation::kNone;
   const Solution e = Solve();
   EXPECT_TRUE(e.albedo.rgb.empty());
+  EXPECT_TRUE(e.albedo_log_std.rgb.empty());
   EXPECT_GT(e.misfit, 0.2);
 }
 
@@ -152,6 +185,8 @@ TEST_F(PaintedUnderKnownLightTest, BlackPaintAndAHoleStayFinite) {
       const float a = e.albedo.rgb[size_t{3} * point.pixel + c];
       EXPECT_TRUE(std::isfinite(a) && a > 0.0f);
     }
+    const float std = e.albedo_log_std.rgb[size_t{3} * point.pixel];
+    EXPECT_TRUE(std::isfinite(std) && std > 0.0f);
   }
 }
 
