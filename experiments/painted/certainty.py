@@ -8,7 +8,6 @@ albedo_log_std.exr and |error|; the shares of pixels whose error is below 1 and 
 should be 0.68 and 0.90; the medians of both; the stated 90 % quantile. The error is that of log luminance, the mean of
 the channels' logarithms, after one scale. Needs Debian's python3-numpy.
 """
-import argparse
 import pathlib
 import sys
 
@@ -16,6 +15,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
 from files import read_exr, read_png  # noqa: E402
+from solved_objects import print_table  # noqa: E402
 
 
 def ranks(values):
@@ -35,19 +35,11 @@ def compare(photograph, solved):
             np.median(deviation), np.quantile(deviation, 0.9), np.median(error))
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("photographs", type=pathlib.Path)
-    parser.add_argument("out", type=pathlib.Path)
-    arguments = parser.parse_args()
-    print("object,light,correlation,below_1,below_1_64,median,quantile_90,median_error")
-    for solved in sorted(arguments.out.glob("*_*_*")):
-        if not (solved / "albedo_log_std.exr").exists():
-            continue
-        name, light, _ = solved.name.split("_")
-        numbers = compare(arguments.photographs / name, solved)
-        print(f"{name},{light}," + ",".join(f"{number:.3f}" for number in numbers), flush=True)
+def row(photograph, solved, name, light):
+    if not (solved / "albedo_log_std.exr").exists():
+        return None
+    return f"{name},{light}," + ",".join(f"{number:.3f}" for number in compare(photograph, solved))
 
 
 if __name__ == "__main__":
-    main()
+    print_table(__doc__, "object,light,correlation,below_1,below_1_64,median,quantile_90,median_error", "*_*_*", row)

@@ -7,7 +7,6 @@ OUT: as photographs.py left it, with solves of the light `original`, which alone
 Pearson's correlation of the two images of gloss, means of the channels inside the mask; the energy of the estimate over
 the true one; and the true gloss's share of the light. Needs Debian's python3-numpy.
 """
-import argparse
 import pathlib
 import sys
 
@@ -15,6 +14,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
 from files import read_exr, read_png  # noqa: E402
+from solved_objects import print_table  # noqa: E402
 
 
 def compare(photograph, solved):
@@ -27,17 +27,10 @@ def compare(photograph, solved):
     return np.corrcoef(estimate, truth)[0, 1], estimate.sum() / truth.sum(), truth.sum() / light.sum()
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("photographs", type=pathlib.Path)
-    parser.add_argument("out", type=pathlib.Path)
-    arguments = parser.parse_args()
-    print("object,correlation,energy_over_true,true_share")
-    for solved in sorted(arguments.out.glob("*_original_*")):
-        name = solved.name.split("_")[0]
-        correlation, energy, share = compare(arguments.photographs / name, solved)
-        print(f"{name},{correlation:.3f},{energy:.2f},{share:.3f}", flush=True)
+def row(photograph, solved, name, _):
+    correlation, energy, share = compare(photograph, solved)
+    return f"{name},{correlation:.3f},{energy:.2f},{share:.3f}"
 
 
 if __name__ == "__main__":
-    main()
+    print_table(__doc__, "object,correlation,energy_over_true,true_share", "*_original_*", row)

@@ -552,13 +552,12 @@ bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
     const double taken = TakeStep(given, step, point, data, mode);
     if (0.5 * (1.0 + damping) * step.promise < tolerance) break;
     const double longest = step.l.lpNorm<Eigen::Infinity>();
-    const double last = damping;
     if (k >= kUndampedIterations || taken == 0.0 || damping > 0.0) {
       damping = NextDamping(damping, taken, longest);
       if (damping > kMostDamping) break;
     }
     // Far from where it was made a linearisation is a poor preconditioner.
-    if (taken * longest > 1.0 || damping != last) linear = nullptr;
+    if (taken * longest > 1.0 || damping != linear->damping) linear = nullptr;
   }
   return true;
 }

@@ -264,7 +264,7 @@ class MarginalLikelihood {
     // Of rows [3 * points]: 1 and D; of an interval's, W^1/2 and 1.
     Eigen::VectorXd row_scale, diagonal;
     double damping = 0.0;
-    // Of (1 + damping) diagonal + row_scale J K J^T row_scale.
+    // Cholesky's, of (1 + damping) diagonal + row_scale J K J^T row_scale.
     RowMatrix factor;
     Eigen::VectorXd matte_share;  // [3 * points] or empty
   };

@@ -17,7 +17,7 @@ constexpr double kMostVariance = kMostOfPaint * kMostOfPaint;
 
 using Values = std::vector<double>;  // of points
 
-// Of a point's channels.
+// The mean over a point's channels.
 double Mean(const Values& of_channels, size_t point) {
   const double* v = &of_channels[3 * point];
   return (v[0] + v[1] + v[2]) / 3.0;

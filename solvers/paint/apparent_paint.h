@@ -34,8 +34,8 @@ struct ApparentStep {
   bool seen = false;  // in one image at least
 };
 
-// Of each image, at least one and all of the same points; those beside the
-// first are moved to its level and hue.
+// What each image says, at least one and all of the same points; those beside
+// the first are moved to its level and hue.
 std::vector<ApparentPaint> ApparentPaintsOf(
     const std::vector<PaintedImage>& images);
 

@@ -56,7 +56,7 @@ Eigen::VectorXd UnseenPoints::MeanGiven(const std::vector<double>& values,
   return cholesky_.solve(right);
 }
 
-// Of precision P = L L^T, L^-T z is a draw where z is standard normal.
+// L^-T z is a draw of precision P = L L^T where z is standard normal.
 Eigen::VectorXd UnseenPoints::Variances() const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(count_);
   if (count_ == 0) return sum;

@@ -18,7 +18,7 @@ class UnseenPoints {
   UnseenPoints(const std::vector<NeighbourPair>& neighbours,
                const std::vector<double>& seen);
 
-  // Of the points with seen = 0, in their order.
+  // The number of points with seen = 0. Vectors hold them in their order.
   int count() const { return count_; }
   // The field's mean where the seen points have `values` [points]; `alone` in a
   // hole that no seen point is beside.

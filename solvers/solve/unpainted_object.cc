@@ -76,8 +76,9 @@ void SetPaint(const SolveSetup& setup, const UnpaintedReflectance& reflectance,
     albedo[i] = reflectance.albedo[i % 3] * std::exp(log_albedo[i]);
   }
   solution->albedo = AtPixels(setup, albedo);
-  for (const double std : log_std)
+  for (const double std : log_std) {
     of_channels.insert(of_channels.end(), 3, std);
+  }
   solution->gloss = AtPixels(setup, unpainted.gloss);
   solution->albedo_log_std = AtPixels(setup, of_channels);
 }
