@@ -243,7 +243,7 @@ def draw_data_flow():
     beside(y, "EstimateUnknowns", "solvers/solve/solve.cc", "which are unknown?")
     top = y + 46
     # Unknowns; the first stage and, where there is one, its result and the second.
-    columns = [(125, "both unknown", "EstimateReflectance", "ReflectanceEstimate", "EstimateLight"),
+    columns = [(125, "both unknown", "EstimateReflectances", "ReflectanceEstimate", "EstimateLight"),
                (362, "light known", "EstimateReflectanceGivenLight", "", ""),
                (598, "reflectance known", "EstimateLightPosterior", "LightPosterior", "EstimateLight"),
                (835, "both, estimator: maximum", "EstimateJointMaximum", "", "")]

@@ -13,7 +13,7 @@ mkdir -p "${out}"
 step "Install missing packages" scripts/install_dependencies.sh
 step "Configure" cmake --preset release -DIBRDF_BUILD_TESTS=OFF
 step "Build" cmake --build --preset release -j "$(nproc)" \
-  --target ibrdf_render ibrdf_solve
+  --target ibrdf_render ibrdf_solve ibrdf_eval
 step "Render the input" "${bin}/ibrdf_render" \
   --scene examples/sphere/scene.yaml \
   --out "${out}/input.exr" --mask "${out}/mask.png" \

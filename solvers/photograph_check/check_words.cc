@@ -44,12 +44,16 @@ std::string SpreadLine(const PhotographCheck& check) {
   const LikeNormalsSpread& like = check.like_normals;
   const std::string share = Number(100.0 * like.share) + " % of the pixels";
   if (like.pixels == 0) return "none are seen at several places";
+  const std::string floor =
+      like.HasFloor()
+          ? "without shadows and bounces, no material and distant light come "
+            "below a misfit of " +
+                Three(like.Floor())
+          : "before so near a camera they mirror different light, so this sets "
+            "no floor to the misfit";
   return "at several places (" + share + ") log radiance differs by " +
          Three(like.log_radiance) + ", log colour by " +
-         Three(like.log_colour) +
-         "; without shadows and bounces, no material and distant light come "
-         "below a misfit of " +
-         Three(like.Floor());
+         Three(like.log_colour) + "; " + floor;
 }
 
 std::string NormalsLine(const PhotographCheck& check) {

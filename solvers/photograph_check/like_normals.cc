@@ -1,10 +1,13 @@
 #include "ibrdf/solvers/photograph_check/like_normals.h"
 
+#include <Eigen/Core>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 
 namespace ibrdf {
 namespace {
@@ -139,13 +142,27 @@ double AtNoExtent(double cells, double twice) {
   return std::sqrt(std::max(2.0 * cells * cells - twice * twice, 0.0));
 }
 
+// The largest angle between a point's direction to the viewer and that of the
+// first point of its view.
+double ViewAngle(const std::vector<ShadingPoint>& points) {
+  std::map<int, Eigen::Vector3d> first;  // by view
+  double angle = 0.0;
+  for (const ShadingPoint& point : points) {
+    const Eigen::Vector3d wo = point.wo.cast<double>();
+    const Eigen::Vector3d& other = first.emplace(point.view, wo).first->second;
+    angle = std::max(angle, std::atan2(wo.cross(other).norm(), wo.dot(other)));
+  }
+  return angle;
+}
+
 }  // namespace
 
 LikeNormalsSpread SpreadOfLikeNormals(const std::vector<NormalSample>& samples,
-                                      size_t points) {
-  LikeNormalsSpread spread = SpreadInCells(samples, points, kMostOfCell);
+                                      const std::vector<ShadingPoint>& points) {
+  LikeNormalsSpread spread = SpreadInCells(samples, points.size(), kMostOfCell);
   const LikeNormalsSpread twice =
-      SpreadInCells(samples, points, 2 * kMostOfCell);
+      SpreadInCells(samples, points.size(), 2 * kMostOfCell);
+  spread.view_angle = ViewAngle(points);
   spread.log_radiance = std::min(
       spread.log_radiance, AtNoExtent(spread.log_radiance, twice.log_radiance));
   spread.log_colour = std::min(spread.log_colour,

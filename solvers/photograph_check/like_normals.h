@@ -4,9 +4,13 @@
 #pragma once
 #include <vector>
 
+#include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/photograph_check/normal_samples.h"
 
 namespace ibrdf {
+
+// Within this angle, radians, all pixels are seen from one direction.
+inline constexpr double kOneDirection = 0.0175;
 
 struct LikeNormalsSpread {
   // Mean absolute deviations, natural logarithm, over the pixels whose normals
@@ -22,9 +26,16 @@ struct LikeNormalsSpread {
   // sample.
   std::vector<float> colour_of_point;
 
+  // The largest angle between two directions from which a view sees the object,
+  // radians, at least half of it.
+  double view_angle = 0.0;
+
+  // Before a near camera like normals mirror different light: what they differ
+  // by may be explained.
+  bool HasFloor() const { return view_angle <= kOneDirection; }
   // A floor of the misfit (mean |log L_o - log I| over pixels and channels):
-  // the other pixels may be explained without any.
-  double Floor() const { return share * log_radiance; }
+  // the other pixels may be explained without any. 0 where there is none.
+  double Floor() const { return HasFloor() ? share * log_radiance : 0.0; }
 };
 
 // From this share of the object's size on, the square root of its pixels in
@@ -36,8 +47,8 @@ inline constexpr double kOtherPlace = 0.1;
 // that what normals explain is no spread; deviations from it are scaled for the
 // degrees of freedom that it takes. Cells twice as large say how much of the
 // deviation is a reflection that changes within a cell; it is taken off.
-// `points`: how many the samples are of.
+// `points`: what the samples are of.
 LikeNormalsSpread SpreadOfLikeNormals(const std::vector<NormalSample>& samples,
-                                      size_t points);
+                                      const std::vector<ShadingPoint>& points);
 
 }  // namespace ibrdf

@@ -66,7 +66,7 @@ PhotographCheck CheckPhotograph(const LookInput& input) {
       SampleNormals(input.radiance, input.points);
   check.colours = SpreadOfColours(samples);
   check.colour_steps = SharpColourSteps(samples, check.width, check.height);
-  check.like_normals = SpreadOfLikeNormals(samples, input.points.size());
+  check.like_normals = SpreadOfLikeNormals(samples, input.points);
   if (!input.normal_map.empty()) {
     check.normals = RankNormalHypotheses(input.normal_map, input.mask);
   }

@@ -25,7 +25,7 @@ Json LikeNormalsJson(const LikeNormalsSpread& spread) {
   const bool known = spread.pixels > 0;
   return {{"pixels", spread.pixels},
           {"share_of_pixels", spread.share},
-          {"misfit_floor", spread.Floor()},
+          {"misfit_floor", spread.HasFloor() ? Json(spread.Floor()) : Json()},
           {"log_radiance", known ? Json(spread.log_radiance) : Json()},
           {"log_colour", known ? Json(spread.log_colour) : Json()}};
 }

@@ -50,7 +50,8 @@ bool MayBeMissing(const std::string& where) {
   // curvature of a normal map.
   static const std::regex kNotSeen(
       "(result|check)\\.json/check/(mask_pixels|overlap|"
-      "like_normals/log_(radiance|colour)|materials/colour_spread|"
+      "like_normals/(log_(radiance|colour)|misfit_floor)|materials/"
+      "colour_spread|"
       "normals/[0-9]+/(away|outline|curl))");
   return std::regex_match(where, kNotSeen);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -18,7 +19,7 @@ Eigen::Array3d Matte(const Eigen::Vector3d& n) {
 
 LikeNormalsSpread SpreadOf(const Image& normals, const Image& image) {
   const std::vector<ShadingPoint> points = PointsOf(normals);
-  return SpreadOfLikeNormals(SampleNormals(image, points), points.size());
+  return SpreadOfLikeNormals(SampleNormals(image, points), points);
 }
 
 TEST(LikeNormals, AFunctionOfTheNormalHasHardlyASpread) {
@@ -88,8 +89,57 @@ TEST(LikeNormals, FlatPiecesHaveNoSlopes) {
   EXPECT_NEAR(0.0, spread.log_colour, 1e-6);
 }
 
+// Turns the directions to the viewer as a camera at this distance sees them.
+std::vector<ShadingPoint> FromNear(std::vector<ShadingPoint> points, int size,
+                                   float distance) {
+  for (ShadingPoint& point : points) {
+    const auto half = 0.5f * static_cast<float>(size);
+    const float u = (static_cast<float>(point.pixel % size) + 0.5f) / half;
+    const float v = (static_cast<float>(point.pixel / size) + 0.5f) / half;
+    point.wo = Eigen::Vector3f(1.0f - u, v - 1.0f, distance).normalized();
+  }
+  return points;
+}
+
+TEST(LikeNormals, ANearCameraSetsNoFloor) {
+  // A mirror under a sky that brightens to the right.
+  constexpr int kSize = 96;
+  const Image normals = SurfaceNormals(kSize, Bumps);
+  const std::vector<ShadingPoint> points = PointsOf(normals);
+  for (const float distance : {4.0f, 400.0f}) {
+    const std::vector<ShadingPoint> seen = FromNear(points, kSize, distance);
+    Image image(kSize, kSize);
+    for (const ShadingPoint& point : seen) {
+      const Eigen::Vector3f mirrored =
+          2.0f * point.normal.dot(point.wo) * point.normal - point.wo;
+      std::fill_n(image.At(point.pixel % kSize, point.pixel / kSize), 3,
+                  std::exp(2.0f * mirrored.x()));
+    }
+    const LikeNormalsSpread spread =
+        SpreadOfLikeNormals(SampleNormals(image, seen), seen);
+    const bool near = distance < 100.0f;
+    EXPECT_EQ(!near, spread.HasFloor());
+    EXPECT_EQ(near, spread.log_radiance > 0.05) << spread.log_radiance;
+    EXPECT_LT(spread.Floor(), 0.01);
+    // Between half of the angle from corner to corner and all of it.
+    const double corners = 2.0 * std::atan(std::sqrt(2.0) / distance);
+    EXPECT_GE(spread.view_angle, 0.5 * corners);
+    EXPECT_LE(spread.view_angle, corners);
+  }
+}
+
+TEST(LikeNormals, ViewsOfOneDirectionEachHaveAFloor) {
+  std::vector<ShadingPoint> points = PointsOf(SurfaceNormals(32, Bumps));
+  for (size_t i = 0; i < points.size(); i += 2) {
+    points[i].view = 1;
+    points[i].wo = Eigen::Vector3f::UnitX();
+  }
+  EXPECT_TRUE(SpreadOfLikeNormals({}, points).HasFloor());
+}
+
 TEST(LikeNormals, NothingToCompareIsNoSpread) {
-  const LikeNormalsSpread spread = SpreadOfLikeNormals({}, 3);
+  const std::vector<ShadingPoint> points(3, PointsOf(SphereNormals(8))[0]);
+  const LikeNormalsSpread spread = SpreadOfLikeNormals({}, points);
   EXPECT_EQ(0u, spread.pixels);
   EXPECT_EQ(0.0, spread.Floor());
   ASSERT_EQ(3u, spread.colour_of_point.size());
