@@ -13,7 +13,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "common"))
 import cases  # noqa: E402
 
 COLUMNS = (
-    "material", "map", "views", "seconds", "misfit", "brdf_log_rmse_aligned",
+    "material", "map", "size", "views", "seconds", "misfit",
+    "brdf_log_rmse_aligned",
     "illumination_relative_log_rmse_aligned", "image_log_rmse",
 )
 
@@ -72,10 +73,11 @@ def solve(args, folder, material, light, model, count):
     result = cases.solve(
         [args.bin / "ibrdf_solve", "--problem", folder / f"joint{count}.yaml",
          "--out", out, "--quiet", "--threads", str(args.threads)], out)
+    seconds = round(time.time() - start, 1)
     metrics = result["metrics"]
-    row = {"material": material, "map": light, "views": count}
-    row.update({key: metrics.get(key) for key in COLUMNS[3:]})
-    row["seconds"] = round(time.time() - start, 1)
+    row = {"material": material, "map": light, "size": args.size, "views": count}
+    row.update({key: metrics.get(key) for key in COLUMNS[5:]})
+    row["seconds"] = seconds
     return row
 
 
