@@ -24,6 +24,9 @@ constexpr int kUndampedIterations = 20;
 constexpr double kMostDamping = 1e6, kLeastDamping = 0.1;
 // A step must bring this share of the gain that its quadratic model promises.
 constexpr double kPromisedShare = 0.1;
+// What rounding hides of the cost, of its size. A step that promises less
+// cannot be tested, and is taken.
+constexpr double kRounding = 1e-14;
 constexpr double kSmallestRadiance = 1e-200;
 // Conjugate gradients with the Hessian: steps, and the square of the error,
 // relative, in the Hessian's norm, for Newton's steps.
@@ -513,6 +516,9 @@ double MarginalLikelihood::TakeStep(const Given& given, const NewtonStep& step,
   if (!(step.promise > 0.0)) return 0.0;
   const double cross = mode->representers.dot(step.l),
                square = step.representers.dot(step.l);
+  const double size =
+      std::abs(data->cost) + 0.5 * std::abs(mode->representers.dot(mode->l));
+  const bool hidden = step.promise < kRounding * size;
   const auto try_step = [&](double s) {
     const Eigen::VectorXd l = mode->l + s * step.l;
     Point trial = At(given, mode->level, l);
@@ -521,7 +527,7 @@ double MarginalLikelihood::TakeStep(const Given& given, const NewtonStep& step,
         data->cost - trial_data.cost - s * cross - 0.5 * s * s * square;
     const bool accepted =
         trial.unpainted.minCoeff() > kSmallestRadiance &&
-        gain >= kPromisedShare * s * (1.0 - 0.5 * s) * step.promise;
+        (hidden || gain >= kPromisedShare * s * (1.0 - 0.5 * s) * step.promise);
     if (accepted) {
       mode->representers += s * step.representers;
       mode->l = l;
