@@ -1,5 +1,6 @@
 #include "ibrdf/solvers/report/readable_numbers.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ibrdf/base/format.h"
@@ -33,6 +34,13 @@ std::string ErrorInWords(double log_error) {
   }
   // Halves are fine enough.
   return Format("a factor of %.3g", std::round(2.0 * std::exp(size)) / 2.0);
+}
+
+std::string ProbabilityInWords(double cost) {
+  constexpr double kAsProbable = 0.95, kMostCost = 700.0;  // exp stays above 0
+  const double ratio = std::exp(-std::min(cost, kMostCost));
+  return ratio > kAsProbable ? "as probable"
+                             : RoundNumber(ratio) + " times as probable";
 }
 
 double RoundUp(double x) {

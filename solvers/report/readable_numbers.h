@@ -18,6 +18,10 @@ inline constexpr double kLargestKnownError = 1.6;
 // "not determined" beyond kLargestKnownError and where it is not finite.
 std::string ErrorInWords(double log_error);
 
+// How probable something is beside what costs this many nats less: "as
+// probable", "0.4 times as probable".
+std::string ProbabilityInWords(double cost);
+
 // The smallest of 1, 2 and 5 times a power of ten that is >= x > 0.
 double RoundUp(double x);
 

@@ -14,9 +14,6 @@
 namespace ibrdf {
 namespace {
 
-// From this ratio of probabilities on, one is as probable as the other.
-constexpr double kAsProbable = 0.95;
-
 std::string StatusWarning(const Status& status) {
   switch (status.code()) {
     case StatusCode::kOk:
@@ -171,14 +168,11 @@ std::string RivalWarning(const std::vector<Alternative>& alternatives) {
   for (const Alternative& other : alternatives) {
     const double difference = other.brdf_log_difference;
     if (!(other.cost < kRivalCost && difference > kRivalDifference)) continue;
-    const double ratio = std::exp(-other.cost);
-    const std::string probable =
-        ratio > kAsProbable ? "as" : Format("%.2g times as", ratio);
     return "Several reflectances explain the image nearly as well. The one "
            "found from " +
-           other.start + " is " + probable +
-           " probable as the best one, and its logarithm differs from the "
-           "estimate's by " +
+           other.start + " is " + ProbabilityInWords(other.cost) +
+           " as the best one, and its logarithm differs from the estimate's "
+           "by " +
            Format("%.2g", difference) + " (root mean square).";
   }
   return "";

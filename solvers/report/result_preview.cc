@@ -14,6 +14,7 @@
 #include "ibrdf/solvers/report/brdf_sphere.h"
 #include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/preview.h"
+#include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/report/report_limits.h"
 #include "ibrdf/solvers/report/result_images.h"
 #include "ibrdf/solvers/report/sphere_lookup.h"
@@ -327,13 +328,8 @@ Row AlternativePanels(const ResultPreviewInput& input,
 
 // How probable an alternative is, and how far off.
 std::string AlternativeLabel(const Alternative& other) {
-  constexpr double kLeast = 1e-3;
-  const double evidence = std::exp(-other.cost);
-  return "Found from " + other.start + ": " +
-         (evidence < kLeast ? Format("below %g", kLeast)
-                            : Format("%.2g", evidence)) +
-         " of the evidence, log differs by " +
-         Format("%.2g", other.brdf_log_difference);
+  return "Found from " + other.start + ": " + ProbabilityInWords(other.cost) +
+         ", log differs by " + Format("%.2g", other.brdf_log_difference);
 }
 
 // The most probable reflectances that differ from the estimate, at most three.

@@ -43,6 +43,15 @@ TEST(RoundNumber, HasTwoDigits) {
   EXPECT_EQ("-", RoundNumber(std::nan("")));
 }
 
+TEST(ProbabilityInWords, IsARatioOrEqual) {
+  EXPECT_EQ("as probable", ProbabilityInWords(0.0));
+  EXPECT_EQ("as probable", ProbabilityInWords(0.04));
+  EXPECT_EQ("0.9 times as probable", ProbabilityInWords(0.11));
+  EXPECT_EQ("0.05 times as probable", ProbabilityInWords(3.0));
+  EXPECT_EQ("below 0.001 times as probable", ProbabilityInWords(40.0));
+  EXPECT_EQ("below 0.001 times as probable", ProbabilityInWords(1e4));
+}
+
 TEST(RoundUp, IsTheNextOfOneTwoAndFive) {
   EXPECT_DOUBLE_EQ(0.2, RoundUp(0.11));
   EXPECT_DOUBLE_EQ(0.2, RoundUp(0.2));
