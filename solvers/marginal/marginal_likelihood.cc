@@ -24,8 +24,8 @@ constexpr int kUndampedIterations = 20;
 constexpr double kMostDamping = 1e6, kLeastDamping = 0.1;
 // A step must bring this share of the gain that its quadratic model promises.
 constexpr double kPromisedShare = 0.1;
-// What rounding hides of the cost, of its size. A step that promises less
-// cannot be tested, and is taken.
+// What rounding hides of the cost, of its size: a step that promises less
+// cannot be tested.
 constexpr double kRounding = 1e-14;
 constexpr double kSmallestRadiance = 1e-200;
 // Conjugate gradients with the Hessian: steps, and the square of the error,
@@ -511,14 +511,14 @@ MarginalLikelihood::NewtonStep MarginalLikelihood::FindNewtonStep(
 }
 
 double MarginalLikelihood::TakeStep(const Given& given, const NewtonStep& step,
-                                    Point* point, DataTerm* data,
-                                    LightMode* mode) const {
+                                    bool near_enough, Point* point,
+                                    DataTerm* data, LightMode* mode) const {
   if (!(step.promise > 0.0)) return 0.0;
   const double cross = mode->representers.dot(step.l),
                square = step.representers.dot(step.l);
   const double size =
       std::abs(data->cost) + 0.5 * std::abs(mode->representers.dot(mode->l));
-  const bool hidden = step.promise < kRounding * size;
+  const bool hidden = !near_enough && step.promise < kRounding * size;
   const auto try_step = [&](double s) {
     const Eigen::VectorXd l = mode->l + s * step.l;
     Point trial = At(given, mode->level, l);
@@ -555,8 +555,9 @@ bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
     const NewtonStep step =
         FindNewtonStep(given, *linear, *point, *data, *mode);
     if (!step.l.allFinite()) return false;
-    const double taken = TakeStep(given, step, point, data, mode);
-    if (0.5 * (1.0 + damping) * step.promise < tolerance) break;
+    const bool near_enough = 0.5 * (1.0 + damping) * step.promise < tolerance;
+    const double taken = TakeStep(given, step, near_enough, point, data, mode);
+    if (near_enough) break;
     const double longest = step.l.lpNorm<Eigen::Infinity>();
     if (k >= kUndampedIterations || taken == 0.0 || damping > 0.0) {
       damping = NextDamping(damping, taken, longest);

@@ -336,9 +336,10 @@ class MarginalLikelihood {
                             const Point& point, const DataTerm& data,
                             const LightMode& mode) const;
   // Moves point, data and mode along the step; the share of it that was taken,
-  // 0 where none gains.
-  double TakeStep(const Given& given, const NewtonStep& step, Point* point,
-                  DataTerm* data, LightMode* mode) const;
+  // 0 where none gains. near_enough: it promises less than the mode needs. If
+  // not, a step of which rounding hides the gain is taken as well.
+  double TakeStep(const Given& given, const NewtonStep& step, bool near_enough,
+                  Point* point, DataTerm* data, LightMode* mode) const;
   // Newton's method from `point`. Where steps fail, or do not end, they are
   // damped (Levenberg and Marquardt): `damping` times K^-1 joins the Hessian.
   // False: the equations are not positive definite, or not finite.
