@@ -125,9 +125,9 @@ struct GeometrySpec {
   std::string file;
   MeshFit fit = MeshFit::kUnitSphere;
   bool fit_stated = false;  // fit is the user's word
-  // Of the files' world. The cameras of a problem that was read are turned to
-  // the library's already; meshes and other programs' views are turned when
-  // they are read.
+  // The axis that points up in the files' world. The cameras of a problem that
+  // was read are turned to the library's already; meshes and other programs'
+  // views are turned when they are read.
   UpAxis up = UpAxis::kY;
   NormalFrame frame = kOpenGlFrame;
   NormalEncoding encoding = NormalEncoding::kAuto;

@@ -74,8 +74,8 @@ struct ProblemKey {
   std::vector<std::string> notes;  // rules between several keys below this one
   std::string example;  // a value for the example file; empty: the default
 
-  // Of a path: whether this text is the default's word or one of `words`, and
-  // so no file's name.
+  // Whether the text of a path is the default's word or one of `words`, and so
+  // no file's name.
   bool IsNoFile(const std::string& text) const;
   // The path's last word, and what precedes it: "" at the top.
   std::string Name() const;

@@ -24,10 +24,10 @@ struct Observations {
   }
 };
 
-// Of an HDR image: every value is known.
+// The observations of an HDR image: every value is known.
 Observations MakeObservations(std::vector<double> radiance);
 
-// Of intervals; `low` and `high` may be empty.
+// Observations that are intervals; `low` and `high` may be empty.
 Observations MakeObservations(std::vector<double> radiance,
                               std::vector<double> low,
                               std::vector<double> high);

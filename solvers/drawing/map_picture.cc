@@ -23,7 +23,7 @@ constexpr double kWhite = 97.0;       // percentile
 constexpr double kBlank = 0.45;       // linear grey
 constexpr double kTextHeight = 10.0;  // of capitals, pixels
 constexpr int kBallSamples = 4;       // a side of a pixel
-// Of an arrow: the tangent of its angle, and the sides of its head, pixels.
+// An arrow: the tangent of its angle, and the sides of its head, pixels.
 constexpr double kArrowLength = 0.55;
 constexpr double kHeadLength = 7.0;
 constexpr Ink kRightInk = {200, 30, 30};

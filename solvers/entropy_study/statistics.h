@@ -4,7 +4,7 @@
 
 namespace ibrdf {
 
-// Of one value or more.
+// The mean of one value or more.
 double Mean(const std::vector<double>& x);
 
 double Pearson(const std::vector<double>& x, const std::vector<double>& y);

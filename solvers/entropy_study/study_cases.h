@@ -40,8 +40,8 @@ struct StudyOptions {
 enum class MapKind { kSoft, kMedium, kHard };
 const char* MapKindName(MapKind kind);
 
-// Of the mean radiance, over directions and channels, what comes from the
-// brightest hundredth of the sphere. [0.01, 1]. The map is not black.
+// The share of the mean radiance, over directions and channels, that comes from
+// the brightest hundredth of the sphere. [0.01, 1]. The map is not black.
 double BrightestShare(const Image& map);
 
 struct StudyCase {

@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Of rays from the surface, in units of its radius: smooth normals of coarse
-// triangles would else be hidden by their own facets.
+// Rays start so far from the surface, in units of its radius: smooth normals of
+// coarse triangles would else be hidden by their own facets.
 constexpr double kRayOffset = 3e-3;
 
 // A torus about y, with normals.

@@ -261,7 +261,7 @@ double LargestExcess(const Estimate& estimate, const SolveSetup& setup,
   return largest;
 }
 
-// Of the estimate's pixels, unless the time is over.
+// Sets the covariance that the estimate's pixels give, unless the time is over.
 void SetCovariance(const SolveSetup& setup, const SolveContext& context,
                    Estimate* estimate) {
   if (!context.IterationsLeft() || context.StopAfter(1.0)()) return;
@@ -290,7 +290,7 @@ Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
   const Observation bins = OnePixelPerBin(setup.pixels, kBins);
   const Observation highlights = HighlightsOf(setup);
   const Observation both = Union(bins, highlights);
-  // Of a lamp and nothing else every pixel shows one angle alone.
+  // Under a lamp and nothing else every pixel shows one angle alone.
   const bool lamp = setup.problem->dark.num_unlit > 0;
   Estimate estimate = Search(setup, lamp ? both : bins, context).Run(nullptr);
   if (!lamp && context->IterationsLeft() && !context->Interrupted() &&

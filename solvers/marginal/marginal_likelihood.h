@@ -55,7 +55,7 @@ struct MarginalGradient {
 // (log L_o moves by G d + J l): a normal distribution.
 struct LinearPosterior {
   Eigen::MatrixXd information;  // of the parameters, G^T A^-1 G [n]^2
-  // Of the light at fixed parameters: K - K J^T A^-1 J K [3 * sources]^2.
+  // The light's at fixed parameters: K - K J^T A^-1 J K [3 * sources]^2.
   RowMatrix light_covariance;
   // By how much the light's mean falls as parameters rise: K J^T A^-1 G
   // [3 * sources][n].
@@ -106,7 +106,8 @@ class MarginalLikelihood {
   int num_directional_lights() const { return num_directional_lights_; }
   int num_sources() const { return num_texels() + num_directional_lights_; }
   bool has_paint() const { return paint_.size() > 0; }
-  // Of LightMode: of the light and, with paint, of the points.
+  // The latent variables of LightMode: the light's and, with paint, the
+  // points'.
   Eigen::Index num_latents() const {
     return Eigen::Index{3} * num_sources() + (has_paint() ? y_.size() : 0);
   }
@@ -261,7 +262,7 @@ class MarginalLikelihood {
   struct Linearisation {
     std::array<RowMatrix, 3> jacobian;  // [points][sources] of a channel
     std::array<RowMatrix, 3> JC;        // that of texels * correlation
-    // Of rows [3 * points]: 1 and D; of an interval's, W^1/2 and 1.
+    // Rows [3 * points] have 1 and D; an interval's, W^1/2 and 1.
     Eigen::VectorXd row_scale, diagonal;
     double damping = 0.0;
     // Cholesky's, of (1 + damping) diagonal + row_scale J K J^T row_scale.
@@ -336,8 +337,8 @@ class MarginalLikelihood {
                             const Point& point, const DataTerm& data,
                             const LightMode& mode) const;
   // Moves point, data and mode along the step; the share of it that was taken,
-  // 0 where none gains. near_enough: it promises less than the mode needs. If
-  // not, a step of which rounding hides the gain is taken as well.
+  // 0 where none gains. near_enough: the step promises less than the mode
+  // needs. If not, a step of which rounding hides the gain is taken as well.
   double TakeStep(const Given& given, const NewtonStep& step, bool near_enough,
                   Point* point, DataTerm* data, LightMode* mode) const;
   // Newton's method from `point`. Where steps fail, or do not end, they are

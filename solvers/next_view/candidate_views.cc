@@ -15,9 +15,9 @@ namespace ibrdf {
 namespace {
 
 constexpr char kOption[] = "command line: --candidates";
-// Of a lens where no photograph has one.
+// A lens has this where no photograph has one.
 constexpr double kFovDegrees = 30.0;
-// Of the distance at which all of the surface is just seen.
+// A multiple of the distance at which all of the surface is just seen.
 constexpr double kMargin = 1.1;
 
 // A pinhole that looks at `centre` from `from`.

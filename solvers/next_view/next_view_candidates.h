@@ -15,8 +15,8 @@ namespace ibrdf {
 struct NextViewCandidates {
   std::string from;  // LoadCandidates' text
   std::vector<CalibratedView> views;
-  // Of each view, spread over what it sees; empty: it sees nothing. Indices
-  // count from 0.
+  // The points of each view, spread over what it sees; empty: it sees nothing.
+  // Indices count from 0.
   std::vector<std::vector<ShadingPoint>> points;
   Scene scene = Scene::UnitSphere();
   CandidateSetting setting;

@@ -20,7 +20,7 @@ struct Sums {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Eigen::Vector3d wo = Eigen::Vector3d::Zero();
   Eigen::Array3d log_radiance = Eigen::Array3d::Zero();
-  // Of intervals; an open end makes the sum infinite.
+  // Sums over intervals; an open end makes the sum infinite.
   Eigen::Array3d log_low = Eigen::Array3d::Zero();
   Eigen::Array3d log_high = Eigen::Array3d::Zero();
   const ShadingPoint* first = nullptr;

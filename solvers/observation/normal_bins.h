@@ -31,7 +31,7 @@ struct NormalBinOptions {
   // Pixels seen at a smaller cosine are left out: at the limb a pixel's centre
   // stands badly for its area.
   double min_cosine = 0.2;
-  // Of all views together; more are thinned evenly. 0: no limit.
+  // All views together have no more; more are thinned evenly. 0: no limit.
   int most_bins = 0;
 };
 

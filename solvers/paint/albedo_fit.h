@@ -62,10 +62,10 @@ AlbedoFitOptions InViews(AlbedoFitOptions options,
 // gloss is nearly all of the image, or nothing was observed, paint is filled in
 // from around.
 //
-// Of several images of the same points, each under its own light, at least one:
+// Several images show the same points, each under its own light, at least one:
 // shading and shadows change with the light, paint does not. So a step is the
-// median of theirs (Weiss 2001), and so is a point's paint, each image's
-// level taken off by the median of its quotient with the first's.
+// median of theirs (Weiss 2001), and so is a point's paint, each image's level
+// taken off by the median of its quotient with the first's.
 std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
                               const std::vector<NeighbourPair>& neighbours,
                               const AlbedoFitOptions& options);

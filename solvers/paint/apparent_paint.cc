@@ -16,7 +16,7 @@ namespace {
 // A pixel tells its albedo where at least this share of its radiance is matte.
 constexpr double kLeastMatteShare = 0.05;
 
-// Of one point.
+// The apparent paint of one point.
 struct Apparent {
   Eigen::Array3d log_albedo = Eigen::Array3d::Zero();
   bool seen = false;

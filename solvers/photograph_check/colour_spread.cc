@@ -13,7 +13,7 @@ namespace ibrdf {
 namespace {
 
 const double kCellWidth = std::sin(2.0 * kPi / 180.0);
-// Of the object's size, the square root of its pixels.
+// A share of the object's size, the square root of its pixels.
 constexpr double kNear = 0.03;
 constexpr double kLeastFar = 4.0, kLeastNear = 1.5;  // pixels
 constexpr size_t kFewestPairs = 100;

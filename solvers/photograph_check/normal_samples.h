@@ -25,9 +25,9 @@ struct NormalSample {
   }
 };
 
-// Of the points whose radiance is finite and > 0 in all channels and whose
-// normal is seen at a cosine of 0.2 at least: near the outline a pixel mixes
-// normals.
+// The samples of the points whose radiance is finite and > 0 in all channels
+// and whose normal is seen at a cosine of 0.2 at least: near the outline a
+// pixel mixes normals.
 std::vector<NormalSample> SampleNormals(
     const Image& radiance, const std::vector<ShadingPoint>& points);
 

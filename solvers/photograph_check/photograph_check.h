@@ -43,7 +43,8 @@ struct PhotographCheck {
   LikeNormalsSpread like_normals;
   ColourSpread colours;
   double colour_steps = 0.0;  // SharpColourSteps
-  // Of a normal map, the most plausible first; empty: another geometry.
+  // Readings of a normal map, the most plausible first; empty: another
+  // geometry.
   std::vector<NormalScore> normals;
 
   bool SeveralMaterials() const { return SaysSeveralMaterials(colours); }

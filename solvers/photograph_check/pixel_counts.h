@@ -24,7 +24,7 @@ enum class PixelKind { kUsed, kClipped, kNotFinite, kNegative, kZero };
 // `codes`: the file held whole numbers, so that NaN stands for a clipped one.
 PixelKind KindOfPixel(const float* radiance, bool codes);
 
-// Of the pixels of these points, which have at most one each.
+// Counts the pixels of these points, which have at most one each.
 ObjectPixelCounts CountPixels(const Image& radiance,
                               const std::vector<ShadingPoint>& points,
                               bool codes);

@@ -13,16 +13,16 @@ namespace ibrdf {
 inline constexpr double kDetermined = 0.1;
 
 struct DeterminedDirections {
-  // Of the prior's variance along each direction, ascending, in [0, 1]: the
-  // eigenvalues of the posterior's covariance where the prior's is 1. Both are
-  // diagonal in these directions.
+  // The share that is left of the prior's variance along each direction,
+  // ascending, in [0, 1]: the eigenvalues of the posterior's covariance where
+  // the prior's is 1. Both are diagonal in these directions.
   std::vector<double> variance_left;
 
   int num_determined() const;
   // Sum of what is not left: the degrees of freedom for signal (Rodgers,
   // Inverse Methods for Atmospheric Sounding, 2000, Eq. 2.80).
   double degrees_of_freedom() const;
-  // Of the posterior against the prior, nats: -1/2 sum log left.
+  // What the posterior knows beyond the prior, nats: -1/2 sum log left.
   double information() const;
 };
 

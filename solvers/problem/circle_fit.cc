@@ -14,7 +14,7 @@ using Points = std::vector<Eigen::Vector2d>;
 
 constexpr size_t kFewestPoints = 12;
 constexpr int kTriples = 300;
-// Of points that are tried on a circle through three.
+// So many points at most are tried on a circle through three.
 constexpr size_t kMostTried = 2000;
 // Points of a drawn circle are nearer than this, in pixels, to what was drawn;
 // those of one drawn by hand, nearer than a share of its size.
@@ -87,7 +87,7 @@ PixelCircle LeastSquares(const Points& points, PixelCircle circle) {
   return circle;
 }
 
-// Of circles through three points, the one that most of them are near to.
+// The circle through three points that most of them are near to.
 std::optional<PixelCircle> ThroughThree(const Points& points, double near) {
   Points tried;
   const size_t count = std::min(points.size(), kMostTried);

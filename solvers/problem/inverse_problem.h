@@ -78,7 +78,7 @@ struct InverseProblem {
   IlluminationPrior illumination_prior = IlluminationPrior::kProcess;
   int unet_channels = 32;
   std::optional<Image> known_map;
-  // Of an unknown reflectance under a known map: what that does not light.
+  // Pixels that a known map does not light, where the reflectance is unknown.
   DarkPixels dark;
 
   std::optional<double> scale, epsilon;  // of the likelihood

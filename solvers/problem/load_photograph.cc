@@ -14,12 +14,13 @@
 namespace ibrdf {
 namespace {
 
-// Of the object's values, before it is said that they look saturated.
+// Values are said to look saturated where more than this share of the object's
+// are the greatest one.
 constexpr double kSaturatedShare = 0.01;
 // Above it the values are alike, as of an even grey, and nothing is cut off.
 constexpr double kAlikeShare = 0.9;
-// Of the radiance of brackets: in log, above noise; of their values, before it
-// is said.
+// Brackets contradict each other where their log radiance differs by more,
+// above noise, and that is said where this share of their values does.
 constexpr double kContradiction = 0.1;
 constexpr double kContradictedShare = 0.02;
 // Values that say whether floats are multiples of 1/255.

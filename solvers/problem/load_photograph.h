@@ -18,7 +18,7 @@ struct Photograph {
   // has: codes of white are clipped, and black has no lower end. NaN where
   // nothing is known.
   Image radiance;
-  // Of files of codes: the interval of each value (code_interval.h).
+  // The interval of each value, where the file holds codes (code_interval.h).
   std::optional<RadianceBounds> bounds;
   // Where the curve is to be found; `radiance` and `bounds` are then of the
   // first family's curve at its mean.

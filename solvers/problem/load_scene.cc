@@ -43,7 +43,7 @@ Scene LoadSphere(const Problem& problem, int width, int height) {
 Status CheckNotMoved(const Problem& problem, const Eigen::Vector3d& centre,
                      double radius, std::vector<std::string>* warnings) {
   if (problem.geometry.fit_stated || !problem.camera_placed) return OkStatus();
-  // Of a unit sphere's radius.
+  // Shares of a unit sphere's radius.
   constexpr double kSlightly = 0.02, kFar = 0.5;
   const double moved =
       std::max(centre.norm(), std::abs(std::log(std::max(radius, 1e-30))));

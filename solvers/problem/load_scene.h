@@ -38,7 +38,7 @@ StatusOr<Image> LoadKnownIllumination(
 
 // Rendered in place of all below.
 inline constexpr double kMinRoughness = 0.03;
-// Of the numbers; textures are not looked at.
+// The BRDF of the numbers; textures are not looked at.
 Disney PrincipledBrdf(const PrincipledSpec& spec);
 
 // The known reflectance as a table: the file, or the analytic BRDF at the bin

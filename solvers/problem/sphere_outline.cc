@@ -14,7 +14,7 @@ constexpr double kBetter = 0.01;
 // Outlines no further apart than this, pixels, are one: a mask may have every
 // pixel that the ball touches, or those alone whose centre it covers.
 constexpr double kOneOutline = 1.0;
-// Of a part of the unit sphere's outline.
+// The share of a part of the unit sphere's outline.
 constexpr double kCovered = 0.99;
 
 double CoveredShare(const Mask& mask, const PixelCircle& circle) {

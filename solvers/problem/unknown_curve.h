@@ -33,7 +33,8 @@ struct UnknownCurve {
 };
 
 struct DecodedCodes {
-  // Of a code's middle, or the one end that it has; NaN where nothing is known.
+  // The radiance of a code's middle, or the one end that it has; NaN where
+  // nothing is known.
   Image radiance;
   RadianceBounds bounds;
 };

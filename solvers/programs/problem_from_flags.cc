@@ -129,7 +129,7 @@ std::string MovedPath(const std::string& path, const std::string& out) {
   return here.lexically_relative(folder).string();
 }
 
-// Of a node that holds the name of a file.
+// Moves the path in a node that holds the name of a file.
 void MovePath(const std::string& out, ConfigNode* node) {
   if (node->kind != ConfigNode::Kind::kScalar || node->scalar.empty()) return;
   node->scalar = MovedPath(node->scalar, out);

@@ -59,7 +59,7 @@ Status CheckOnlyTruthReplaced(const Problem& problem,
   return CheckNothingReplaced(read, paths);
 }
 
-// Of --out and --mask.
+// Checks --out and --mask.
 Status CheckImagePaths(const Problem& problem, const RenderOutputs& out) {
   if (!problem.views.given()) {
     if (out.image.empty()) {

@@ -12,7 +12,7 @@ namespace ibrdf {
 struct TrainFlags {
   std::string data;       // folder of tables
   std::string more_data;  // another; or empty
-  // Of `more_data`: bins further from the normal are void, degrees.
+  // Bins of `more_data` that are further from the normal are void, degrees.
   double void_beyond = 90.0;
   std::string refit;  // a model, in place of `data`
   std::string out;

@@ -473,7 +473,7 @@ ResultPreviewInput PreviewInput(const SolvedProblem& solved) {
   }
   input.illumination_known = solved.inverse.known_map.has_value();
   input.reference_illumination = solved.truth.illumination;
-  // Of several views each looks another way.
+  // Each of several views looks another way.
   if (solved.inverse.sheet.empty()) {
     input.middle_of_map = MiddleOfMapPicture(solved.problem.camera);
   }

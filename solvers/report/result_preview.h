@@ -42,7 +42,7 @@ struct ResultPreviewInput {
   Image labels;
   // Other reflectances that explain the image too, each with its label.
   std::vector<std::pair<std::string, BrdfGrid>> alternatives;
-  // Of the object, to relight it with `brdf`; null: not drawn.
+  // The object's points, to relight it with `brdf`; null: not drawn.
   const std::vector<ShadingPoint>* points = nullptr;
   std::vector<std::string> metrics;  // one line each, printable ASCII
   int num_threads = 0;               // <= 0: all

@@ -54,8 +54,8 @@ struct VerdictNumbers {
   // Errors to expect, natural logarithm: of the reflectance after the best
   // scale; of its hue (ratios of channels) and of its level, given the gauge.
   double reflectance_error = kNone, hue_error = kNone, level_error = kNone;
-  // Of another reflectance with a like evidence: its difference from the
-  // estimate; 0: there is none.
+  // The difference from the estimate of another reflectance with a like
+  // evidence; 0: there is none.
   double rival_difference = 0.0;
   // Standard deviation of log radiance that half of the light stays below.
   double light_error = kNone;

@@ -19,7 +19,7 @@ std::vector<ViewMisfit> OddViews(const std::vector<ViewMisfit>& views);
 std::vector<std::string> ViewPaths(const ViewSheet& sheet,
                                    const std::string& folder);
 
-// Of each view of a sheet, its own part of render.exr, residual.exr,
+// Writes, for each view of a sheet, its own part of render.exr, residual.exr,
 // albedo.exr, gloss.exr and albedo_log_std.exr, and their pictures
 // (WriteResultPreviews).
 // all: PreviewInput of the solved problem.

@@ -28,7 +28,7 @@ constexpr int kRefinements = 3;
 // A parameter is settled to this share of its prior's deviation: costs of two
 // searches so near differ by some nats of chance.
 constexpr double kSettled = 0.08;
-// Of the time that remains, at most.
+// A share of the time that remains, at most.
 constexpr double kTimeShare = 0.6;
 // Under known light: outer iterations of a search, for one curve; scales of the
 // noise in log radiance; radiance that counts as no less.

@@ -17,7 +17,7 @@ constexpr double kFloor = 1e-6;  // raw units, as of CompareBrdfs
 // Errors over spreads: the median and the 90th percentile.
 constexpr double kMedianRatio = 2.1;
 constexpr double kMostRatio = 3.8;
-// Of means over two models: what no spread shows, as lobes cannot render it;
+// Means over two models have: what no spread shows, as lobes cannot render it;
 // the spread's share; and the 90th percentile over the median.
 constexpr double kUnseen = 0.35;
 constexpr double kSpreadShare = 0.55;

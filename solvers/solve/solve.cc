@@ -80,7 +80,7 @@ StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
   return solution;
 }
 
-// Of an image whose radiance, or its bounds, are known.
+// Solves an image whose radiance, or its bounds, are known.
 StatusOr<Solution> SolveDeveloped(const InverseProblem& problem,
                                   SolveContext* context) {
   const double exposure = ExposureOf(problem);

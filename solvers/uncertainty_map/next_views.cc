@@ -14,7 +14,7 @@ namespace {
 
 // The search costs as many fits for each candidate.
 constexpr int64_t kMostTexels = 1000;
-// Of what candidates see the place in the picture matters alone, not pixels.
+// The place in the picture alone matters of what candidates see, not pixels.
 constexpr int kShortSide = 16;
 
 // Numbers of texels at equal steps of area: a texel's share of them is that of

@@ -19,8 +19,8 @@ struct TexelRows {
 };
 
 TexelRows RowsOfTexture(const SurfaceAtlas& atlas);
-// Of the texel at each pixel's centre; texture: RowsOfTexture of the scene's
-// atlas.
+// The row of the texel at each pixel's centre; texture: RowsOfTexture of the
+// scene's atlas.
 TexelRows RowsOfView(const Scene& scene, const TexelRows& texture,
                      const Camera& camera, int width, int height,
                      int num_threads);

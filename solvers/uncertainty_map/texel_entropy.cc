@@ -31,7 +31,7 @@ void Append(const EntropyMaps& block, EntropyMaps* all) {
   append(block.deviations, &all->deviations);
 }
 
-// Of texels from `begin` on.
+// Fills in the irradiance of texels from `begin` on.
 void FillIrradiance(const TexelObserver& observer, const LightScale& light,
                     int64_t begin, int num_threads, TexelSamples* samples) {
   if (light.irradiance == nullptr) return;

@@ -23,15 +23,16 @@ struct TexelEntropy {
   std::vector<int> texels_of_view;  // [num_views]: of which it has samples
 
   int CountObserved() const;
-  // Of the texels that a view has a sample of, or of all; over channels. 1
-  // where there is none.
+  // The mean over the texels that a view has a sample of, or over all, and over
+  // channels. 1 where there is none.
   double MeanEntropy(bool observed_alone) const;
 };
 
 // The light that the samples are of.
 struct LightScale {
   double mean_radiance = 1.0, prefilter_alpha = 0.0;
-  // Of EvaluateTexels; null: evaluators find the irradiance by themselves.
+  // The irradiance for EvaluateTexels; null: evaluators find the irradiance by
+  // themselves.
   const TexelIrradiance* irradiance = nullptr;
 };
 TexelSamples SamplesOf(TexelObservations observations, const LightScale& light);

@@ -54,7 +54,7 @@ TEST(Statistics, AreaIsTheShareOfPairsInOrder) {
   EXPECT_EQ(1.0, AreaForTopFifth(y, y));
   EXPECT_EQ(0.0, AreaForTopFifth({9, 8, 7, 6, 5, 4, 3, 2, 1, 0}, y));
   EXPECT_EQ(0.5, AreaForTopFifth(Numbers(10, 1.0), y));
-  // Of 8 others, 8 has five below it and 9 all.
+  // Among 8 others, 8 has five below it and 9 all.
   EXPECT_NEAR(13.0 / 16.0, AreaForTopFifth({0, 1, 2, 3, 4, 6, 7, 8, 5, 9}, y),
               1e-12);
 }

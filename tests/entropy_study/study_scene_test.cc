@@ -107,7 +107,7 @@ TEST(StudyScene, SurfacesHideCamerasAndLight) {
   EXPECT_GT(open / matte, 1.03);
 }
 
-// Of a material that is a cell of the grid, the sharp posterior is a spike.
+// The sharp posterior of a material that is a cell of the grid is a spike.
 TEST(StudyScene, BruteForceIsCertainOfWhatItSees) {
   SceneOptions options = FewViews();
   options.one_material = true;

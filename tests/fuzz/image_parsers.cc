@@ -202,7 +202,7 @@ std::vector<FuzzedParser> ImageParsers() {
           {"photo_png", FuzzPhotoPng},
           {"photo_jpeg",
            [](const std::string& b) { FuzzPhoto(b, "\xff\xd8\xff"); }},
-          // Of either byte order: the first bytes stay.
+          // TIFF is of either byte order: the first bytes stay.
           {"photo_tiff", [](const std::string& b) { FuzzPhoto(b, ""); }},
           {"photo_exr", FuzzPhotoExr},
           {"npy", [](const std::string& b) { FuzzPhoto(b, "\x93NUMPY"); }},

@@ -147,7 +147,8 @@ Status MakeNormals(const std::string& kind, Image* normals) {
   return OkStatus();
 }
 
-// Of the unit sphere 3 before the camera of a vertical angle of 40 degrees.
+// Normals of the unit sphere 3 before the camera of a vertical angle of 40
+// degrees.
 void MakePerspectiveNormals(Image* normals) {
   const double half = std::tan(20 * kPi / 180), distance = 3;
   for (int y = 0; y < normals->height; ++y) {

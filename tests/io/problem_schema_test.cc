@@ -272,7 +272,7 @@ TEST(ProblemSchema, ChoicesTakeItsWords) {
     for (const std::string& word : key.ListWords()) {
       EXPECT_EQ("", setting.With(key.path, "[" + word + "]").Error());
     }
-    // Of a path any other text is a file's name.
+    // Any other text of a path is a file's name.
     if (!key.words.empty() && key.type != ValueType::kPath) {
       EXPECT_NE("", setting.With(key.path, "zz").Error());
     }

@@ -65,8 +65,8 @@ TEST(MarginalPaint, OfAMeanIsThatOfAnImageWithoutIt) {
             without + 1.0);
 }
 
-// Of a share u without paint, log(1 + u (e^a0 - 1)) is added, and the painted
-// share is u e^a0 / (1 + u (e^a0 - 1)).
+// A share u without paint adds log(1 + u (e^a0 - 1)), and the painted share is
+// u e^a0 / (1 + u (e^a0 - 1)).
 TEST(MarginalPaint, FindsTheShareOfPaintOfAMean) {
   const std::array<RowMatrix, 3> T = Lobes(0.4);
   std::array<RowMatrix, 3> matte = T;

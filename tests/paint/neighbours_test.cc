@@ -14,7 +14,7 @@ ShadingPoint At(int pixel, const Eigen::Vector3f& normal) {
   return point;
 }
 
-// Of three columns and two rows, one pixel missing:
+// Three columns and two rows, one pixel missing:
 //   0 1 .
 //   3 4 5
 TEST(NeighboursOf, ShareASideAndNoRowsEnd) {

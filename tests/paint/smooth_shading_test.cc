@@ -41,7 +41,7 @@ PaintedBall BallUnderSky(const std::function<Eigen::Array3d(int, int)>& paint) {
   return ball;
 }
 
-// Of log radiance from LogSky's, each channel about its mean.
+// The difference of log radiance from LogSky's, each channel about its mean.
 double ErrorOf(const PaintedBall& ball, const std::vector<double>& shading) {
   std::vector<double> found, truth;
   for (size_t i = 0; i < shading.size(); ++i) {

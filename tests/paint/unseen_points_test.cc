@@ -8,7 +8,7 @@
 namespace ibrdf {
 namespace {
 
-// Of 64 draws, a variance's own relative deviation is 0.18; four of these.
+// A variance of 64 draws has a relative deviation of 0.18; four of these.
 constexpr double kOfDraws = 0.72;
 
 std::vector<NeighbourPair> Chain(int points) {

@@ -92,7 +92,7 @@ TEST(FindDirectionalLights, EqualPixelsAreOneDirectionalLight) {
   EXPECT_EQ(1u, FindDirectionalLights(points, radiance, 3).size());
 }
 
-// Of a plateau the brightest pixels are where it is seen best, and say nothing
+// The brightest pixels of a plateau are where it is seen best, and say nothing
 // of where the light is.
 TEST(FindDirectionalLights, AClippedHighlightIsInItsMiddle) {
   const std::vector<ShadingPoint> points = SpherePoints(96);

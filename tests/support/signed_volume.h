@@ -4,7 +4,7 @@
 
 namespace ibrdf {
 
-// Of a closed mesh; negative where its triangles face inwards.
+// The volume of a closed mesh; negative where its triangles face inwards.
 inline double SignedVolume(const TriangleMesh& mesh) {
   double volume = 0.0;
   for (const auto& t : mesh.triangles) {

@@ -12,8 +12,8 @@
 #include "ibrdf/brdf/sample_merl.h"
 #include "ibrdf/io/merl.h"
 #include "ibrdf/solvers/optim/adam.h"
-#include "ibrdf/solvers/training/checkpoint.h"
 #include "ibrdf/solvers/table_fit/table_columns.h"
+#include "ibrdf/solvers/training/checkpoint.h"
 #include "tests/support/temp_dir.h"
 
 namespace ibrdf {
@@ -258,7 +258,7 @@ TEST_F(TrainerTest, LeftOutMaterialsAreNotRead) {
   EXPECT_EQ("c_red.red", data.names[0]);
 }
 
-// Of a folder that is trusted up to an angle, the bins beyond are void and the
+// Bins of a folder beyond the angle it is trusted up to are void, and the
 // others are as they were. Those of the first folder are all there.
 TEST_F(TrainerTest, FoldersAreTrustedUpToTheirAngle) {
   const TempDir more;

@@ -92,7 +92,7 @@ TEST(Interreflection, MatteBowlIsTheClosedFormAfterEveryBounce) {
   }
 }
 
-// Of a cap whose halves have albedos a and b every point sees as much of one as
+// Every point of a cap whose halves have albedos a and b sees as much of one as
 // of the other: (a + b) / 2 takes the place of a in the sum above.
 TEST(Interreflection, PatchesAreOfTheMaterialOfThePointsNearThem) {
   const double share = 0.5;

@@ -49,7 +49,8 @@ std::vector<int> NormalsAgainstFaces(const TriangleMesh& mesh) {
   CHECK_EQ(mesh.normals.size(), mesh.vertices.size());
   // Cosine of normal and face of the same side, the least.
   constexpr double kAgrees = 0.1;
-  // Of corners on one side of their faces: the winding means something.
+  // With this share of corners on one side of their faces the winding means
+  // something.
   constexpr double kOneWinding = 0.9;
   const double inf = std::numeric_limits<double>::infinity();
   std::vector<double> least(mesh.vertices.size(), inf);

@@ -12,8 +12,9 @@ namespace {
 
 constexpr int kMostBits = 16;
 
-// Of a code. At white = 65535 it is 1.5e-14 of y: some 70 times the rounding
-// of y, and of radiance some 7 times where x = y^0.2, which narrows it most.
+// The slack of a code. At white = 65535 it is 1.5e-14 of y: some 70 times the
+// rounding of y, and of radiance some 7 times where x = y^0.2, which narrows it
+// most.
 constexpr double kSlack = 1e-9;
 
 // Products and quotients with what curves decode stay normal numbers.

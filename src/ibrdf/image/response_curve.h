@@ -69,7 +69,7 @@ struct CurveNode {
 struct ResponseDefinition {
   ResponseKind kind = ResponseKind::kLinear;
   std::optional<double> parameter;  // absent: the usual one
-  // Of kTable: two nodes or more, both numbers increasing; x in [1e-12, 1e8],
+  // kTable has two nodes or more, both numbers increasing; x in [1e-12, 1e8],
   // y in [1e-12, 2], and a node (0, 0) before them or not.
   std::vector<CurveNode> table;
 
@@ -119,8 +119,8 @@ class ResponseCurve {
 
   ResponseKind kind_ = ResponseKind::kLinear;
   double parameter_ = 0.0;
-  // Of the parameter: the x of kPower's lowest power, gamma^(1/5) of kAces,
-  // white^-2 of kReinhard, log(1 + mu) of kLog.
+  // What follows from the parameter: the x of kPower's lowest power,
+  // gamma^(1/5) of kAces, white^-2 of kReinhard, log(1 + mu) of kLog.
   double derived_ = 0.0;
   double max_code_ = std::numeric_limits<double>::infinity();
   std::vector<CurveNode> nodes_;  // without (0, 0)

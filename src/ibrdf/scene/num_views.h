@@ -6,7 +6,8 @@
 
 namespace ibrdf {
 
-// Of items with a `view`, as ShadingPoint has it; at least 1.
+// The number of views of items with a `view`, as ShadingPoint has it; at least
+// 1.
 template <typename Item>
 int NumViews(const std::vector<Item>& items) {
   std::set<int> views;

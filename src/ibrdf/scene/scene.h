@@ -41,7 +41,7 @@ struct SurfaceHit {
   // describe, and a little more to the viewer's side: a ray from here above the
   // horizon of `normal` meets no facet of a convex part.
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  // Of the mesh, interpolated, or SphereTexture; 0 where a mesh has none.
+  // The mesh's, interpolated, or SphereTexture; 0 where a mesh has none.
   Eigen::Vector2f texture = Eigen::Vector2f::Zero();
 };
 

@@ -84,7 +84,7 @@ class Rasterizer {
     const Point v = corners[2].at - corners[0].at;
     const double twice = Cross(u, v);
     const Eigen::Vector3d n = Normal(corners);
-    // Of the surface to one texel of the picture.
+    // The surface's area over one texel's in the picture.
     const double scale = n.norm() / std::abs(twice);
     if (!(std::abs(twice) > 0.0) || !std::isfinite(scale)) {
       atlas_.area_without += 0.5 * n.norm();

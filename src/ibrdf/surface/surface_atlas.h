@@ -27,7 +27,7 @@ struct SurfaceAtlas {
   // Texels onto which more than their own area is mapped, by a hundredth: some
   // of the surface overlaps there.
   int overlapped = 0;
-  // Of the surface that is mapped to lines and points, and has no texel.
+  // The area of surface that is mapped to lines and points, and has no texel.
   double area_without = 0.0;
 
   // The latitude-longitude atlas of a sphere (SphereTexture). radius > 0;
@@ -35,8 +35,8 @@ struct SurfaceAtlas {
   static SurfaceAtlas OfSphere(const Eigen::Vector3d& centre, double radius,
                                int width, int height);
 
-  // Of a mesh with texture coordinates in [0, 1]^2, which has normals or not;
-  // origin: of its vertices, in the world. Refuses others.
+  // The atlas of a mesh with texture coordinates in [0, 1]^2, which has normals
+  // or not; origin: of its vertices, in the world. Refuses others.
   static StatusOr<SurfaceAtlas> OfMesh(const TriangleMesh& mesh,
                                        const Eigen::Vector3d& origin, int width,
                                        int height);

@@ -14,7 +14,8 @@
 namespace ibrdf {
 namespace {
 
-// Of the surface's size: rays start off it by what floats resolve there.
+// A share of the surface's size: rays start off it by what floats resolve
+// there.
 constexpr double kRayOffset = 1e-5;
 // A pixel is on a silhouette where it or a neighbour is off the other's tangent
 // plane by more than so many of their distances in the picture.

@@ -63,7 +63,7 @@ class TexelObserver {
   // Just above the surface, where rays from a texel begin.
   Eigen::Vector3d RayStart(const SurfaceTexel& texel) const;
 
-  // Of atlas().texels [begin, end).
+  // The observations of atlas().texels [begin, end).
   TexelObservations Observe(int64_t begin, int64_t end) const;
 
  private:

@@ -102,7 +102,7 @@ void SumMoments(const AngularArguments& a, int lane, int i, int channel) {
   }
 }
 
-// Of one vector of signals: calls body(x) for every cell, penalty and all.
+// Calls body(x) for every cell of one vector of signals, penalty and all.
 template <typename Body>
 void ForEachCell(const AngularGrid& g, const float* rows, int stride,
                  const Body& body) {

@@ -22,7 +22,7 @@ struct AngularArguments {
   double* moments;             // [num_alpha, 3, kAngularMoments, kFitBatch]
 };
 
-// Of 3 (order + 1) + 4 numbers a view and lane.
+// The workspace has 3 (order + 1) + 4 numbers a view and lane.
 inline int64_t AngularWorkspaceSize(int order, int num_views, int lanes) {
   return static_cast<int64_t>(num_views) * lanes * (3 * (order + 1) + 4);
 }

@@ -13,9 +13,10 @@ Status CheckPrior(const std::vector<double>& prior, int num_cells);
 // -log p, its least value 0; empty for a uniform prior.
 std::vector<double> PriorPenalty(const std::vector<double>& prior);
 
-// Of materials with those alpha and Ks (the same number of each): how many are
-// in each cell [num_alpha, num_ks] of values in increasing order, plus `floor`
-// > 0, so that no cell is impossible. A material counts for the nearest values.
+// Counts materials with those alpha and Ks (the same number of each): how many
+// are in each cell [num_alpha, num_ks] of values in increasing order, plus
+// `floor` > 0, so that no cell is impossible. A material counts for the nearest
+// values.
 std::vector<double> PriorOfMaterials(const std::vector<double>& alpha,
                                      const std::vector<double>& Ks,
                                      const std::vector<double>& alpha_values,
