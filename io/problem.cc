@@ -10,6 +10,10 @@ const char* SolverMethodName(SolverMethod method) {
   return WordOf("solver.method", method).c_str();
 }
 
+const char* SolverSearchName(SolverSearch search) {
+  return WordOf("solver.search", search).c_str();
+}
+
 const char* QuadratureLevelName(QuadratureLevel level) {
   return WordOf("solver.quadrature", level).c_str();
 }

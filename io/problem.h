@@ -270,6 +270,13 @@ const char* SolverMethodName(SolverMethod method);
 // kMaximum: the posterior of both together (Chen et al. 2020, Eq. 8).
 enum class SolverEstimator { kMarginal, kMaximum };
 
+// How far a joint problem's reflectance is searched for. kThorough: twice, with
+// and without tolerance of materials that are unlike the object's.
+enum class SolverSearch { kStandard, kThorough };
+inline constexpr int kNumSolverSearches = 2;
+// Name in problem files, e.g. "thorough".
+const char* SolverSearchName(SolverSearch search);
+
 // How finely the integral over light directions is taken.
 enum class QuadratureLevel { kCoarse, kStandard, kFine };
 inline constexpr int kNumQuadratureLevels = 3;
@@ -287,6 +294,7 @@ const char* SolverGaugeName(SolverGauge gauge);
 
 struct SolverSpec {
   SolverEstimator estimator = SolverEstimator::kMarginal;
+  SolverSearch search = SolverSearch::kStandard;  // of joint problems
   SolverMethod method = SolverMethod::kAuto;
   QuadratureLevel quadrature = QuadratureLevel::kStandard;
   SolverGauge gauge = SolverGauge::kGreyLight;  // of joint problems

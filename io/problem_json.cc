@@ -238,8 +238,10 @@ json SolverJson(const SolverSpec& solver, ProblemKind kind) {
               {"seconds", solver.seconds},
               {"tolerance", solver.tolerance},
               {"max_iterations", solver.max_iterations}};
-  // Only where both parts are unknown may scale move between them.
+  // Only where both parts are unknown may scale move between them, and is a
+  // reflectance searched for among many.
   if (kind == ProblemKind::kJoint) {
+    out["search"] = SolverSearchName(solver.search);
     out["gauge"] = SolverGaugeName(solver.gauge);
   }
   if (solver.seed.has_value()) out["seed"] = *solver.seed;

@@ -33,6 +33,19 @@ Row SolverMethodKey() {
       .UsedBy(kUnknownLight);
 }
 
+Row SearchKey() {
+  return Row("solver.search",
+             "How far the reflectance is searched for. It serves objects of "
+             "one material; paint and labels are searched for once.")
+      .Choice("standard",
+              {{"standard", "One search. Some images lead it astray."},
+               {"thorough",
+                "A second search begins with more tolerance of materials that "
+                "are unlike the object's. The optima of both compete."}})
+      .Needs("problem: joint")
+      .UsedBy(kUsedByJoint);
+}
+
 Row QuadratureKey() {
   return Row("solver.quadrature",
              "How finely the integral over light directions is taken.")
@@ -140,6 +153,7 @@ Keys SolverKeys() {
                         "The posterior of both at once, as published (Chen et "
                         "al. 2020, Eq. 8). It is there for comparison."}})
               .UsedBy(kUsedByJoint),
+          SearchKey(),
           SolverMethodKey(),
           QuadratureKey(),
           GaugeKey(),

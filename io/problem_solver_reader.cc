@@ -78,6 +78,8 @@ void ReadEffects(ProblemReader* root, EffectsSpec* effects) {
 
 void ReadSolver(ProblemReader reader, ProblemKind kind, SolverSpec* solver) {
   reader.Read("estimator", &solver->estimator);
+  reader.Read("search", &solver->search);
+  reader.CheckNeeds("search", kind == ProblemKind::kJoint);
   reader.Read("method", &solver->method);
   reader.Read("quadrature", &solver->quadrature);
   reader.Read("gauge", &solver->gauge);

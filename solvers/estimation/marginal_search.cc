@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,14 +13,17 @@
 #include "ibrdf/brdf/table_lobes.h"
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
 #include "ibrdf/solvers/estimation/search_settings.h"
+#include "ibrdf/solvers/marginal/best_of_searches.h"
 #include "ibrdf/solvers/priors/embedding_prior.h"
 
 namespace ibrdf {
 namespace {
 
-// Shares of the time that remains, at most: the search for the reflectance, and
-// for the hyperparameters of the light under a known one.
+// Shares of the time that remains, at most: the search for the reflectance, a
+// second one, and that for the hyperparameters of the light under a known
+// reflectance.
 constexpr double kSearchShare = 0.55;
+constexpr double kSecondSearchShare = 0.7;
 constexpr double kLightSearchShare = 0.25;
 // CoarseEvidence has these: enough for the best few materials to come near
 // their optima.
@@ -33,15 +37,15 @@ constexpr double kPaintedLightChroma = 0.1;
 // it: a paper cup came out with 14 times its gloss (docs/notes/paint.md).
 constexpr double kLeftOfShading = 0.15;
 
-// One photograph leaves hardly a material without a light that explains it.
-// Several contradict all but the object's own, and none of the model is that.
-// At the search's deviation of bins what is like it costs more than mirrors,
-// whose misfit light inside texels excuses (docs/notes/search.md). So the
-// search of several views begins with larger ones.
+// At the search's deviation of bins, materials that are like the object's may
+// cost more than mirrors, whose misfit light inside texels excuses
+// (docs/notes/search.md). Larger ones tolerate that they are not the object's
+// own.
 constexpr double kTolerance = 3.0, kNextTolerance = 1.5;
 
-void TolerateUnlikeMaterials(ReflectanceSearchOptions* o) {
-  o->ranking_tolerances = {1.0, kTolerance};
+void TolerateUnlikeMaterials(std::vector<double> of_rankings,
+                             ReflectanceSearchOptions* o) {
+  o->ranking_tolerances = std::move(of_rankings);
   o->coarse_stages[0].tolerance = kTolerance;
   if (o->coarse_stages.size() > 1) {
     o->coarse_stages[1].tolerance = kNextTolerance;
@@ -110,17 +114,69 @@ ModelOptima OptimaOf(const ReflectanceSearchResult& found,
   return optima;
 }
 
+// One photograph leaves hardly a material without a light that explains it.
+// Several contradict all but the object's own, and none of the model is that:
+// their search begins with tolerance.
+ReflectanceSearchOptions FirstSearch(size_t views, ReflectanceSearchOptions o) {
+  if (views > 1) TolerateUnlikeMaterials({1.0, kTolerance}, &o);
+  return o;
+}
+
+// Begins as the first search does not.
+ReflectanceSearchOptions SecondSearch(size_t views,
+                                      ReflectanceSearchOptions o) {
+  if (views < 2) TolerateUnlikeMaterials({kTolerance}, &o);
+  if (!o.report) return o;
+  o.report = [report = std::move(o.report)](const std::string& stage,
+                                            double cost, double misfit) {
+    report("second search: " + stage, cost, misfit);
+  };
+  return o;
+}
+
+using Results = std::vector<ReflectanceSearchResult>;
+
+// What both searches found together, where the second explains the image.
+StatusOr<Results> SearchAgain(const std::vector<SearchedModel>& models,
+                              const SolveSetup& setup, StatusOr<Results> first,
+                              const ReflectanceSearchOptions& o,
+                              const SolveContext& context) {
+  StatusOr<Results> second = SearchReflectances(models, setup.problem->points,
+                                                SearchedPixels(setup), o);
+  if (o.Stopped() && !context.Interrupted()) {
+    LOG(WARNING) << "solver.search: the second search was ended by the time "
+                    "limit; a larger solver.seconds gives it more";
+  }
+  if (!second.ok()) return first;
+  if (!first.ok()) return second;
+  return BestOfSearches(*std::move(first), *std::move(second));
+}
+
 // The setups are of one problem, each with a model of its own.
 StatusOr<std::vector<ModelOptima>> Search(
-    const std::vector<const SolveSetup*>& setups, ReflectanceSearchOptions o) {
-  const InverseProblem& problem = *setups.front()->problem;
-  o.covariance = problem.solver.max_iterations > 0;
-  if (problem.sheet.views.size() > 1) TolerateUnlikeMaterials(&o);
+    const std::vector<const SolveSetup*>& setups, SolveContext* context,
+    const FirstPaint* paint = nullptr) {
+  const SolveSetup& setup = *setups.front();
+  const InverseProblem& problem = *setup.problem;
+  const size_t views = problem.sheet.views.size();
+  const auto options = [&](double share) {
+    ReflectanceSearchOptions o = SearchOptions(share, setup, context);
+    o.covariance = problem.solver.max_iterations > 0;
+    if (paint != nullptr) AddPaint(*paint, &o);
+    return o;
+  };
+  const ReflectanceSearchOptions o = FirstSearch(views, options(kSearchShare));
   std::vector<SearchedModel> models;
-  for (const SolveSetup* setup : setups) models.push_back(ModelOf(*setup, o));
-  const StatusOr<std::vector<ReflectanceSearchResult>> found =
-      SearchReflectances(models, problem.points,
-                         SearchedPixels(*setups.front()), o);
+  for (const SolveSetup* s : setups) models.push_back(ModelOf(*s, o));
+  StatusOr<Results> found =
+      SearchReflectances(models, problem.points, SearchedPixels(setup), o);
+  if (problem.solver.search == SolverSearch::kThorough && paint == nullptr &&
+      problem.solver.max_iterations > 0 &&
+      found.status().code() != StatusCode::kInvalidInput) {
+    found =
+        SearchAgain(models, setup, std::move(found),
+                    SecondSearch(views, options(kSecondSearchShare)), *context);
+  }
   if (!found.ok()) return found.status();
   std::vector<ModelOptima> optima;
   for (const ReflectanceSearchResult& result : *found) {
@@ -136,16 +192,14 @@ StatusOr<std::vector<ModelOptima>> Search(
 StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
                                                   SolveContext* context,
                                                   const FirstPaint* paint) {
-  ReflectanceSearchOptions o = SearchOptions(kSearchShare, setup, context);
-  if (paint != nullptr) AddPaint(*paint, &o);
-  StatusOr<std::vector<ModelOptima>> found = Search({&setup}, o);
+  StatusOr<std::vector<ModelOptima>> found = Search({&setup}, context, paint);
   if (!found.ok()) return found.status();
   return std::move(found->front().estimate);
 }
 
 StatusOr<std::vector<ModelOptima>> EstimateReflectances(
     const std::vector<const SolveSetup*>& setups, SolveContext* context) {
-  return Search(setups, SearchOptions(kSearchShare, *setups.front(), context));
+  return Search(setups, context);
 }
 
 LightPosterior EstimateLightPosterior(const SolveSetup& setup,

@@ -3,7 +3,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "ibrdf/base/eigen_vectors.h"
@@ -62,14 +61,16 @@ void ModelSearch::Rank(const std::vector<LightGuess>& lights) {
   }
   if (screen_ == nullptr) screen_ = LevelAt(options_.screen);
   if (level_ == nullptr) level_ = LevelAt(options_.coarse);
+  RankAll(*screen_);
   for (Ranking& ranking : rankings_) {
-    RankAll(*screen_, &ranking);
     for (const MaterialUnderLight& ranked : ranking) {
       double& least = materials_[ranked.material].screen_cost;
       least = std::min(least, ranked.cost);
     }
     ranking.resize(std::min<size_t>(ranking.size(), options_.kept));
-    RankAll(*level_, &ranking);
+  }
+  RankAll(*level_);
+  for (const Ranking& ranking : rankings_) {
     for (const MaterialUnderLight& ranked : ranking) {
       MaterialCandidate& material = materials_[ranked.material];
       if (!(ranked.cost < material.first_cost)) continue;
@@ -88,20 +89,46 @@ Eigen::VectorXd ModelSearch::ParametersOf(const MaterialUnderLight& ranked,
   return parameters;
 }
 
-// Whole materials in parallel: what each does inside then runs in its thread.
-void ModelSearch::RankAll(const SearchLevel& level, Ranking* ranking) const {
-  ParallelFor(static_cast<int64_t>(ranking->size()), options_.num_threads,
-              [&](int64_t i, int) {
-                MaterialUnderLight& ranked = (*ranking)[i];
-                ranked.cost = kInfinity;
-                if (i > 0 && options_.Stopped()) return;
-                ranked.cost = level.Rank(
-                    ParametersOf(ranked, level), ranked.light.hyperparameters,
-                    ranked.light.tolerance * options_.sigma, &ranked.misfit);
-              });
-  std::stable_sort(ranking->begin(), ranking->end(),
-                   [](const MaterialUnderLight& a,
-                      const MaterialUnderLight& b) { return a.cost < b.cost; });
+void ModelSearch::RankAll(const SearchLevel& level) {
+  // By material, as its matrices serve all light without other offsets. The
+  // first ranking's best comes first: it is ranked even where time is up.
+  std::vector<std::vector<MaterialUnderLight*>> groups;
+  std::vector<int> group_of(materials_.size(), -1);
+  for (Ranking& ranking : rankings_) {
+    for (MaterialUnderLight& ranked : ranking) {
+      int& group = group_of[ranked.material];
+      if (group < 0) {
+        group = static_cast<int>(groups.size());
+        groups.emplace_back();
+      }
+      groups[group].push_back(&ranked);
+      ranked.cost = kInfinity;
+    }
+  }
+  // Whole materials in parallel: what each does inside then runs in its thread.
+  ParallelFor(
+      static_cast<int64_t>(groups.size()), options_.num_threads,
+      [&](int64_t i, int) {
+        TabulatedReflectance material;
+        for (MaterialUnderLight* ranked : groups[i]) {
+          if (i > 0 && options_.Stopped()) return;
+          const Eigen::VectorXd parameters = ParametersOf(*ranked, level);
+          if (material.parameters.size() == 0 ||
+              material.parameters != parameters) {
+            material = level.Tabulate(parameters);
+          }
+          ranked->cost = level.Rank(material, ranked->light.hyperparameters,
+                                    ranked->light.tolerance * options_.sigma,
+                                    &ranked->misfit);
+        }
+      });
+  for (Ranking& ranking : rankings_) {
+    std::stable_sort(
+        ranking.begin(), ranking.end(),
+        [](const MaterialUnderLight& a, const MaterialUnderLight& b) {
+          return a.cost < b.cost;
+        });
+  }
 }
 
 bool ModelSearch::Take(const MaterialUnderLight& ranked) {
@@ -228,11 +255,7 @@ ReflectanceSearchResult ModelSearch::Result(bool covariance) {
       likelihood, reflectance.Matrices(best_candidate_.parameters.data()),
       best_.errors, best_candidate_.hyperparameters, best_.mode,
       result.map_height, result.map_width);
-  std::stable_sort(materials_.begin(), materials_.end(),
-                   [](const MaterialCandidate& a, const MaterialCandidate& b) {
-                     return std::tie(a.cost, a.first_cost) <
-                            std::tie(b.cost, b.first_cost);
-                   });
+  SortByCost(&materials_);
   result.candidates = std::move(materials_);
   return result;
 }

@@ -91,7 +91,8 @@ class ModelSearch {
  private:
   std::unique_ptr<SearchLevel> LevelAt(
       const MarginalResolution& resolution) const;
-  void RankAll(const SearchLevel& level, Ranking* ranking) const;
+  // Ranks again what is in the rankings.
+  void RankAll(const SearchLevel& level);
   Eigen::VectorXd ParametersOf(const MaterialUnderLight& ranked,
                                const SearchLevel& level) const;
   std::vector<double> LogRadiance() const;

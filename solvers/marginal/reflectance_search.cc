@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "ibrdf/base/parallel_for.h"
@@ -228,6 +229,14 @@ class Search {
 };
 
 }  // namespace
+
+void SortByCost(std::vector<MaterialCandidate>* candidates) {
+  std::stable_sort(candidates->begin(), candidates->end(),
+                   [](const MaterialCandidate& a, const MaterialCandidate& b) {
+                     return std::tie(a.cost, a.first_cost) <
+                            std::tie(b.cost, b.first_cost);
+                   });
+}
 
 StatusOr<std::vector<ReflectanceSearchResult>> SearchReflectances(
     const std::vector<SearchedModel>& models,

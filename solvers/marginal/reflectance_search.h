@@ -47,6 +47,9 @@ struct MaterialCandidate {
   double screen_cost = std::numeric_limits<double>::infinity();
 };
 
+// By cost: the refined ones, then the others by their first cost.
+void SortByCost(std::vector<MaterialCandidate>* candidates);
+
 struct ReflectanceSearchResult {
   size_t model = 0;                // of the models that were searched
   std::vector<double> parameters;  // as LobeModel's
@@ -55,8 +58,7 @@ struct ReflectanceSearchResult {
   double misfit = 0.0;             // mean |log L_o - log I| over bins
   LightHyperparameters hyperparameters;             // of the light's process
   std::vector<Eigen::Vector3d> directional_lights;  // their directions
-  // By cost: the refined ones, then the others by their first cost.
-  std::vector<MaterialCandidate> candidates;
+  std::vector<MaterialCandidate> candidates;        // by SortByCost
   // The posterior of the parameters (Laplace, by the Gauss-Newton Hessian);
   // empty where it was not asked for.
   Eigen::MatrixXd covariance;

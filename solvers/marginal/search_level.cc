@@ -30,18 +30,23 @@ SearchLevel::SearchLevel(const LobeFactory& lobes, const MaterialPrior& prior,
                    options.num_threads, directional_lights, options.paint,
                    options.num_materials) {}
 
-double SearchLevel::Rank(const Eigen::VectorXd& parameters,
+TabulatedReflectance SearchLevel::Tabulate(
+    const Eigen::VectorXd& parameters) const {
+  return {parameters, reflectance_.Matrices(parameters.data()),
+          reflectance_.MatteMatrices(parameters.data())};
+}
+
+double SearchLevel::Rank(const TabulatedReflectance& reflectance,
                          const LightHyperparameters& hyperparameters,
                          double sigma, double* misfit) const {
   LightMode mode;
-  const std::array<RowMatrix, 3> matrices =
-      reflectance_.Matrices(parameters.data());
   const MarginalLikelihood& likelihood = reflectance_.likelihood();
-  const DataErrors errors = likelihood.FindErrors(
-      matrices, reflectance_.MatteMatrices(parameters.data()), sigma,
-      hyperparameters, kRankingTolerance, &mode);
-  const MarginalValue value = likelihood.Evaluate(
-      matrices, errors, hyperparameters, kRankingTolerance, &mode, nullptr);
+  const DataErrors errors =
+      likelihood.FindErrors(reflectance.matrices, reflectance.matte_matrices,
+                            sigma, hyperparameters, kRankingTolerance, &mode);
+  const MarginalValue value =
+      likelihood.Evaluate(reflectance.matrices, errors, hyperparameters,
+                          kRankingTolerance, &mode, nullptr);
   if (!value.ok) return std::numeric_limits<double>::infinity();
   if (HidesPaint(errors)) return std::numeric_limits<double>::infinity();
   *misfit = value.misfit;
@@ -49,7 +54,8 @@ double SearchLevel::Rank(const Eigen::VectorXd& parameters,
   for (const double y : hyperparameters.Whitened())
     of_hyperparameters += 0.5 * y * y;
   return value.cost +
-         prior_.Cost(parameters.head(prior_.num_parameters()), nullptr) +
+         prior_.Cost(reflectance.parameters.head(prior_.num_parameters()),
+                     nullptr) +
          of_hyperparameters;
 }
 

@@ -1,6 +1,7 @@
 // A search for the reflectance at one resolution.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -22,6 +23,12 @@ struct LocalOptimum {
   DataErrors errors;
 };
 
+// A reflectance as a ranking uses it, whatever the light.
+struct TabulatedReflectance {
+  Eigen::VectorXd parameters;  // MarginalReflectance's
+  std::array<RowMatrix, 3> matrices, matte_matrices;
+};
+
 // What ranks materials by the marginal posterior and refines them. Immutable;
 // may be used from several threads.
 class SearchLevel {
@@ -41,11 +48,12 @@ class SearchLevel {
     return MarginalObjective(&reflectance_, &prior_, errors, mode);
   }
 
-  // -log posterior of parameters (MarginalReflectance's) at these
-  // hyperparameters of light and this deviation of bins; infinite, and `misfit`
-  // as it was, where they have none. That directional lights are moved costs
-  // nothing here.
-  double Rank(const Eigen::VectorXd& parameters,
+  TabulatedReflectance Tabulate(const Eigen::VectorXd& parameters) const;
+
+  // -log posterior of a reflectance of this level at these hyperparameters of
+  // light and this deviation of bins; infinite, and `misfit` as it was, where
+  // it has none. That directional lights are moved costs nothing here.
+  double Rank(const TabulatedReflectance& reflectance,
               const LightHyperparameters& hyperparameters, double sigma,
               double* misfit) const;
 

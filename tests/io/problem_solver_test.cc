@@ -18,6 +18,14 @@ TEST_F(ProblemFile, GaugesAreOfJointProblems) {
             Read(least + "solver: {gauge: unit_light}")->solver.gauge);
 }
 
+TEST_F(ProblemFile, SearchesAreOfJointProblems) {
+  const StatusOr<Problem> p =
+      Read(std::string(kLeast) + "solver: {search: thorough}");
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  EXPECT_EQ(SolverSearch::kThorough, p->solver.search);
+  EXPECT_EQ("thorough", ProblemToJson(*p)["solver"]["search"]);
+}
+
 TEST_F(ProblemFile, EveryMethodIsReadByItsName) {
   for (int m = 0; m < kNumSolverMethods; ++m) {
     const auto method = static_cast<SolverMethod>(m);

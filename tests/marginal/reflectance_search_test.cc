@@ -373,14 +373,43 @@ TEST_F(ReflectanceSearchTest, RankingTakesTheLightThatItIsTold) {
   for (const MaterialUnderLight& ranked : search.rankings()[0]) {
     Eigen::VectorXd parameters(14 + 4);
     parameters << prior.materials[ranked.material].parameters, light.offsets;
+    const TabulatedReflectance material = level.Tabulate(parameters);
     double misfit = 0.0;
-    EXPECT_EQ(level.Rank(parameters, light.hyperparameters, 2.0 * options.sigma,
+    EXPECT_EQ(level.Rank(material, light.hyperparameters, 2.0 * options.sigma,
                          &misfit),
               ranked.cost);
     EXPECT_EQ(misfit, ranked.misfit);
     EXPECT_NE(
-        level.Rank(parameters, light.hyperparameters, options.sigma, &misfit),
+        level.Rank(material, light.hyperparameters, options.sigma, &misfit),
         ranked.cost);
+  }
+}
+
+// Light of other offsets has matrices of its own.
+TEST_F(ReflectanceSearchTest, RankingsTogetherAreThoseOfEachLight) {
+  const MaterialPrior prior = JointMaterialPrior(model_, 2, 0.5);
+  const SearchedModel model = {FlowLobes::Factory(model_, 2, 1), &prior};
+  const ReflectanceSearchOptions options = Options();
+  const Observations observed = MakeObservations(radiance_);
+  const std::vector<LightGuess> lights = {
+      {LightHyperparameters(), {}},
+      {LightHyperparameters(), Eigen::VectorXd::Constant(4, 0.1)},
+      {LightHyperparameters::Harsh(), Eigen::VectorXd::Constant(4, 0.1), 2.0},
+      {LightHyperparameters::Harsh(), {}}};
+  ModelSearch together(model, points_, observed, kDirectionalLights, options);
+  together.Rank(lights);
+  ASSERT_EQ(lights.size(), together.rankings().size());
+  for (size_t k = 0; k < lights.size(); ++k) {
+    ModelSearch alone(model, points_, observed, kDirectionalLights, options);
+    alone.Rank({lights[k]});
+    const Ranking& of_all = together.rankings()[k];
+    const Ranking& of_one = alone.rankings()[0];
+    ASSERT_EQ(of_one.size(), of_all.size());
+    for (size_t i = 0; i < of_one.size(); ++i) {
+      EXPECT_EQ(of_one[i].material, of_all[i].material);
+      EXPECT_EQ(of_one[i].cost, of_all[i].cost);
+      EXPECT_EQ(of_one[i].misfit, of_all[i].misfit);
+    }
   }
 }
 

@@ -229,6 +229,7 @@ Problem AnyProblem() {
     p.solver.method = AnyOf<SolverMethod>(kNumSolverMethods);
     p.solver.quadrature = AnyOf<QuadratureLevel>(kNumQuadratureLevels);
     if (p.kind == ProblemKind::kJoint) {
+      p.solver.search = AnyOf<SolverSearch>(kNumSolverSearches);
       p.solver.gauge = AnyOf<SolverGauge>(kNumSolverGauges);
     }
     p.solver.seconds = AnyNumber(kLeast, 1e7);
@@ -453,6 +454,7 @@ RC_GTEST_PROP(ProblemProperty, ResultsRepeatEveryKeyOfTheProblem, ()) {
   RC_ASSERT(p.effects.mode == q.effects.mode);
   RC_ASSERT(p.effects.list == q.effects.list);
   RC_ASSERT(p.solver.estimator == q.solver.estimator);
+  RC_ASSERT(p.solver.search == q.solver.search);
   RC_ASSERT(p.solver.method == q.solver.method);
   RC_ASSERT(p.solver.quadrature == q.solver.quadrature);
   RC_ASSERT(p.solver.gauge == q.solver.gauge);
