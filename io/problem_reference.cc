@@ -15,8 +15,8 @@ constexpr size_t kCommentColumn = 30;
 constexpr char kHead[] =
     "# Problem file\n"
     "\n"
-    "<!-- `ibrdf_solve --keys` printed this page from io/problem_schema.cc. "
-    "Change it there. -->\n";
+    "<!-- `ibrdf_solve --keys` printed this page from "
+    "io/problem_*_keys.cc. Change it there. -->\n";
 
 constexpr char kIntroduction[] =
     "A problem file says what an image shows, what is known of it, and how to "

@@ -23,9 +23,9 @@ std::string Hidden(const SceneProbe& probe) {
 
 std::string Omissions(const EffectsPlan& plan) {
   return Format(
-      "log radiance, mean over the image, would change by %.4f without "
-      "shadows and by %.4f without light from the object to itself (simulated "
-      "where leaving it out changes log radiance by more than %.3f)",
+      "log radiance, mean over the image, would change by %.4f without shadows "
+      "and bounces, and by %.4f with shadows alone (shadows are simulated if "
+      "the first is above %.3f, bounces if both are)",
       plan.omission.unshadowed, plan.omission.bounces[0], plan.threshold);
 }
 

@@ -65,6 +65,13 @@ std::string NormalsLine(const PhotographCheck& check) {
   return line + ")";
 }
 
+// length: over the object's size.
+std::string ColourEdges(double length) {
+  const std::string words = Two(length);
+  if (words == Two(0.0)) return "It has no sharp edges of colour";
+  return "Its sharp edges of colour add up to " + words + " of its size";
+}
+
 }  // namespace
 
 std::string NormalsVerdict(const PhotographCheck& check) {
@@ -87,9 +94,8 @@ std::string ColourVerdict(const PhotographCheck& check) {
   const std::string share = Number(100.0 * colours.share) + " % of the pixels";
   if (!colours.observable) {
     return "cannot be told: " + share +
-           " have a like normal elsewhere on the object. Sharp edges of colour "
-           "have " +
-           Two(check.colour_steps) + " of the object's size" +
+           " have a like normal elsewhere on the object. " +
+           ColourEdges(check.colour_steps) +
            (check.MayBePainted()
                 ? ": a solve compares paint with mirrored light"
                 : ", too little for paint; if it is painted, set "

@@ -20,10 +20,10 @@ TEST(DescribePlan, SaysWhatIsSimulatedAndWhy) {
   EXPECT_EQ(
       "visibility, interreflection (1 bounce): the object hides 5.5 % of the "
       "light from itself, from 33 % of its points some; log radiance, mean "
-      "over the image, would change by 0.0091 without shadows and by 0.0418 "
-      "without light from the object to itself (simulated where leaving it out "
-      "changes log radiance by more than 0.005); rays take about 0.1 s for "
-      "shadows, 0.2 s for bounces",
+      "over the image, would change by 0.0091 without shadows and bounces, and "
+      "by 0.0418 with shadows alone (shadows are simulated if the first is "
+      "above 0.005, bounces if both are); rays take about 0.1 s for shadows, "
+      "0.2 s for bounces",
       Describe(plan));
 }
 

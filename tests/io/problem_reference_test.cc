@@ -16,7 +16,7 @@ TEST(ProblemReference, IsTheCommittedPage) {
   const std::string page =
       ReadBytes(std::string(IBRDF_SOURCE_DIR) + "/docs/problem_file.md");
   EXPECT_TRUE(page == ProblemReference(ProblemFileSchema()))
-      << "docs/problem_file.md is not what io/problem_schema.cc says. Write it "
+      << "docs/problem_file.md is not what io/problem_*_keys.cc say. Write it "
          "anew: build/release/bin/ibrdf_solve --keys > docs/problem_file.md";
 }
 

@@ -10,7 +10,7 @@
 namespace ibrdf {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDropped = std::numeric_limits<double>::infinity();
 
 MaterialCandidate Candidate(const std::string& name, double cost,
                             double first_cost) {
@@ -57,19 +57,19 @@ TEST(BestOfSearches, CandidatesAreTheBetterOfEachMaterial) {
       BestOfSearches({Result(0, 32,
                              {Candidate("brass", -10.0, 5.0),
                               Candidate("paint", -8.0, 7.0),
-                              Candidate("felt", kInfinity, 3.0),
-                              Candidate("wood", kInfinity, 4.0)})},
+                              Candidate("felt", kDropped, 3.0),
+                              Candidate("wood", kDropped, 4.0)})},
                      {Result(0, 32,
                              {Candidate("paint", -30.0, 1.0),
                               Candidate("wood", -9.0, 2.0),
                               Candidate("brass", -9.0, 1.0),
-                              Candidate("felt", kInfinity, 2.0)})});
+                              Candidate("felt", kDropped, 2.0)})});
   ASSERT_EQ(1u, best.size());
   EXPECT_EQ("paint", best[0].initial_guess);
   const std::vector<MaterialCandidate>& all = best[0].candidates;
   const std::vector<MaterialCandidate> expected = {
       Candidate("paint", -30.0, 7.0), Candidate("brass", -10.0, 5.0),
-      Candidate("wood", -9.0, 4.0), Candidate("felt", kInfinity, 3.0)};
+      Candidate("wood", -9.0, 4.0), Candidate("felt", kDropped, 3.0)};
   ASSERT_EQ(expected.size(), all.size());
   for (size_t k = 0; k < all.size(); ++k) {
     EXPECT_EQ(expected[k].name, all[k].name);

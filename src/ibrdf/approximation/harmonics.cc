@@ -6,34 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/gauss_legendre.h"
 #include "ibrdf/base/pi.h"
 
 namespace ibrdf {
 namespace {
 
 int Legendre2(int l, int m) { return l * (l + 1) / 2 + m; }
-
-// Nodes and weights of Gauss and Legendre on [-1, 1], by Newton's method.
-void GaussLegendre(int count, std::vector<double>* nodes,
-                   std::vector<double>* weights) {
-  nodes->resize(count);
-  weights->resize(count);
-  for (int i = 0; i < count; ++i) {
-    double x = std::cos(kPi * (i + 0.75) / (count + 0.5)), slope = 1.0;
-    for (int step = 0; step < 8; ++step) {
-      double p = 1.0, before = 0.0;
-      for (int l = 1; l <= count; ++l) {
-        const double next = ((2 * l - 1) * x * p - (l - 1) * before) / l;
-        before = p;
-        p = next;
-      }
-      slope = count * (x * p - before) / (x * x - 1.0);
-      x -= p / slope;
-    }
-    (*nodes)[i] = x;
-    (*weights)[i] = 2.0 / ((1.0 - x * x) * slope * slope);
-  }
-}
 
 }  // namespace
 
@@ -105,17 +84,16 @@ HarmonicProjection::HarmonicProjection(int order, int map_height, int map_width)
   std::vector<double> nodes, weights;
   GaussLegendre(16, &nodes, &weights);
   const int pieces = order / map_height + 1;
-  const double half = 0.5 * kPi / (map_height * pieces);
+  const double width = kPi / (map_height * pieces);
   rows_.assign(static_cast<size_t>(map_height) * legendre, 0.0);
   std::vector<double> P(legendre);
   for (int r = 0; r < map_height; ++r) {
     double* const row = &rows_[static_cast<size_t>(r) * legendre];
     for (int piece = 0; piece < pieces; ++piece) {
       for (size_t k = 0; k < nodes.size(); ++k) {
-        const double theta =
-            half * (2.0 * (r * pieces + piece) + 1.0 + nodes[k]);
+        const double theta = width * (r * pieces + piece + nodes[k]);
         basis.Legendre(std::cos(theta), P.data());
-        double power = half * weights[k] * std::sin(theta);
+        double power = width * weights[k] * std::sin(theta);
         for (int m = 0; m <= order; ++m) {
           for (int l = m; l <= order; ++l) {
             row[Legendre2(l, m)] += power * P[Legendre2(l, m)];
@@ -207,13 +185,13 @@ HarmonicRotation::HarmonicRotation(int order) : order_(order) {
   const int columns = 2 * order + 2;
   Eigen::VectorXd turned(count), plain(count);
   for (size_t k = 0; k < nodes.size(); ++k) {
-    const double s = std::sqrt(1.0 - nodes[k] * nodes[k]);
+    const double y = 2.0 * nodes[k] - 1.0, s = std::sqrt(1.0 - y * y);
     for (int c = 0; c < columns; ++c) {
       const double phi = 2.0 * kPi * (c + 0.5) / columns;
-      const Eigen::Vector3d u(s * std::sin(phi), nodes[k], s * std::cos(phi));
+      const Eigen::Vector3d u(s * std::sin(phi), y, s * std::cos(phi));
       basis.Evaluate(u, plain.data());
       basis.Evaluate({u.y(), u.z(), u.x()}, turned.data());
-      const double weight = weights[k] * 2.0 * kPi / columns;
+      const double weight = weights[k] * 4.0 * kPi / columns;
       for (int l = 0; l <= order; ++l) {
         // Coefficients of u -> sum L_m Y_m(A u).
         permute_[l] += weight * plain.segment(l * l, 2 * l + 1) *
