@@ -65,11 +65,12 @@ std::string NormalsLine(const PhotographCheck& check) {
   return line + ")";
 }
 
-// length: over the object's size.
-std::string ColourEdges(double length) {
-  const std::string words = Two(length);
-  if (words == Two(0.0)) return "It has no sharp edges of colour";
-  return "Its sharp edges of colour add up to " + words + " of its size";
+// length: over the object's size; whether that may be paint.
+std::string ColourEdges(double length, bool may_be_painted) {
+  const std::string number = Two(length);
+  if (number == Two(0.0)) return "It has no sharp edges of colour";
+  return "Its sharp edges of colour add up to " + number + " of its size" +
+         (may_be_painted ? "" : ", too little for paint");
 }
 
 }  // namespace
@@ -95,11 +96,10 @@ std::string ColourVerdict(const PhotographCheck& check) {
   if (!colours.observable) {
     return "cannot be told: " + share +
            " have a like normal elsewhere on the object. " +
-           ColourEdges(check.colour_steps) +
+           ColourEdges(check.colour_steps, check.MayBePainted()) +
            (check.MayBePainted()
                 ? ": a solve compares paint with mirrored light"
-                : ", too little for paint; if it is painted, set "
-                  "reflectance.variation: albedo");
+                : "; if it is painted, set reflectance.variation: albedo");
   }
   return (SaysSeveralMaterials(colours) ? "several materials"
                                         : "may be one material") +
