@@ -166,13 +166,16 @@ def learn(maps, names, hyperprior, own_chroma, turns=4):
     constants, mean, std = dict(CONSTANTS), MEAN, STD
     if own_chroma:
         mean, std = np.append(mean, 0.0), np.append(std, 1.0)
+    amplitudes = [0, CHROMA] if own_chroma else [0]
+    # Roughness below exp(-3) is none: there its logarithm is not told.
+    least_told = np.full(len(mean), -9.0)
+    least_told[1:5] = -3.0
     starts = None
     for _ in range(turns):
         fits = fit_all(maps, constants, mean, std, starts)
         hyper = np.array([mean + std * y for y, _, _ in fits])
         if hyperprior:
-            # Roughness below exp(-3) is none: there its logarithm is not told.
-            told = np.maximum(hyper, np.where(np.isin(np.arange(len(mean)), [1, 2, 3, 4]), -3.0, -9.0))
+            told = np.maximum(hyper, least_told)
             variance = np.array([np.minimum(np.diag(c) * std ** 2, 0.5) for _, c, _ in fits])
             mean = told.mean(0)
             std = np.sqrt(((told - mean) ** 2 + variance).mean(0))
@@ -180,10 +183,10 @@ def learn(maps, names, hyperprior, own_chroma, turns=4):
             constants = descend(maps, constants, hyper, names)
         # Amplitudes are 1 in the mean; the variances have the rest.
         shift = np.zeros_like(mean)
-        shift[[0, CHROMA][:1 + own_chroma]] = mean[[0, CHROMA][:1 + own_chroma]]
+        shift[amplitudes] = mean[amplitudes]
         constants["luminance_variance"] *= np.exp(shift[0])
         constants["horizon_share"] /= np.exp(shift[0])
-        constants["chroma_variance"] *= np.exp(shift[CHROMA if own_chroma else 0])
+        constants["chroma_variance"] *= np.exp(shift[amplitudes[-1]])
         mean = mean - shift
         starts = (hyper - shift - mean) / std
     return constants, mean, std

@@ -136,14 +136,35 @@ ReflectanceSearchOptions SecondSearch(size_t views,
 
 using Results = std::vector<ReflectanceSearchResult>;
 
-// What both searches found together, where the second explains the image.
-StatusOr<Results> SearchAgain(const std::vector<SearchedModel>& models,
-                              const SolveSetup& setup, StatusOr<Results> first,
-                              const ReflectanceSearchOptions& o,
-                              const SolveContext& context) {
-  StatusOr<Results> second = SearchReflectances(models, setup.problem->points,
-                                                SearchedPixels(setup), o);
-  if (o.Stopped() && !context.Interrupted()) {
+// What one search finds, or two together. The setups are of one problem, each
+// with a model of its own.
+StatusOr<Results> FindReflectances(const std::vector<const SolveSetup*>& setups,
+                                   SolveContext* context,
+                                   const FirstPaint* paint) {
+  const SolveSetup& setup = *setups.front();
+  const InverseProblem& problem = *setup.problem;
+  const size_t views = problem.sheet.views.size();
+  const Observations observed = SearchedPixels(setup);
+  const auto options = [&](double share) {
+    ReflectanceSearchOptions o = SearchOptions(share, setup, context);
+    o.covariance = problem.solver.max_iterations > 0;
+    if (paint != nullptr) AddPaint(*paint, &o);
+    return o;
+  };
+  ReflectanceSearchOptions o = FirstSearch(views, options(kSearchShare));
+  std::vector<SearchedModel> models;
+  for (const SolveSetup* s : setups) models.push_back(ModelOf(*s, o));
+  StatusOr<Results> first =
+      SearchReflectances(models, problem.points, observed, o);
+  if (problem.solver.search != SolverSearch::kThorough || paint != nullptr ||
+      problem.solver.max_iterations == 0 ||
+      first.status().code() == StatusCode::kInvalidInput) {
+    return first;
+  }
+  o = SecondSearch(views, options(kSecondSearchShare));
+  StatusOr<Results> second =
+      SearchReflectances(models, problem.points, observed, o);
+  if (o.Stopped() && !context->Interrupted()) {
     LOG(WARNING) << "solver.search: the second search was ended by the time "
                     "limit; a larger solver.seconds gives it more";
   }
@@ -152,31 +173,10 @@ StatusOr<Results> SearchAgain(const std::vector<SearchedModel>& models,
   return BestOfSearches(*std::move(first), *std::move(second));
 }
 
-// The setups are of one problem, each with a model of its own.
 StatusOr<std::vector<ModelOptima>> Search(
     const std::vector<const SolveSetup*>& setups, SolveContext* context,
     const FirstPaint* paint = nullptr) {
-  const SolveSetup& setup = *setups.front();
-  const InverseProblem& problem = *setup.problem;
-  const size_t views = problem.sheet.views.size();
-  const auto options = [&](double share) {
-    ReflectanceSearchOptions o = SearchOptions(share, setup, context);
-    o.covariance = problem.solver.max_iterations > 0;
-    if (paint != nullptr) AddPaint(*paint, &o);
-    return o;
-  };
-  const ReflectanceSearchOptions o = FirstSearch(views, options(kSearchShare));
-  std::vector<SearchedModel> models;
-  for (const SolveSetup* s : setups) models.push_back(ModelOf(*s, o));
-  StatusOr<Results> found =
-      SearchReflectances(models, problem.points, SearchedPixels(setup), o);
-  if (problem.solver.search == SolverSearch::kThorough && paint == nullptr &&
-      problem.solver.max_iterations > 0 &&
-      found.status().code() != StatusCode::kInvalidInput) {
-    found =
-        SearchAgain(models, setup, std::move(found),
-                    SecondSearch(views, options(kSecondSearchShare)), *context);
-  }
+  const StatusOr<Results> found = FindReflectances(setups, context, paint);
   if (!found.ok()) return found.status();
   std::vector<ModelOptima> optima;
   for (const ReflectanceSearchResult& result : *found) {

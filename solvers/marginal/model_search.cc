@@ -25,6 +25,32 @@ Observations Quotient(const Observations& observed,
                           divide(observed.high));
 }
 
+// What is ranked, by material, as its matrices serve all light without other
+// offsets. The first ranking's best comes first: it is ranked even where time
+// is up.
+std::vector<std::vector<MaterialUnderLight*>> ByMaterial(
+    size_t num_materials, std::vector<Ranking>* rankings) {
+  std::vector<std::vector<MaterialUnderLight*>> groups;
+  std::vector<int> group_of(num_materials, -1);
+  for (Ranking& ranking : *rankings) {
+    for (MaterialUnderLight& ranked : ranking) {
+      int& group = group_of[ranked.material];
+      if (group < 0) {
+        group = static_cast<int>(groups.size());
+        groups.emplace_back();
+      }
+      groups[group].push_back(&ranked);
+    }
+  }
+  return groups;
+}
+
+// For std::stable_sort.
+template <typename Costed>
+bool CostsLess(const Costed& a, const Costed& b) {
+  return a.cost < b.cost;
+}
+
 }  // namespace
 
 ModelSearch::ModelSearch(const SearchedModel& model,
@@ -90,28 +116,16 @@ Eigen::VectorXd ModelSearch::ParametersOf(const MaterialUnderLight& ranked,
 }
 
 void ModelSearch::RankAll(const SearchLevel& level) {
-  // By material, as its matrices serve all light without other offsets. The
-  // first ranking's best comes first: it is ranked even where time is up.
-  std::vector<std::vector<MaterialUnderLight*>> groups;
-  std::vector<int> group_of(materials_.size(), -1);
-  for (Ranking& ranking : rankings_) {
-    for (MaterialUnderLight& ranked : ranking) {
-      int& group = group_of[ranked.material];
-      if (group < 0) {
-        group = static_cast<int>(groups.size());
-        groups.emplace_back();
-      }
-      groups[group].push_back(&ranked);
-      ranked.cost = kInfinity;
-    }
-  }
+  const std::vector<std::vector<MaterialUnderLight*>> groups =
+      ByMaterial(materials_.size(), &rankings_);
   // Whole materials in parallel: what each does inside then runs in its thread.
   ParallelFor(
       static_cast<int64_t>(groups.size()), options_.num_threads,
       [&](int64_t i, int) {
         TabulatedReflectance material;
         for (MaterialUnderLight* ranked : groups[i]) {
-          if (i > 0 && options_.Stopped()) return;
+          ranked->cost = kInfinity;
+          if (i > 0 && options_.Stopped()) continue;
           const Eigen::VectorXd parameters = ParametersOf(*ranked, level);
           if (material.parameters.size() == 0 ||
               material.parameters != parameters) {
@@ -123,11 +137,8 @@ void ModelSearch::RankAll(const SearchLevel& level) {
         }
       });
   for (Ranking& ranking : rankings_) {
-    std::stable_sort(
-        ranking.begin(), ranking.end(),
-        [](const MaterialUnderLight& a, const MaterialUnderLight& b) {
-          return a.cost < b.cost;
-        });
+    std::stable_sort(ranking.begin(), ranking.end(),
+                     CostsLess<MaterialUnderLight>);
   }
 }
 
@@ -187,9 +198,7 @@ bool ModelSearch::Join(std::vector<LocalOptimum> optima,
     }
   }
   if (reached.empty()) return false;
-  std::stable_sort(
-      reached.begin(), reached.end(),
-      [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  std::stable_sort(reached.begin(), reached.end(), CostsLess<Candidate>);
   candidates_ = std::move(reached);
   return true;
 }

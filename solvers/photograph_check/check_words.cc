@@ -65,12 +65,17 @@ std::string NormalsLine(const PhotographCheck& check) {
   return line + ")";
 }
 
-// length: over the object's size; whether that may be paint.
-std::string ColourEdges(double length, bool may_be_painted) {
-  const std::string number = Two(length);
-  if (number == Two(0.0)) return "It has no sharp edges of colour";
-  return "Its sharp edges of colour add up to " + number + " of its size" +
-         (may_be_painted ? "" : ", too little for paint");
+// Where no like normals tell paint from light.
+std::string ColourEdges(const PhotographCheck& check) {
+  const std::string length = Two(check.colour_steps);
+  const std::string edges =
+      "Its sharp edges of colour add up to " + length + " of its size";
+  if (check.MayBePainted()) {
+    return edges + ": a solve compares paint with mirrored light";
+  }
+  return (length == Two(0.0) ? "It has no sharp edges of colour"
+                             : edges + ", too little for paint") +
+         "; if it is painted, set reflectance.variation: albedo";
 }
 
 }  // namespace
@@ -95,11 +100,7 @@ std::string ColourVerdict(const PhotographCheck& check) {
   const std::string share = Number(100.0 * colours.share) + " % of the pixels";
   if (!colours.observable) {
     return "cannot be told: " + share +
-           " have a like normal elsewhere on the object. " +
-           ColourEdges(check.colour_steps, check.MayBePainted()) +
-           (check.MayBePainted()
-                ? ": a solve compares paint with mirrored light"
-                : "; if it is painted, set reflectance.variation: albedo");
+           " have a like normal elsewhere on the object. " + ColourEdges(check);
   }
   return (SaysSeveralMaterials(colours) ? "several materials"
                                         : "may be one material") +
