@@ -9,6 +9,12 @@
 #include "ibrdf/solvers/forward/scene_radiance.h"
 
 namespace ibrdf {
+namespace {
+
+// Of the error of interpolation, that of the quadrature's far rule.
+constexpr double kFarShare = 1.0 / 3;
+
+}  // namespace
 
 PixelRenderer::PixelRenderer(const Problem& problem, const ForwardScene& scene,
                              const PlannedRender& planned, int num_threads,
@@ -57,7 +63,7 @@ Status PixelRenderer::RenderUnpainted(const std::vector<ShadingPoint>& points,
                                       const Span& span, double* L_o) {
   counts_.points += points.size();
   if (ByNormals()) {
-    return RenderByNormals(*planned_.radiance, points, span, L_o);
+    return RenderByNormals(scene_.brdf, points, span, &split_, L_o);
   }
   return planned_.renderer().Render(points, Within(span), L_o)
              ? OkStatus()
@@ -66,25 +72,38 @@ Status PixelRenderer::RenderUnpainted(const std::vector<ShadingPoint>& points,
 
 Status PixelRenderer::RenderMatte(const std::vector<ShadingPoint>& points,
                                   const Span& span, double* L_o) {
-  const MatteRadiance matte(*planned_.radiance, *scene_.paint);
   counts_.points += points.size();
-  if (ByNormals()) return RenderByNormals(matte, points, span, L_o);
+  if (ByNormals()) {
+    return RenderByNormals(scene_.paint->matte, points, span, &matte_split_,
+                           L_o);
+  }
+  const MatteRadiance matte(*planned_.radiance, *scene_.paint);
   return matte.Render(points, Within(span), L_o) ? OkStatus()
                                                  : RenderInterrupted(problem_);
 }
 
-Status PixelRenderer::RenderByNormals(const RadianceRenderer& renderer,
+Status PixelRenderer::RenderByNormals(const KnownBrdf& brdf,
                                       const std::vector<ShadingPoint>& points,
-                                      const Span& span, double* L_o) {
-  ReflectanceMapOptions options;
-  options.log_error = RenderTolerances::Of(problem_.quality).approximation;
-  const StatusOr<ReflectanceMapReport> report =
-      RenderByNormal(points, renderer, Within(span), options, L_o);
-  if (!report.ok()) {
-    return report.status().code() == StatusCode::kInterrupted
+                                      const Span& span,
+                                      std::unique_ptr<SplitRadiance>* kept,
+                                      double* L_o) {
+  const auto status_of = [this](const Status& status) {
+    return status.code() == StatusCode::kInterrupted
                ? RenderInterrupted(problem_)
-               : report.status();
+               : status;
+  };
+  const double log_error = RenderTolerances::Of(problem_.quality).approximation;
+  if (*kept == nullptr) {
+    *kept = std::make_unique<SplitRadiance>(*planned_.radiance, brdf);
+    const Status fit =
+        (*kept)->Fit(points, Within(span), kFarShare * log_error);
+    if (!fit.ok()) return status_of(fit);
   }
+  ReflectanceMapOptions options;
+  options.log_error = (1.0 - kFarShare) * log_error;
+  const StatusOr<ReflectanceMapReport> report =
+      RenderByNormal(points, **kept, Within(span), options, L_o);
+  if (!report.ok()) return status_of(report.status());
   counts_.interpolated += report->interpolated;
   return OkStatus();
 }

@@ -1,5 +1,6 @@
 // Pixels of a planned render.
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "ibrdf/base/status.h"
@@ -7,7 +8,9 @@
 #include "ibrdf/io/problem.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/forward/forward_scene.h"
+#include "ibrdf/solvers/forward/known_brdf.h"
 #include "ibrdf/solvers/forward/render_plan.h"
+#include "ibrdf/solvers/forward/split_radiance.h"
 #include "ibrdf/transport/radiance_renderer.h"
 
 namespace ibrdf {
@@ -47,9 +50,11 @@ class PixelRenderer {
                          const Span& span, double* L_o);
   Status RenderMatte(const std::vector<ShadingPoint>& points, const Span& span,
                      double* L_o);
-  Status RenderByNormals(const RadianceRenderer& renderer,
+  // By a split of the reflectance that is kept for later points.
+  Status RenderByNormals(const KnownBrdf& brdf,
                          const std::vector<ShadingPoint>& points,
-                         const Span& span, double* L_o);
+                         const Span& span, std::unique_ptr<SplitRadiance>* kept,
+                         double* L_o);
   bool ByNormals() const;
   // The progress of a call that goes through `span`.
   RadianceRenderer::Progress Within(const Span& span) const;
@@ -62,6 +67,8 @@ class PixelRenderer {
   const int num_threads_;
   const RadianceRenderer::Progress& progress_;
   PixelCounts counts_;
+  // Of the object, and of its matte part; null before they are asked for.
+  std::unique_ptr<SplitRadiance> split_, matte_split_;
 };
 
 }  // namespace ibrdf

@@ -116,12 +116,13 @@ bool SceneRadiance::Render(const std::vector<ShadingPoint>& points,
 
 bool SceneRadiance::RenderWith(const KnownBrdf& brdf,
                                const std::vector<ShadingPoint>& points,
-                               const Progress& progress, double* L_o) const {
+                               const Progress& progress, double* L_o,
+                               QuadratureRules rules) const {
   if (brdf.function) {
-    return ReferenceRadiance(*renderer_, brdf.function, Emitted())
+    return ReferenceRadiance(*renderer_, brdf.function, Emitted(), rules)
         .Render(points, progress, L_o);
   }
-  return ReferenceRadiance(*renderer_, brdf.table, Emitted())
+  return ReferenceRadiance(*renderer_, brdf.table, Emitted(), rules)
       .Render(points, progress, L_o);
 }
 

@@ -62,10 +62,12 @@ class SceneRadiance final : public RadianceRenderer {
   // `progress` is called as by ReferenceRadiance.
   bool Render(const std::vector<ShadingPoint>& points, const Progress& progress,
               double* L_o) const override;
-  // The same of another reflectance, what the object throws on itself as it is.
+  // The same of another reflectance, what the object throws on itself as it is,
+  // and of rules of the quadrature.
   bool RenderWith(const KnownBrdf& brdf,
                   const std::vector<ShadingPoint>& points,
-                  const Progress& progress, double* L_o) const;
+                  const Progress& progress, double* L_o,
+                  QuadratureRules rules = QuadratureRules::kBoth) const;
 
  private:
   EmittedLight Emitted() const;

@@ -119,6 +119,44 @@ TEST(ReflectanceMap, WorksForTransportToo) {
   EXPECT_LE(MeanLogError(L_o, direct), 0.01);
 }
 
+TEST(ReflectanceMap, KeptItServesOtherPoints) {
+  const ReferenceRenderer renderer(SmoothMap(16, 32), QuickReference());
+  const ReferenceRadiance reference(renderer, Glossy(0.1, 0.5, 10));
+  size_t rendered = 0;
+  const FunctionRenderer render(
+      [&](const std::vector<ShadingPoint>& points, double* L_o) {
+        rendered += points.size();
+        return reference.Render(points, {}, L_o);
+      });
+  ReflectanceMapOptions options;
+  options.log_error = 1e-2;
+  const StatusOr<ReflectanceMap> map =
+      ReflectanceMap::Fit(SpherePoints(128), render, {}, options);
+  ASSERT_TRUE(map.ok());
+  EXPECT_EQ(rendered, static_cast<size_t>(map->report().rendered));
+  const std::vector<ShadingPoint> others = SpherePoints(47);
+  std::vector<double> direct(3 * others.size()), L_o(direct.size());
+  ASSERT_TRUE(reference.Render(others, {}, direct.data()));
+  rendered = 0;
+  ASSERT_TRUE(map->Render(others, {}, L_o.data()));
+  EXPECT_LT(rendered, others.size() / 10);
+  EXPECT_LE(MeanLogError(L_o, direct), options.log_error);
+}
+
+// Where nothing could be interpolated it renders all.
+TEST(ReflectanceMap, KeptOfTooFewPointsItIsTheRenderer) {
+  const ReferenceRenderer renderer(SmoothMap(16, 32), QuickReference());
+  const ReferenceRadiance render(renderer, Lambertian(0.5));
+  const StatusOr<ReflectanceMap> map =
+      ReflectanceMap::Fit(SpherePoints(8), render, {}, {});
+  ASSERT_TRUE(map.ok());
+  const std::vector<ShadingPoint> others = SpherePoints(16);
+  std::vector<double> direct(3 * others.size()), L_o(direct.size());
+  ASSERT_TRUE(render.Render(others, {}, direct.data()));
+  ASSERT_TRUE(map->Render(others, {}, L_o.data()));
+  EXPECT_EQ(direct, L_o);
+}
+
 TEST(ReflectanceMap, AnyViewDirectionAndRoughNormals) {
   const ReferenceRenderer renderer(SmoothMap(16, 32), QuickReference());
   const ReferenceRadiance render(renderer, Glossy(0.1, 0.5, 10));

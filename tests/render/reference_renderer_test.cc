@@ -129,6 +129,24 @@ TEST(ReferenceRenderer, TableAndCallableAgree) {
   }
 }
 
+TEST(ReferenceRenderer, RulesAddUpToBoth) {
+  // With a sun that is split off, so that all parts are there.
+  Image map = SmoothMap(32, 64);
+  for (int c = 0; c < 3; ++c) map.At(20, 8)[c] = 3000.0f;
+  const ReferenceRenderer renderer(map, {});
+  const BrdfFunction brdf = Glossy(0.1, 0.5, 8);
+  const std::vector<ShadingPoint> points = Fan();
+  std::vector<double> both(3 * points.size()), near(both), far(both);
+  renderer.Render(points, brdf, both.data());
+  renderer.Render(points, brdf, near.data(), {}, QuadratureRules::kNear);
+  renderer.Render(points, brdf, far.data(), {}, QuadratureRules::kFar);
+  for (size_t k = 0; k < both.size(); ++k) {
+    EXPECT_GT(near[k], 0.0);
+    EXPECT_GT(far[k], 0.0);
+    EXPECT_NEAR(both[k], near[k] + far[k], 1e-12 * both[k]);
+  }
+}
+
 TEST(ReferenceRenderer, BlocksOfAWideMapAgreeWithItsTexels) {
   Image map = RandomMap(128, 256, 7);
   map.At(70, 40)[1] = 1e5f;

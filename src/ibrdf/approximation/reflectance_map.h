@@ -9,6 +9,8 @@
 // lies beyond the last nodes, and around the view the cells are only narrower
 // than they need be.
 #pragma once
+#include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "ibrdf/base/status.h"
@@ -48,5 +50,36 @@ StatusOr<ReflectanceMapReport> RenderByNormal(
     const std::vector<ShadingPoint>& points, const RadianceRenderer& renderer,
     const RadianceRenderer::Progress& progress,
     const ReflectanceMapOptions& options, double* L_o);
+
+class NormalGrid;
+
+// The same, kept: the nodes that the points of an image ask for serve other
+// points of the same view.
+class ReflectanceMap {
+ public:
+  // As RenderByNormal of these points, one at least, but for the last step: no
+  // point is rendered that is not held out. The renderer must outlive the map.
+  static StatusOr<ReflectanceMap> Fit(
+      const std::vector<ShadingPoint>& points, const RadianceRenderer& renderer,
+      const RadianceRenderer::Progress& progress,
+      const ReflectanceMapOptions& options);
+  ReflectanceMap(ReflectanceMap&&) noexcept;
+  ReflectanceMap& operator=(ReflectanceMap&&) noexcept;
+  ~ReflectanceMap();
+
+  // L_o [points, 3] of points with the wo of those; the renderer renders where
+  // no interpolation is within the error. False: `progress` stopped it.
+  bool Render(const std::vector<ShadingPoint>& points,
+              const RadianceRenderer::Progress& progress, double* L_o) const;
+  // Of Fit: nothing is interpolated yet.
+  const ReflectanceMapReport& report() const;
+
+ private:
+  ReflectanceMap(std::unique_ptr<const NormalGrid> grid,
+                 const Eigen::Vector3f& wo);
+
+  std::unique_ptr<const NormalGrid> grid_;
+  Eigen::Vector3f wo_;
+};
 
 }  // namespace ibrdf

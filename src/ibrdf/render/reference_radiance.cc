@@ -20,11 +20,11 @@ bool ReferenceRadiance::Render(const std::vector<ShadingPoint>& points,
     const std::vector<ShadingPoint> some(points.begin() + begin,
                                          points.begin() + end);
     if (table_ != nullptr) {
-      renderer_.Render(some, *table_, L_o + 3 * begin, emitted_);
+      renderer_.Render(some, *table_, L_o + 3 * begin, emitted_, rules_);
     } else if (surface_) {
       renderer_.Render(some, surface_, function_, L_o + 3 * begin, emitted_);
     } else {
-      renderer_.Render(some, function_, L_o + 3 * begin, emitted_);
+      renderer_.Render(some, function_, L_o + 3 * begin, emitted_, rules_);
     }
   }
   return true;

@@ -15,11 +15,16 @@ class ReferenceRadiance final : public RadianceRenderer {
   // Renderer, table and emitted light must outlive this. Several threads may
   // call the function at a time.
   ReferenceRadiance(const ReferenceRenderer& renderer, const MerlTable& table,
-                    const EmittedLight& emitted = {})
-      : renderer_(renderer), table_(&table), emitted_(emitted) {}
+                    const EmittedLight& emitted = {},
+                    QuadratureRules rules = QuadratureRules::kBoth)
+      : renderer_(renderer), table_(&table), emitted_(emitted), rules_(rules) {}
   ReferenceRadiance(const ReferenceRenderer& renderer, BrdfFunction brdf,
-                    const EmittedLight& emitted = {})
-      : renderer_(renderer), function_(std::move(brdf)), emitted_(emitted) {}
+                    const EmittedLight& emitted = {},
+                    QuadratureRules rules = QuadratureRules::kBoth)
+      : renderer_(renderer),
+        function_(std::move(brdf)),
+        emitted_(emitted),
+        rules_(rules) {}
 
   // A reflectance that varies, and its sharpest lobe (ReferenceRenderer).
   ReferenceRadiance(const ReferenceRenderer& renderer, SurfaceBrdf brdf,
@@ -40,6 +45,7 @@ class ReferenceRadiance final : public RadianceRenderer {
   const BrdfFunction function_;
   const SurfaceBrdf surface_;  // set: `function_` is its sharpest
   const EmittedLight emitted_;
+  const QuadratureRules rules_ = QuadratureRules::kBoth;
 };
 
 }  // namespace ibrdf

@@ -115,6 +115,7 @@ struct ReferenceRenderer::Pass {
   const std::vector<ShadingPoint>& points;
   const Lookup& lookup;
   const EmittedLight& emitted;
+  QuadratureRules rules;
 };
 
 struct ReferenceRenderer::LobeLight {
@@ -375,8 +376,8 @@ template <typename Lookup>
 ReferenceRenderer::LobeLight ReferenceRenderer::LightOfLobes(
     const Pass<Lookup>& pass, const ViewGroups& groups) const {
   LobeLight lobes;
-  if (pass.settings.width == 0.0 || pass.depth >= pass.emitted.bounces ||
-      pass.points.empty()) {
+  if (pass.rules == QuadratureRules::kFar || pass.settings.width == 0.0 ||
+      pass.depth >= pass.emitted.bounces || pass.points.empty()) {
     return lobes;
   }
   lobes.rays = lobe_rays_;
@@ -393,9 +394,9 @@ ReferenceRenderer::LobeLight ReferenceRenderer::LightOfLobes(
     // The last bounce shows what the map alone lights.
     EmittedLight light = pass.emitted;
     if (pass.depth + 1 >= light.bounces) light.radiance = nullptr;
-    next.RenderPass(
-        Pass<Lookup>{pass.depth + 1, pass.settings, some, pass.lookup, light},
-        radiance.data());
+    next.RenderPass(Pass<Lookup>{pass.depth + 1, pass.settings, some,
+                                 pass.lookup, light, QuadratureRules::kBoth},
+                    radiance.data());
   }
   lobes.radiance.assign(3 * met.size(), -1.0);
   for (size_t k = 0, from = 0; k < met.size(); ++k) {
@@ -429,7 +430,10 @@ void ReferenceRenderer::RenderGroup(const Pass<Lookup>& pass,
   const size_t begin = groups.begins[group];
   const ShadingPoint& first = pass.points[groups.order[begin]];
   const auto& lookup = OfPoint(pass.lookup, first);
-  ShadeNear(PointFrame(first), lookup, &scratch->near, &scratch->rays);
+  const bool near = pass.rules != QuadratureRules::kFar;
+  if (near) {
+    ShadeNear(PointFrame(first), lookup, &scratch->near, &scratch->rays);
+  }
   if (lobes.rays > 0) {
     Bundle(scratch->near, pass.settings.width, lobes.rays, &scratch->rays);
   }
@@ -440,9 +444,14 @@ void ReferenceRenderer::RenderGroup(const Pass<Lookup>& pass,
     if (lobes.rays > 0) {
       sight.lobe = &lobes.radiance[size_t{3} * lobes.rays * i];
     }
-    Eigen::Array3d sum = Gather(scratch->rays, frame.Axes(), sight);
-    sum += GatherBright(frame, pass.settings.bright, lookup, sight.hidden);
-    AddFar(frame, lookup, sight, scratch, &sum);
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    if (near) {
+      sum += Gather(scratch->rays, frame.Axes(), sight);
+      sum += GatherBright(frame, pass.settings.bright, lookup, sight.hidden);
+    }
+    if (pass.rules != QuadratureRules::kNear) {
+      AddFar(frame, lookup, sight, scratch, &sum);
+    }
     for (int c = 0; c < 3; ++c) L_o[size_t{3} * i + c] = sum[c];
   }
 }
@@ -464,7 +473,7 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
                                    const Lookup& lookup,
                                    const BrdfFunction& sharpest,
                                    const EmittedLight& emitted,
-                                   double* L_o) const {
+                                   QuadratureRules rules, double* L_o) const {
   LobeSettings settings;
   const bool follow =
       lobe_rays_ > 0 && patches_ != nullptr && emitted.radiance != nullptr;
@@ -474,27 +483,29 @@ void ReferenceRenderer::RenderWith(const std::vector<ShadingPoint>& points,
     settings.bright = SampleBrightTexels(bright_, map_.height, map_.width,
                                          BrightSamplesPerSide(half));
   }
-  RenderPass(Pass<Lookup>{0, settings, points, lookup, emitted}, L_o);
+  RenderPass(Pass<Lookup>{0, settings, points, lookup, emitted, rules}, L_o);
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
                                const MerlTable& table, double* L_o,
-                               const EmittedLight& emitted) const {
+                               const EmittedLight& emitted,
+                               QuadratureRules rules) const {
   const MerlSampler sampler(table);
-  RenderWith(points, sampler, std::cref(sampler), emitted, L_o);
+  RenderWith(points, sampler, std::cref(sampler), emitted, rules, L_o);
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
                                const BrdfFunction& brdf, double* L_o,
-                               const EmittedLight& emitted) const {
-  RenderWith(points, brdf, brdf, emitted, L_o);
+                               const EmittedLight& emitted,
+                               QuadratureRules rules) const {
+  RenderWith(points, brdf, brdf, emitted, rules, L_o);
 }
 
 void ReferenceRenderer::Render(const std::vector<ShadingPoint>& points,
                                const SurfaceBrdf& brdf,
                                const BrdfFunction& sharpest, double* L_o,
                                const EmittedLight& emitted) const {
-  RenderWith(points, brdf, sharpest, emitted, L_o);
+  RenderWith(points, brdf, sharpest, emitted, QuadratureRules::kBoth, L_o);
 }
 
 Image PixelMeans(const std::vector<ShadingPoint>& points, const double* L_o,

@@ -40,6 +40,11 @@ struct EmittedLight {
   int bounces = 0;
 };
 
+// The rules of PointQuadrature whose part of the radiance is asked for. What a
+// narrow lobe shows is in the near one's; the far one's, of lobes that are wide
+// or aside, hardly changes from normal to normal.
+enum class QuadratureRules { kBoth, kNear, kFar };
+
 // The BRDF at a point of a surface where it varies.
 using SurfaceBrdf = std::function<BrdfFunction(const ShadingPoint& point)>;
 
@@ -50,12 +55,14 @@ class ReferenceRenderer {
   ReferenceRenderer(const Image& map, const ReferenceOptions& options);
 
   // Radiance L_o [points, 3]. Weights and sums are double; BRDF values of a
-  // table are float.
+  // table are float. Light of bright texels is the near rule's.
   void Render(const std::vector<ShadingPoint>& points, const MerlTable& table,
-              double* L_o, const EmittedLight& emitted = {}) const;
+              double* L_o, const EmittedLight& emitted = {},
+              QuadratureRules rules = QuadratureRules::kBoth) const;
   // Several threads may call `brdf` at a time.
   void Render(const std::vector<ShadingPoint>& points, const BrdfFunction& brdf,
-              double* L_o, const EmittedLight& emitted = {}) const;
+              double* L_o, const EmittedLight& emitted = {},
+              QuadratureRules rules = QuadratureRules::kBoth) const;
   // sharpest: one of the narrowest lobes among them, for which the sun and what
   // lobes see of the object are sampled.
   void Render(const std::vector<ShadingPoint>& points, const SurfaceBrdf& brdf,
@@ -93,7 +100,7 @@ class ReferenceRenderer {
   template <typename Lookup>
   void RenderWith(const std::vector<ShadingPoint>& points, const Lookup& lookup,
                   const BrdfFunction& sharpest, const EmittedLight& emitted,
-                  double* L_o) const;
+                  QuadratureRules rules, double* L_o) const;
   template <typename Lookup>
   void RenderPass(const Pass<Lookup>& pass, double* L_o) const;
   template <typename Lookup>
