@@ -292,9 +292,12 @@ inline constexpr int kNumSolverGauges = 3;
 // Name in problem files, e.g. "grey_light".
 const char* SolverGaugeName(SolverGauge gauge);
 
+inline constexpr int kMostSolverTurns = 20;
+
 struct SolverSpec {
   SolverEstimator estimator = SolverEstimator::kMarginal;
   SolverSearch search = SolverSearch::kStandard;  // of joint problems
+  int turns = 0;  // of joint problems, in [0, kMostSolverTurns]
   SolverMethod method = SolverMethod::kAuto;
   QuadratureLevel quadrature = QuadratureLevel::kStandard;
   SolverGauge gauge = SolverGauge::kGreyLight;  // of joint problems

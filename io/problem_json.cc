@@ -242,6 +242,7 @@ json SolverJson(const SolverSpec& solver, ProblemKind kind) {
   // reflectance searched for among many.
   if (kind == ProblemKind::kJoint) {
     out["search"] = SolverSearchName(solver.search);
+    out["turns"] = solver.turns;
     out["gauge"] = SolverGaugeName(solver.gauge);
   }
   if (solver.seed.has_value()) out["seed"] = *solver.seed;

@@ -46,6 +46,20 @@ Row SearchKey() {
       .UsedBy(kUsedByJoint);
 }
 
+Row TurnsKey() {
+  return Row("solver.turns",
+             "How often, at most, the reflectance is found anew under the map "
+             "that was found, and the map under that reflectance. It serves "
+             "objects of one material and takes place where more than noise is "
+             "left of the image, while a turn explains it better. Mirrors gain "
+             "most. A turn takes about as long as the map; set "
+             "`solver.seconds` "
+             "for that.")
+      .Integer(0, kMostSolverTurns, "0")
+      .Needs("problem: joint")
+      .UsedBy(kUsedByJoint);
+}
+
 Row QuadratureKey() {
   return Row("solver.quadrature",
              "How finely the integral over light directions is taken.")
@@ -154,6 +168,7 @@ Keys SolverKeys() {
                         "al. 2020, Eq. 8). It is there for comparison."}})
               .UsedBy(kUsedByJoint),
           SearchKey(),
+          TurnsKey(),
           SolverMethodKey(),
           QuadratureKey(),
           GaugeKey(),

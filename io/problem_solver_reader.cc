@@ -80,6 +80,8 @@ void ReadSolver(ProblemReader reader, ProblemKind kind, SolverSpec* solver) {
   reader.Read("estimator", &solver->estimator);
   reader.Read("search", &solver->search);
   reader.CheckNeeds("search", kind == ProblemKind::kJoint);
+  reader.Read("turns", &solver->turns);
+  reader.CheckNeeds("turns", kind == ProblemKind::kJoint);
   reader.Read("method", &solver->method);
   reader.Read("quadrature", &solver->quadrature);
   reader.Read("gauge", &solver->gauge);

@@ -10,6 +10,7 @@
 #include "ibrdf/solvers/estimation/light_given_reflectance.h"
 #include "ibrdf/solvers/estimation/marginal_search.h"
 #include "ibrdf/solvers/estimation/optimum_average.h"
+#include "ibrdf/solvers/solve/joint_turns.h"
 #include "ibrdf/solvers/solve/summary.h"
 
 namespace ibrdf {
@@ -78,6 +79,9 @@ StatusOr<Solution> SolveJoint(const SolveSetup& setup, SolveContext* context) {
   const SolveSetup& found = *(*searches)[average.model].setup;
   StatusOr<Estimate> estimate =
       EstimateLight(found, std::move(average.estimate), context);
+  if (!estimate.ok()) return estimate.status();
+  estimate = TakeJointTurns(found, *(*searches)[average.model].gauge,
+                            *std::move(estimate), context);
   if (!estimate.ok()) return estimate.status();
   Solution solution = Summarise(found, *std::move(estimate), context);
   NameModels(*searches, average, &solution);

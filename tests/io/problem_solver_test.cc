@@ -26,6 +26,24 @@ TEST_F(ProblemFile, SearchesAreOfJointProblems) {
   EXPECT_EQ("thorough", ProblemToJson(*p)["solver"]["search"]);
 }
 
+TEST_F(ProblemFile, TurnsAreOfJointProblems) {
+  EXPECT_EQ(0, Read(kLeast)->solver.turns);
+  const StatusOr<Problem> p = Read(kLeast, {"solver.turns=2"});
+  ASSERT_TRUE(p.ok()) << p.status().message();
+  EXPECT_EQ(2, p->solver.turns);
+  EXPECT_EQ(2, ProblemToJson(*p)["solver"]["turns"]);
+  for (const std::string turns : {"-1", "21", "many", "1.5"}) {
+    const Status s = Read(kLeast, {"solver.turns=" + turns}).status();
+    EXPECT_EQ(StatusCode::kInvalidInput, s.code()) << turns;
+    EXPECT_NE(std::string::npos, s.message().find("solver.turns")) << turns;
+  }
+  const Status needs = Read(kLeast, {"solver.turns=2", "problem=reflectance",
+                                     "illumination={known: map.hdr}"})
+                           .status();
+  EXPECT_EQ(StatusCode::kInvalidInput, needs.code());
+  EXPECT_NE(std::string::npos, needs.message().find("solver.turns"));
+}
+
 TEST_F(ProblemFile, EveryMethodIsReadByItsName) {
   for (int m = 0; m < kNumSolverMethods; ++m) {
     const auto method = static_cast<SolverMethod>(m);
