@@ -48,13 +48,8 @@ Row SearchKey() {
 
 Row TurnsKey() {
   return Row("solver.turns",
-             "How often, at most, the reflectance is found anew under the map "
-             "that was found, and the map under that reflectance. It serves "
-             "objects of one material and takes place where more than noise is "
-             "left of the image, while a turn explains it better. Mirrors gain "
-             "most. A turn takes about as long as the map; set "
-             "`solver.seconds` "
-             "for that.")
+             "At most so many turns of reflectance and light at the map's full "
+             "size, where more than noise is left of the image.")
       .Integer(0, kMostSolverTurns, "0")
       .Needs("problem: joint")
       .UsedBy(kUsedByJoint);
