@@ -342,11 +342,17 @@ bool NormalGrid::Fit(const std::vector<ShadingPoint>& points,
 bool NormalGrid::RenderRest(const std::vector<ShadingPoint>& points,
                             const std::vector<char>& done,
                             const RadianceRenderer::Progress& progress,
-                            double* L_o, int* rendered) const {
+                            double* L_o, ReflectanceMapReport* report) const {
   std::vector<size_t> direct;
   std::vector<ShadingPoint> rest;
   for (size_t i = 0; i < points.size(); ++i) {
     if (done[i] != 0) continue;
+    const Place place = PlaceOf(points[i]);
+    if (const Cell* cell = GoodCell(place)) {
+      Interpolate(*cell, place, &L_o[3 * i]);
+      ++report->interpolated;
+      continue;
+    }
     direct.push_back(i);
     rest.push_back(points[i]);
   }
@@ -357,7 +363,7 @@ bool NormalGrid::RenderRest(const std::vector<ShadingPoint>& points,
   for (size_t k = 0; k < rest.size(); ++k) {
     std::copy_n(&radiance[3 * k], 3, &L_o[3 * direct[k]]);
   }
-  *rendered += static_cast<int>(rest.size());
+  report->rendered += static_cast<int>(rest.size());
   return true;
 }
 
@@ -370,31 +376,15 @@ bool NormalGrid::RenderFitted(const std::vector<ShadingPoint>& points,
     std::copy_n(&held_out_.truth[3 * k], 3, &L_o[3 * i]);
     done[i] = 1;
   }
-  for (size_t i = 0; i < points.size(); ++i) {
-    if (done[i] != 0) continue;
-    const Place place = PlaceOf(points[i]);
-    if (const Cell* cell = GoodCell(place)) {
-      Interpolate(*cell, place, &L_o[3 * i]);
-      done[i] = 1;
-      ++report_.interpolated;
-    }
-  }
-  return RenderRest(points, done, progress, L_o, &report_.rendered);
+  return RenderRest(points, done, progress, L_o, &report_);
 }
 
 bool NormalGrid::RenderAny(const std::vector<ShadingPoint>& points,
                            const RadianceRenderer::Progress& progress,
                            double* L_o) const {
-  std::vector<char> done(points.size(), 0);
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Place place = PlaceOf(points[i]);
-    if (const Cell* cell = GoodCell(place)) {
-      Interpolate(*cell, place, &L_o[3 * i]);
-      done[i] = 1;
-    }
-  }
-  int rendered = 0;
-  return RenderRest(points, done, progress, L_o, &rendered);
+  ReflectanceMapReport not_kept;
+  return RenderRest(points, std::vector<char>(points.size(), 0), progress, L_o,
+                    &not_kept);
 }
 
 }  // namespace ibrdf

@@ -109,11 +109,12 @@ class NormalGrid {
   static bool WorthCutting(const Cell& cell, double tolerance);
   // Cuts cells until all meet the tolerance or are not worth it.
   bool Refine(const Fitted& fitted, double tolerance);
-  // Renders the points of which `done` is 0; their number joins `rendered`.
+  // Interpolates the points of which `done` is 0, or renders them where no cell
+  // is good; counts both.
   bool RenderRest(const std::vector<ShadingPoint>& points,
                   const std::vector<char>& done,
                   const RadianceRenderer::Progress& progress, double* L_o,
-                  int* rendered) const;
+                  ReflectanceMapReport* report) const;
 
   const RadianceRenderer& renderer_;
   const ReflectanceMapOptions options_;
