@@ -297,7 +297,7 @@ inline constexpr int kMostSolverTurns = 20;
 struct SolverSpec {
   SolverEstimator estimator = SolverEstimator::kMarginal;
   SolverSearch search = SolverSearch::kStandard;  // of joint problems
-  int turns = 0;  // of joint problems, in [0, kMostSolverTurns]
+  int turns = 2;  // of joint problems, in [0, kMostSolverTurns]
   SolverMethod method = SolverMethod::kAuto;
   QuadratureLevel quadrature = QuadratureLevel::kStandard;
   SolverGauge gauge = SolverGauge::kGreyLight;  // of joint problems

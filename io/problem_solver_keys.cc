@@ -50,7 +50,7 @@ Row TurnsKey() {
   return Row("solver.turns",
              "At most so many turns of reflectance and light at the map's full "
              "size, where more than noise is left of the image.")
-      .Integer(0, kMostSolverTurns, "0")
+      .Integer(0, kMostSolverTurns, "2")
       .Needs("problem: joint")
       .UsedBy(kUsedByJoint);
 }

@@ -22,6 +22,9 @@ constexpr double kWorseMisfit = 1.02;
 // Finer bins are taken where binning leaves out more than this share of the
 // misfit.
 constexpr double kBlurredShare = 0.2;
+// Iterations of a map, at most, before the reflectance is revised, each time. A
+// map that is finished is as sharp as the wrong reflectance asks for.
+constexpr int kBeforeRevision = 4;
 // Maps are first found at this size or below, where their sides halve; in no
 // case at a larger one than a process's (ProcessSize).
 constexpr int kProcessWidth = 128;
@@ -79,28 +82,40 @@ bool BinsBlur(const SolveSetup& setup, const SolveContext& context,
                                      .misfit;
 }
 
-// The map from binned pixels, and from finer bins where those tell more.
-Status IterateMap(const SolveSetup& setup, JointMethod method, double share,
-                  SolveContext* context, Estimate* estimate) {
+OuterIterationOptions MapOptions(JointMethod method, double share) {
   OuterIterationOptions options;
   options.stage = "map";
   options.method = method;
   options.share = share;
-  IBRDF_RETURN_IF_ERROR(RunOuterIterations(
-      options, setup, estimate->pixels.get(), context, &estimate->iterate));
+  return options;
+}
+
+// The map from binned pixels, and from finer bins where those tell more.
+Status IterateMap(OuterIterationOptions options, const SolveSetup& setup,
+                  SolveContext* context, Estimate* estimate) {
+  IBRDF_RETURN_IF_ERROR(RunOuterIterations(options, setup,
+                                           estimate->pixels.get(), context,
+                                           &estimate->iterate)
+                            .status());
   if (!BinsBlur(setup, *context, *estimate)) return OkStatus();
   *estimate->pixels = ObservedPixels(
       setup, MeansByNormal(setup.pixels, setup.MapBins(kFineMapBins)));
   options.stage = "fine map";
+  options.first = 1;
   return RunOuterIterations(options, setup, estimate->pixels.get(), context,
-                            &estimate->iterate);
+                            &estimate->iterate)
+      .status();
 }
 
-// The MAP estimate under the Gaussian process, whose parameters are as good as
-// whitened and take a tenth of the time of a network's.
-Status EstimateProcessMap(const SolveSetup& setup, MapSize size,
-                          JointMethod method, double share,
-                          SolveContext* context, Estimate* estimate) {
+LogMap LogMapOf(const Iterate& iterate) {
+  LogMap log_map;
+  iterate.light.map->Forward(iterate.state.light.data(), &log_map);
+  return log_map;
+}
+
+// A map of the Gaussian process, constant at the level that the lobes ask for.
+void BeginProcessMap(const SolveSetup& setup, MapSize size,
+                     Estimate* estimate) {
   const LightPosterior& posterior = estimate->reflectance.light;
   BeginLight(MakeLightModel(
                  MakeProcessIllumination(
@@ -109,23 +124,66 @@ Status EstimateProcessMap(const SolveSetup& setup, MapSize size,
                  false),
              setup, estimate);
   SetReference(setup, estimate);
-  Report("constant map", setup, *estimate, context);
-  if (posterior.mode.num_texels() > 0) {
-    // It takes far less than an iteration, and where no time is left for one
-    // this is the map that the search has found.
-    LogMapFitOptions o;
-    o.should_stop = [context] { return context->Interrupted(); };
-    FitLogMap(posterior.mode.Resized(size), o,
-              estimate->iterate.light.map.get(),
-              &estimate->iterate.state.light);
-  }
-  return IterateMap(setup, method, share, context, estimate);
 }
 
-LogMap LogMapOf(const Iterate& iterate) {
-  LogMap log_map;
-  iterate.light.map->Forward(iterate.state.light.data(), &log_map);
-  return log_map;
+// It takes far less than an iteration, and where no time is left for one this
+// is the map at hand.
+void FitMap(const LogMap& log_map, SolveContext* context, Estimate* estimate) {
+  LogMapFitOptions o;
+  o.should_stop = [context] { return context->Interrupted(); };
+  FitLogMap(log_map, o, estimate->iterate.light.map.get(),
+            &estimate->iterate.state.light);
+}
+
+// The estimate's lobes become others, under its map of the Gaussian process.
+void TakeRevision(RevisedReflectance revised, const SolveSetup& setup,
+                  SolveContext* context, Estimate* estimate) {
+  estimate->reflectance.lobes = revised.lobes;
+  estimate->iterate.state.lobes = std::move(revised.lobes);
+  estimate->iterate.scale = setup.initial_scale;
+  BeginProcessMap(setup, revised.log_map.size(), estimate);
+  FitMap(revised.log_map, context, estimate);
+}
+
+// Iterations of a map and revisions of the reflectance, up to the last of
+// these. options: what is left to do then.
+Status ReviseAlong(const ReviseReflectance& revise, const SolveSetup& setup,
+                   SolveContext* context, Estimate* estimate,
+                   OuterIterationOptions* options) {
+  OuterIterationOptions some = *options;
+  for (some.last = kBeforeRevision;; some.last += kBeforeRevision) {
+    const StatusOr<bool> unsettled = RunOuterIterations(
+        some, setup, estimate->pixels.get(), context, &estimate->iterate);
+    if (!unsettled.ok()) return unsettled.status();
+    StatusOr<std::optional<RevisedReflectance>> revised = revise(*estimate);
+    if (!revised.ok()) return revised.status();
+    some.first = some.last + 1;
+    options->first = some.first;
+    // Where the map is settled and the reflectance stays, nothing is.
+    if (!revised->has_value()) {
+      if (!*unsettled) options->last = 0;
+      return OkStatus();
+    }
+    TakeRevision(**std::move(revised), setup, context, estimate);
+  }
+}
+
+// The MAP estimate under the Gaussian process, whose parameters are as good as
+// whitened and take a tenth of the time of a network's.
+Status EstimateProcessMap(const SolveSetup& setup, MapSize size,
+                          OuterIterationOptions options,
+                          const ReviseReflectance& revise,
+                          SolveContext* context, Estimate* estimate) {
+  BeginProcessMap(setup, size, estimate);
+  Report("constant map", setup, *estimate, context);
+  const LogMap& mode = estimate->reflectance.light.mode;
+  if (mode.num_texels() > 0) FitMap(mode.Resized(size), context, estimate);
+  // Adam's few first steps make no map.
+  if (revise && options.method != JointMethod::kAdam) {
+    IBRDF_RETURN_IF_ERROR(
+        ReviseAlong(revise, setup, context, estimate, &options));
+  }
+  return IterateMap(options, setup, context, estimate);
 }
 
 // The map as the network's output, fitted first to the MAP estimate at hand,
@@ -157,7 +215,7 @@ Status EstimateNetworkMap(const SolveSetup& setup, SolveContext* context,
   options.most_misfit =
       log_map.size() == size ? kWorseMisfit * process_misfit : 0.0;
   IBRDF_RETURN_IF_ERROR(
-      RunOuterIterations(options, setup, pixels, context, iterate));
+      RunOuterIterations(options, setup, pixels, context, iterate).status());
   const double misfit =
       Evaluate("network", setup, *context, *iterate, pixels).misfit;
   if (options.most_misfit > 0.0 && misfit > options.most_misfit) {
@@ -180,16 +238,18 @@ MapSize FirstSize(MapSize size) {
 }
 
 Status EstimateByProcessAndNetwork(const SolveSetup& setup,
+                                   const ReviseReflectance& revise,
                                    SolveContext* context, Estimate* estimate) {
   // solver.method is the network's.
   const JointMethod method = JointMethod::kGaussNewton;
   const MapSize size = FirstSize(setup.map_size());
   const std::function<bool()> cut_short = context->StopAfter(kProcessShare);
-  IBRDF_RETURN_IF_ERROR(EstimateProcessMap(setup, size, method, kProcessShare,
-                                           context, estimate));
+  IBRDF_RETURN_IF_ERROR(EstimateProcessMap(setup, size,
+                                           MapOptions(method, kProcessShare),
+                                           revise, context, estimate));
   if (cut_short() && size == setup.map_size()) {
     // What time is left serves the MAP estimate better than a network.
-    return IterateMap(setup, method, kMapShare, context, estimate);
+    return IterateMap(MapOptions(method, kMapShare), setup, context, estimate);
   }
   return EstimateNetworkMap(setup, context, estimate);
 }
@@ -202,14 +262,15 @@ Status EstimateDirectly(const SolveSetup& setup, JointMethod method,
              setup, estimate);
   SetReference(setup, estimate);
   Report("constant map", setup, *estimate, context);
-  return IterateMap(setup, method, kMapShare, context, estimate);
+  return IterateMap(MapOptions(method, kMapShare), setup, context, estimate);
 }
 
 }  // namespace
 
 StatusOr<Estimate> EstimateLight(const SolveSetup& setup,
                                  ReflectanceEstimate reflectance,
-                                 SolveContext* context) {
+                                 SolveContext* context,
+                                 const ReviseReflectance& revise) {
   const InverseProblem& problem = *setup.problem;
   const JointMethod method = MethodFor(problem.solver, JointBlocks::kLight);
   Estimate estimate = Begin(setup, std::move(reflectance));
@@ -217,10 +278,11 @@ StatusOr<Estimate> EstimateLight(const SolveSetup& setup,
   if (IsFree(setup) || problem.solver.max_iterations == 0) {
     status = EstimateDirectly(setup, method, context, &estimate);
   } else if (problem.illumination_prior == IlluminationPrior::kProcess) {
-    status = EstimateProcessMap(setup, setup.map_size(), method, kMapShare,
-                                context, &estimate);
+    status = EstimateProcessMap(setup, setup.map_size(),
+                                MapOptions(method, kMapShare), revise, context,
+                                &estimate);
   } else {
-    status = EstimateByProcessAndNetwork(setup, context, &estimate);
+    status = EstimateByProcessAndNetwork(setup, revise, context, &estimate);
   }
   if (!status.ok()) return status;
   return estimate;

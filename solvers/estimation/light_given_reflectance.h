@@ -1,20 +1,42 @@
 // The light given the reflectance: the map of highest posterior probability.
 #pragma once
+#include <functional>
+#include <optional>
+#include <vector>
+
 #include "ibrdf/base/status.h"
+#include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/estimation/posterior.h"
 #include "ibrdf/solvers/estimation/solve_context.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 
 namespace ibrdf {
 
+// A reflectance that takes an estimate's place.
+struct RevisedReflectance {
+  std::vector<double> lobes;  // as LobeModel
+  // The estimate's map at the level and hue that go with the lobes.
+  LogMap log_map;
+};
+
+// What to make of the reflectance in view of a map that is not yet finished;
+// empty: it stays.
+using ReviseReflectance =
+    std::function<StatusOr<std::optional<RevisedReflectance>>(const Estimate&)>;
+
 // The map by the prior that the problem asks for:
 //   process  MAP estimate under the Gaussian process
 //   unet     from there, as the network's output, which is kept where it
 //            explains the image as well (Ulyanov et al. 2018)
 //   none     free texels
+// revise: where not null, the MAP estimate asks for another reflectance after
+// its first few iterations, and again after a few more until there is none, and
+// goes on under it. The light of estimate.reflectance remains the one it came
+// with.
 StatusOr<Estimate> EstimateLight(const SolveSetup& setup,
                                  ReflectanceEstimate reflectance,
-                                 SolveContext* context);
+                                 SolveContext* context,
+                                 const ReviseReflectance& revise = nullptr);
 
 // The reflectance under a constant map that gives the image its level: what
 // there is to say of an image that no search explains.

@@ -62,11 +62,12 @@ bool Settled(const SolveSetup& setup, double scale, const TraceEntry& before,
                                         std::max(after.cost, 1.0);
 }
 
-Status RunOuterIterations(const OuterIterationOptions& options,
-                          const SolveSetup& setup, ObservedPixels* pixels,
-                          SolveContext* context, Iterate* iterate) {
+StatusOr<bool> RunOuterIterations(const OuterIterationOptions& options,
+                                  const SolveSetup& setup,
+                                  ObservedPixels* pixels, SolveContext* context,
+                                  Iterate* iterate) {
   const std::function<bool()> stop = context->StopAfter(options.share);
-  if (stop() || !context->IterationsLeft()) return OkStatus();
+  if (stop() || !context->IterationsLeft()) return false;
   LightModel& light = iterate->light;
   const JointMethodOptions inner =
       InnerOptions(options, setup, light.has_process_prior, stop);
@@ -74,7 +75,8 @@ Status RunOuterIterations(const OuterIterationOptions& options,
   const bool whole_schedule = options.method == JointMethod::kAdam;
   TraceEntry before =
       Evaluate(options.stage, setup, *context, *iterate, pixels);
-  for (int k = 1; context->IterationsLeft() && !stop(); ++k) {
+  for (int k = options.first; context->IterationsLeft() && !stop(); ++k) {
+    if (k > options.last) return true;
     iterate->scale = NextScale(setup, iterate->scale, before.misfit);
     const PosteriorObjective on =
         ObjectiveOn(pixels, setup, light, light.priors, iterate->scale);
@@ -104,7 +106,7 @@ Status RunOuterIterations(const OuterIterationOptions& options,
     if (OutOfReach(options.most_misfit, *context, before, after)) break;
     before = after;
   }
-  return OkStatus();
+  return false;
 }
 
 }  // namespace ibrdf

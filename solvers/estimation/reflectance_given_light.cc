@@ -72,10 +72,11 @@ class Search {
   std::vector<Candidate> FirstCandidates(
       const std::vector<RankedMaterial>& ranked);
   // Outer iterations of all in turn, after each of which the worst is given up.
-  Candidate BestOf(std::vector<Candidate> candidates);
-  // Keeps the best so many, at least one, best first: compared at one scale,
+  // The one that is left comes first; the costs are at its scale.
+  std::vector<Candidate> Finalists(std::vector<Candidate> candidates);
+  // Sorts the first so many, at least one, best first: compared at one scale,
   // the least of theirs, which is the likelihood's then.
-  void KeepBest(size_t count, std::vector<Candidate>* candidates);
+  void SortBest(size_t count, std::vector<Candidate>* candidates);
   // Steps at a scale that may fall, unless they do not lower the cost.
   void OuterIteration(Candidate* candidate);
   // At most so many steps of the lobes and an unknown ambient term, from a
@@ -105,9 +106,15 @@ Estimate Search::Run(const Estimate* earlier) {
                                        earlier->iterate.state,
                                        earlier->iterate.ambient));
   }
-  const Candidate best = context_->IterationsLeft()
-                             ? BestOf(std::move(candidates))
-                             : candidates.front();
+  if (context_->IterationsLeft()) candidates = Finalists(std::move(candidates));
+  for (const Candidate& c : candidates) {
+    MaterialCandidate optimum;
+    optimum.name = c.name;
+    optimum.cost = c.cost;
+    optimum.parameters = c.state.lobes;
+    estimate.reflectance.candidates.push_back(std::move(optimum));
+  }
+  const Candidate& best = candidates.front();
   estimate.reflectance.initial_guess = best.name;
   estimate.reflectance.lobes = best.state.lobes;
   estimate.iterate.state = best.state;
@@ -167,34 +174,43 @@ TraceEntry Search::Entry(const std::string& stage,
                    scale_, candidate.state, cost);
 }
 
-Candidate Search::BestOf(std::vector<Candidate> candidates) {
-  KeepBest(kFinalists, &candidates);
-  const auto going = [](const Candidate& c) { return !c.settled; };
-  while (context_->IterationsLeft() &&
-         std::any_of(candidates.begin(), candidates.end(), going)) {
-    for (Candidate& c : candidates) {
-      if (context_->Interrupted() || context_->Remaining() < 0.0) {
-        KeepBest(1, &candidates);
-        return candidates.front();
-      }
-      if (!c.settled) OuterIteration(&c);
+std::vector<Candidate> Search::Finalists(std::vector<Candidate> candidates) {
+  SortBest(candidates.size(), &candidates);
+  candidates.resize(std::min<size_t>(kFinalists, candidates.size()));
+  size_t going = candidates.size();
+  const auto unsettled = [&] {
+    return std::any_of(candidates.begin(), candidates.begin() + going,
+                       [](const Candidate& c) { return !c.settled; });
+  };
+  const auto cut_short = [this] {
+    return context_->Interrupted() || context_->Remaining() < 0.0;
+  };
+  while (context_->IterationsLeft() && unsettled() && !cut_short()) {
+    for (size_t k = 0; k < going && !cut_short(); ++k) {
+      if (!candidates[k].settled) OuterIteration(&candidates[k]);
     }
+    if (cut_short()) break;
     context_->CountIteration();
-    KeepBest(candidates.size() - 1, &candidates);
+    SortBest(going, &candidates);
+    going = std::max<size_t>(going - 1, 1);
   }
-  KeepBest(1, &candidates);
-  return candidates.front();
+  SortBest(going, &candidates);
+  for (Candidate& c : candidates) c.cost = Entry("", c).cost;
+  return candidates;
 }
 
-void Search::KeepBest(size_t count, std::vector<Candidate>* candidates) {
+void Search::SortBest(size_t count, std::vector<Candidate>* candidates) {
   // At the first, tolerant scale candidates differ by a few nats that differ by
   // hundreds at the image's own.
-  for (const Candidate& c : *candidates) scale_ = std::min(scale_, c.scale);
-  for (Candidate& c : *candidates) c.cost = Entry("", c).cost;
+  const auto end = candidates->begin() + std::max<size_t>(count, 1);
+  for (auto c = candidates->begin(); c != end; ++c) {
+    scale_ = std::min(scale_, c->scale);
+  }
+  for (auto c = candidates->begin(); c != end; ++c)
+    c->cost = Entry("", *c).cost;
   std::stable_sort(
-      candidates->begin(), candidates->end(),
+      candidates->begin(), end,
       [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
-  candidates->resize(std::min(std::max<size_t>(count, 1), candidates->size()));
 }
 
 void Search::OuterIteration(Candidate* candidate) {
@@ -283,8 +299,8 @@ bool HasFalsePeak(const Estimate& estimate, const Observation& highlights,
 
 }  // namespace
 
-Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
-                                       SolveContext* context) {
+Estimate EstimateLobesGivenLight(const SolveSetup& setup,
+                                 SolveContext* context) {
   // Pixels as they are: under a known directional light the mean of a bin is
   // not the radiance of its mean normal.
   const Observation bins = OnePixelPerBin(setup.pixels, kBins);
@@ -298,6 +314,13 @@ Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
       HasFalsePeak(estimate, highlights, setup)) {
     estimate = Search(setup, both, context).Run(&estimate);
   }
+  return estimate;
+}
+
+Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
+                                       SolveContext* context) {
+  Estimate estimate = EstimateLobesGivenLight(setup, context);
+  estimate.reflectance.candidates.clear();
   SetCovariance(setup, *context, &estimate);
   return estimate;
 }

@@ -12,4 +12,9 @@ namespace ibrdf {
 Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
                                        SolveContext* context);
 
+// The same without its covariance; reflectance.candidates are those that took
+// more than their first steps, the best one first, their costs at its scale b.
+Estimate EstimateLobesGivenLight(const SolveSetup& setup,
+                                 SolveContext* context);
+
 }  // namespace ibrdf

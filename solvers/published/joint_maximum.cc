@@ -42,8 +42,10 @@ StatusOr<Estimate> EstimateJointMaximum(const SolveSetup& setup,
   options.method = MethodFor(setup.problem->solver, JointBlocks::kBoth);
   options.blocks = JointBlocks::kBoth;
   options.share = kShare;
-  IBRDF_RETURN_IF_ERROR(RunOuterIterations(
-      options, setup, estimate.pixels.get(), context, &estimate.iterate));
+  IBRDF_RETURN_IF_ERROR(RunOuterIterations(options, setup,
+                                           estimate.pixels.get(), context,
+                                           &estimate.iterate)
+                            .status());
   return estimate;
 }
 

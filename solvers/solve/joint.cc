@@ -77,11 +77,10 @@ StatusOr<Solution> SolveJoint(const SolveSetup& setup, SolveContext* context) {
   if (!searches.ok()) return searches.status();
   OptimumAverage average = AverageOptima(*searches);
   const SolveSetup& found = *(*searches)[average.model].setup;
-  StatusOr<Estimate> estimate =
-      EstimateLight(found, std::move(average.estimate), context);
-  if (!estimate.ok()) return estimate.status();
-  estimate = TakeJointTurns(found, *(*searches)[average.model].gauge,
-                            *std::move(estimate), context);
+  JointTurns turns((*searches)[average.model], context);
+  StatusOr<Estimate> estimate = EstimateLight(
+      found, std::move(average.estimate), context,
+      [&turns](const Estimate& so_far) { return turns.Take(so_far); });
   if (!estimate.ok()) return estimate.status();
   Solution solution = Summarise(found, *std::move(estimate), context);
   NameModels(*searches, average, &solution);

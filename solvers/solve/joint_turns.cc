@@ -8,29 +8,29 @@
 #include <vector>
 
 #include "ibrdf/light/log_map.h"
-#include "ibrdf/solvers/estimation/light_given_reflectance.h"
+#include "ibrdf/solvers/estimation/optimum_average.h"
 #include "ibrdf/solvers/estimation/reflectance_given_light.h"
-#include "ibrdf/solvers/solve/turns.h"
 
 namespace ibrdf {
 namespace {
 
-// A turn is kept that lowers the misfit by this share.
-constexpr double kLeastGain = 0.02;
 // Residuals of neighbouring pixels that correlate less are noise: no turn would
 // explain them.
-constexpr double kStructured = 0.3;
+constexpr double kStructured = 0.35;
 constexpr int kMostPixels = 2000;  // that correlation is taken of
-// Of the mean: beyond it a residual counts as that.
+// As a multiple of the mean: beyond it a residual counts as that.
 constexpr double kLargestResidual = 4.0;
 
-std::vector<float> MapOf(const Estimate& estimate, MapSize* size) {
+LogMap LogMapOf(const Estimate& estimate) {
   LogMap log_map;
   estimate.iterate.light.map->Forward(estimate.iterate.state.light.data(),
                                       &log_map);
-  *size = log_map.size();
-  std::vector<float> map;
-  log_map.Exp(&map);
+  return log_map;
+}
+
+Image MapOf(const LogMap& log_map) {
+  Image map(log_map.size().width, log_map.size().height);
+  log_map.Exp(&map.rgb);
   return map;
 }
 
@@ -55,14 +55,13 @@ std::vector<double> ResidualsOf(const Estimate& estimate,
   for (const size_t i : indices) {
     some.points.push_back(setup.pixels.points[i]);
   }
-  MapSize size;
-  const std::vector<float> map = MapOf(estimate, &size);
+  const LogMap log_map = LogMapOf(estimate);
   std::vector<double> L_o(3 * indices.size());
   const std::vector<BrdfGrid> grids =
       setup.GridsOf(estimate.iterate.state.lobes);
   ObservedPixels(setup, std::move(some))
-      .TransportFrom(size)
-      .Render(ByMaterial(grids), map.data(), L_o.data());
+      .TransportFrom(log_map.size())
+      .Render(ByMaterial(grids), MapOf(log_map).rgb.data(), L_o.data());
   for (size_t k = 0; k < L_o.size(); ++k) {
     const RadianceInterval seen =
         setup.pixels.observed.Interval(3 * indices[k / 3] + k % 3);
@@ -70,41 +69,6 @@ std::vector<double> ResidualsOf(const Estimate& estimate,
     L_o[k] = std::log(std::clamp(rendered, seen.low, seen.high) / rendered);
   }
   return L_o;
-}
-
-InverseProblem UnderLightOf(const Estimate& estimate,
-                            const InverseProblem& problem) {
-  MapSize size;
-  std::vector<float> map = MapOf(estimate, &size);
-  InverseProblem out = problem;
-  out.known_map = Image(size.width, size.height);
-  out.known_map->rgb = std::move(map);
-  return out;
-}
-
-// The reflectance under the estimate's map; its light begins where the search
-// left it.
-StatusOr<ReflectanceEstimate> ReflectanceAnew(const SolveSetup& setup,
-                                              const LevelGauge& gauge,
-                                              const Estimate& estimate,
-                                              SolveContext* context) {
-  const InverseProblem problem = UnderLightOf(estimate, *setup.problem);
-  const StatusOr<SolveSetup> known = SetUp(problem);
-  if (!known.ok()) return known.status();
-  ReflectanceEstimate out = estimate.reflectance;
-  out.lobes = EstimateReflectanceGivenLight(*known, context).reflectance.lobes;
-  const auto level = static_cast<float>(gauge.Fix(out.lobes.data()));
-  for (size_t k = 0; k < out.light.mode.values().size(); ++k) {
-    out.light.mode.data()[k] -= level;
-  }
-  return out;
-}
-
-double MisfitOf(const Estimate& estimate, const SolveSetup& setup,
-                const SolveContext& context) {
-  return Evaluate("turn", setup, context, estimate.iterate,
-                  estimate.pixels.get())
-      .misfit;
 }
 
 }  // namespace
@@ -131,32 +95,46 @@ double ResidualCorrelation(const SolveSetup& setup, const Estimate& estimate) {
   return squares > 0.0 ? products / squares : 0.0;
 }
 
-StatusOr<Estimate> TakeJointTurns(const SolveSetup& setup,
-                                  const LevelGauge& gauge, Estimate estimate,
-                                  SolveContext* context) {
-  const int most = setup.problem->solver.turns;
-  if (most == 0) return estimate;
-  const double correlation = ResidualCorrelation(setup, estimate);
-  VLOG(1) << "residuals of neighbouring pixels correlate by " << correlation;
-  if (correlation < kStructured) return estimate;
-  Turns turns(1 + most, context);
-  double misfit = MisfitOf(estimate, setup, *context);
-  while (context->IterationsLeft() && !context->Interrupted() &&
-         turns.Another()) {
-    StatusOr<ReflectanceEstimate> reflectance =
-        ReflectanceAnew(setup, gauge, estimate, context);
-    if (!reflectance.ok()) return reflectance.status();
-    StatusOr<Estimate> next =
-        EstimateLight(setup, *std::move(reflectance), context);
-    if (!next.ok()) return next.status();
-    const double now = MisfitOf(*next, setup, *context);
-    VLOG(1) << "a turn of reflectance and light: misfit " << misfit << " -> "
-            << now;
-    if (!(now < (1.0 - kLeastGain) * misfit)) break;
-    estimate = *std::move(next);
-    misfit = now;
+JointTurns::JointTurns(const ModelOptima& found, SolveContext* context)
+    : setup_(*found.setup),
+      gauge_(found.gauge),
+      context_(context),
+      turns_(1 + setup_.problem->solver.turns, context) {}
+
+StatusOr<std::optional<RevisedReflectance>> JointTurns::Take(
+    const Estimate& estimate) {
+  std::optional<RevisedReflectance> revised;
+  if (!Worthwhile(estimate)) return revised;
+  InverseProblem problem = *setup_.problem;
+  const LogMap log_map = LogMapOf(estimate);
+  problem.known_map = MapOf(log_map);
+  const StatusOr<SolveSetup> known = SetUp(problem);
+  if (!known.ok()) return known.status();
+  // From the materials, each time: from the lobes at hand, to which the map has
+  // been fitted, steps are short.
+  ReflectanceEstimate anew =
+      EstimateLobesGivenLight(*known, context_).reflectance;
+  // What is cut short may be worse than what was.
+  if (context_->Interrupted() || context_->Remaining() < 0.0) return revised;
+  // The map takes the level and hue that the mean loses.
+  anew.light.mode = log_map;
+  anew = AverageOptima({{&*known, gauge_, std::move(anew)}}).estimate;
+  revised = {std::move(anew.lobes), std::move(anew.light.mode)};
+  const auto level = static_cast<float>(gauge_->Fix(revised->lobes.data()));
+  for (size_t k = 0; k < revised->log_map.values().size(); ++k) {
+    revised->log_map.data()[k] -= level;
   }
-  return estimate;
+  return revised;
+}
+
+bool JointTurns::Worthwhile(const Estimate& estimate) {
+  if (!context_->IterationsLeft() || context_->Interrupted() ||
+      !turns_.Another()) {
+    return false;
+  }
+  const double correlation = ResidualCorrelation(setup_, estimate);
+  VLOG(1) << "residuals of neighbouring pixels correlate by " << correlation;
+  return correlation >= kStructured;
 }
 
 }  // namespace ibrdf

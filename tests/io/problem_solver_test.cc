@@ -27,11 +27,11 @@ TEST_F(ProblemFile, SearchesAreOfJointProblems) {
 }
 
 TEST_F(ProblemFile, TurnsAreOfJointProblems) {
-  EXPECT_EQ(0, Read(kLeast)->solver.turns);
-  const StatusOr<Problem> p = Read(kLeast, {"solver.turns=2"});
+  EXPECT_EQ(2, Read(kLeast)->solver.turns);
+  const StatusOr<Problem> p = Read(kLeast, {"solver.turns=0"});
   ASSERT_TRUE(p.ok()) << p.status().message();
-  EXPECT_EQ(2, p->solver.turns);
-  EXPECT_EQ(2, ProblemToJson(*p)["solver"]["turns"]);
+  EXPECT_EQ(0, p->solver.turns);
+  EXPECT_EQ(0, ProblemToJson(*p)["solver"]["turns"]);
   for (const std::string turns : {"-1", "21", "many", "1.5"}) {
     const Status s = Read(kLeast, {"solver.turns=" + turns}).status();
     EXPECT_EQ(StatusCode::kInvalidInput, s.code()) << turns;
