@@ -107,12 +107,6 @@ Status IterateMap(OuterIterationOptions options, const SolveSetup& setup,
       .status();
 }
 
-LogMap LogMapOf(const Iterate& iterate) {
-  LogMap log_map;
-  iterate.light.map->Forward(iterate.state.light.data(), &log_map);
-  return log_map;
-}
-
 // A map of the Gaussian process, constant at the level that the lobes ask for.
 void BeginProcessMap(const SolveSetup& setup, MapSize size,
                      Estimate* estimate) {
@@ -146,10 +140,11 @@ void TakeRevision(RevisedReflectance revised, const SolveSetup& setup,
 }
 
 // Iterations of a map and revisions of the reflectance, up to the last of
-// these. options: what is left to do then.
-Status ReviseAlong(const ReviseReflectance& revise, const SolveSetup& setup,
-                   SolveContext* context, Estimate* estimate,
-                   OuterIterationOptions* options) {
+// these. Returns whether more iterations would gain more; options->first is the
+// number of the next one.
+StatusOr<bool> ReviseAlong(const ReviseReflectance& revise,
+                           const SolveSetup& setup, SolveContext* context,
+                           Estimate* estimate, OuterIterationOptions* options) {
   OuterIterationOptions some = *options;
   for (some.last = kBeforeRevision;; some.last += kBeforeRevision) {
     const StatusOr<bool> unsettled = RunOuterIterations(
@@ -159,11 +154,7 @@ Status ReviseAlong(const ReviseReflectance& revise, const SolveSetup& setup,
     if (!revised.ok()) return revised.status();
     some.first = some.last + 1;
     options->first = some.first;
-    // Where the map is settled and the reflectance stays, nothing is.
-    if (!revised->has_value()) {
-      if (!*unsettled) options->last = 0;
-      return OkStatus();
-    }
+    if (!revised->has_value()) return unsettled;
     TakeRevision(**std::move(revised), setup, context, estimate);
   }
 }
@@ -180,8 +171,9 @@ Status EstimateProcessMap(const SolveSetup& setup, MapSize size,
   if (mode.num_texels() > 0) FitMap(mode.Resized(size), context, estimate);
   // Adam's few first steps make no map.
   if (revise && options.method != JointMethod::kAdam) {
-    IBRDF_RETURN_IF_ERROR(
-        ReviseAlong(revise, setup, context, estimate, &options));
+    const StatusOr<bool> unsettled =
+        ReviseAlong(revise, setup, context, estimate, &options);
+    if (!unsettled.ok() || !*unsettled) return unsettled.status();
   }
   return IterateMap(options, setup, context, estimate);
 }

@@ -29,10 +29,10 @@ using ReviseReflectance =
 //   unet     from there, as the network's output, which is kept where it
 //            explains the image as well (Ulyanov et al. 2018)
 //   none     free texels
-// revise: where not null, the MAP estimate asks for another reflectance after
-// its first few iterations, and again after a few more until there is none, and
-// goes on under it. The light of estimate.reflectance remains the one it came
-// with.
+// revise, of a reflectance that is unknown: where not null, the MAP estimate
+// asks for another reflectance after its first few iterations, and again after
+// a few more until there is none, and goes on under it. The light of
+// estimate.reflectance remains the one it came with.
 StatusOr<Estimate> EstimateLight(const SolveSetup& setup,
                                  ReflectanceEstimate reflectance,
                                  SolveContext* context,

@@ -28,6 +28,12 @@ void CentreLight(Estimate* estimate) {
 
 }  // namespace
 
+LogMap LogMapOf(const Iterate& iterate) {
+  LogMap log_map;
+  iterate.light.map->Forward(iterate.state.light.data(), &log_map);
+  return log_map;
+}
+
 MapSize SizeOf(const LightModel& light, const SolveSetup& setup) {
   if (light.map == nullptr) return setup.map_size();
   return light.map->size();

@@ -91,6 +91,9 @@ struct Estimate {
   std::unique_ptr<ObservedPixels> pixels;  // that the iterate was found from
 };
 
+// The map that the parameters of an iterate's unknown light make.
+LogMap LogMapOf(const Iterate& iterate);
+
 // The map of the iterate's model, or the problem's where the light is known.
 MapSize SizeOf(const LightModel& light, const SolveSetup& setup);
 

@@ -125,11 +125,9 @@ void SettleScale(const SolveSetup& setup, Iterate* iterate) {
   if (!setup.lobes_unknown() || !setup.light_unknown()) return;
   IlluminationModel* const map = iterate->light.map.get();
   JointState* const state = &iterate->state;
-  LogMap log_map;
-  map->Forward(state->light.data(), &log_map);
   const std::vector<double> d =
       GaugeShift(*setup.lobes, setup.lobe_prior, state->lobes,
-                 log_map.Mean().data(), kLightChromaStd);
+                 LogMapOf(*iterate).Mean().data(), kLightChromaStd);
   setup.lobes->Mixture(state->lobes.data())
       .ShiftColours(Eigen::Array3d(d[0], d[1], d[2]));
   const double back[3] = {-d[0], -d[1], -d[2]};

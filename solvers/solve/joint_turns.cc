@@ -21,13 +21,6 @@ constexpr int kMostPixels = 2000;  // that correlation is taken of
 // As a multiple of the mean: beyond it a residual counts as that.
 constexpr double kLargestResidual = 4.0;
 
-LogMap LogMapOf(const Estimate& estimate) {
-  LogMap log_map;
-  estimate.iterate.light.map->Forward(estimate.iterate.state.light.data(),
-                                      &log_map);
-  return log_map;
-}
-
 Image MapOf(const LogMap& log_map) {
   Image map(log_map.size().width, log_map.size().height);
   log_map.Exp(&map.rgb);
@@ -55,7 +48,7 @@ std::vector<double> ResidualsOf(const Estimate& estimate,
   for (const size_t i : indices) {
     some.points.push_back(setup.pixels.points[i]);
   }
-  const LogMap log_map = LogMapOf(estimate);
+  const LogMap log_map = LogMapOf(estimate.iterate);
   std::vector<double> L_o(3 * indices.size());
   const std::vector<BrdfGrid> grids =
       setup.GridsOf(estimate.iterate.state.lobes);
@@ -106,7 +99,7 @@ StatusOr<std::optional<RevisedReflectance>> JointTurns::Take(
   std::optional<RevisedReflectance> revised;
   if (!Worthwhile(estimate)) return revised;
   InverseProblem problem = *setup_.problem;
-  const LogMap log_map = LogMapOf(estimate);
+  const LogMap log_map = LogMapOf(estimate.iterate);
   problem.known_map = MapOf(log_map);
   const StatusOr<SolveSetup> known = SetUp(problem);
   if (!known.ok()) return known.status();

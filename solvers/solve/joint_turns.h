@@ -39,7 +39,8 @@ class JointTurns {
   Turns turns_;
 };
 
-// Of the log residuals of pixels beside each other, in [-1, 1]: 0 of noise.
+// How the log residuals of pixels beside each other correlate, in [-1, 1]:
+// noise by 0.
 double ResidualCorrelation(const SolveSetup& setup, const Estimate& estimate);
 
 }  // namespace ibrdf

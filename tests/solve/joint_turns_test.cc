@@ -73,7 +73,7 @@ class JointTurnsTest : public ::testing::Test {
     const auto& parameters = setup_->materials.materials.front().parameters;
     return {parameters.data(), parameters.data() + parameters.size()};
   }
-  // Of radiance to the image's, by channel.
+  // The ratio is of radiance to the image's, by channel.
   Eigen::Array3d MeanLogRatio(const std::vector<double>& lobes,
                               const LogMap& log_map) const {
     std::vector<float> map;
@@ -167,8 +167,7 @@ TEST_F(JointTurnsTest, TheMapTakesTheLevelThatTheLobesLose) {
         RevisedReflectance darker;
         darker.lobes = so_far.iterate.state.lobes;
         for (const size_t k : {4, 5, 6, 11, 12, 13}) darker.lobes[k] -= 1.5;
-        so_far.iterate.light.map->Forward(so_far.iterate.state.light.data(),
-                                          &darker.log_map);
+        darker.log_map = LogMapOf(so_far.iterate);
         for (size_t k = 0; k < darker.log_map.values().size(); ++k) {
           darker.log_map.data()[k] += 1.5f;
         }
