@@ -26,7 +26,8 @@ std::vector<std::string> ResultPaths(const Problem& problem,
 // view's are in views/NAME. The .exr maps are in the problem's output frame,
 // those of pictures in the frame camera.
 // result.json and report.html of an earlier run go first: where one is, all
-// else is of its run.
+// else is of its run but the files of the look (write_check.h), which are of
+// the run that was begun last.
 Status WriteResults(const SolvedProblem& solved, const std::string& folder);
 
 }  // namespace ibrdf

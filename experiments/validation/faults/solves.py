@@ -38,6 +38,8 @@ KINDS = {
 }
 # Their bytes hold seconds.
 TIMED = ("result.json", "report.html", "overview.png")
+# Of the look before a solve: they are there before its results, so that an ended run's may stand beside another's look.
+LOOK = ("check.json", "check.png", "check_light.png")
 SOLVED = (0, 3)
 FIRST_FILE = 0.03  # seconds that the table of 35 MB takes
 # A line of progress: after the first one the solve iterates, until that of the stage "end".
@@ -94,7 +96,8 @@ class Solves(Study):
         return self.random.uniform(0, 1) * self.seconds[kind]
 
     def mixture(self, out, where):
-        """Where there is a result.json, all else is of the run that it names; returns that run's kind."""
+        """Where there is a result.json, all else but the look is of the run that it names; returns that run's kind."""
+        self.expect_look(out, where, self.args.kinds)
         if not (out / "result.json").exists():
             return None
         result = json.loads((out / "result.json").read_text())
@@ -106,7 +109,7 @@ class Solves(Study):
             for key in ("status", "cost", "posterior", "likelihood"):
                 if result[key] != expected[key]:
                     self.fail(f"{where}: {key} of result.json is not the undisturbed run's")
-            here, there = ({p.name for p in folder.iterdir()} for folder in (out, whole))
+            here, there = ({p.name for p in folder.iterdir()} - set(LOOK) for folder in (out, whole))
             other = {n for n in here ^ there if not n.startswith(".tmp-")} - {"report.html"}
             if other:
                 self.fail(f"{where}: {sorted(other)} and the result.json of {kind}")
@@ -117,14 +120,24 @@ class Solves(Study):
         self.fail(f"{where}: result.json is of no run")
         return None
 
+    def expect_look(self, out, where, kinds):
+        """Each file of the look before a solve is that of one of `kinds`."""
+        for path in (out / name for name in LOOK):
+            looks = [self.whole(kind) / path.name for kind in kinds]
+            if path.exists() and path.read_bytes() not in [look.read_bytes() for look in looks if look.exists()]:
+                self.fail(f"{where}: {path.name} is of no run of {', '.join(kinds)}")
+
     def finite(self, out, where):
         for path in out.iterdir():
             if path.suffix in (".exr", ".binary") and not checks.is_finite(path):
                 self.fail(f"{where}: {path.name} is not finite")
 
     def kills(self):
-        """At any moment; problems of all kinds by turns into the same folder, where their files must not mix."""
+        """At any moment; problems of all kinds by turns into the same folder, where their files must not mix.
+
+        The folder holds results from the start: of the kind whose turn comes last."""
         out = self.folder / "killed"
+        self.run_again(out, self.args.kinds[-1:])
         moments, ends, results, left = Moments(), collections.Counter(), 0, 0
         for k in range(self.args.kills):
             kind = self.kind(k)
@@ -149,6 +162,7 @@ class Solves(Study):
                 self.fail(f"{kind} after the kills: exit {done.returncode}: {done.stderr!r}")
             if self.mixture(out, f"{kind} after the kills") != kind:
                 self.fail(f"{kind} after the kills: no result.json of it")
+            self.expect_look(out, f"{kind} after the kills", [kind])
         # A stray goes when its file is written again.
         strays = self.halves(out, "after the kills")
         if strays:
