@@ -27,8 +27,9 @@ Keys UnknownReflectanceKeys() {
                   "evidence, where light and one material are unknown."},
                  {"default", "Trained on MERL: plastic, paint, metal, fabric."},
                  {"broad",
-                  "Trained on two databases, with a Lambertian lobe: nearer to "
-                  "paper and felt, no nearer to plastic and metal."}})
+                  "Trained on two databases and on analytic materials, with a "
+                  "Lambertian lobe: nearer to paper, felt and what renderers "
+                  "make, no nearer to plastic and metal."}})
           .UsedBy(kUnknownReflectance),
       Row("reflectance.lobes",
           "Number of lobes of the flow. Each has a code of the embedding and "

@@ -354,6 +354,8 @@ TEST(FindModel, BroadHasALambertianLobe) {
   };
   EXPECT_TRUE(trained_on("nickel.red"));
   EXPECT_TRUE(trained_on("paper_white.red"));
+  EXPECT_TRUE(trained_on("cook-torrance-00.red"));
+  EXPECT_TRUE(trained_on("principled-03.red"));
 }
 
 TEST(FindModel, DefaultOfTheSourceTreeLoadsAndMakesSense) {
