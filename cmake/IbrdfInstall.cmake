@@ -27,4 +27,4 @@ install(FILES ${PROJECT_BINARY_DIR}/ibrdf-config.cmake
               cmake/FindOpenCVImgproc.cmake cmake/FindOpenEXR.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ibrdf)
 install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/ibrdf OPTIONAL
-        FILES_MATCHING PATTERN "*.ibrdf" PATTERN "*.md")
+        FILES_MATCHING PATTERN "*.ibrdf" PATTERN "*.md" PATTERN "*.txt")
