@@ -23,8 +23,9 @@ Keys UnknownReflectanceKeys() {
           "`broad` come with the programs.")
           .Path(".ibrdf", "auto",
                 {{"auto",
-                  "`default`, or the mean of `default` and `broad`, by "
-                  "evidence, where light and one material are unknown."},
+                  "`default`, or, of one unknown material, the mean of "
+                  "`default` and `broad`, by evidence. A known light needs "
+                  "`broad` only where `default` leaves more than noise."},
                  {"default", "Trained on MERL: plastic, paint, metal, fabric."},
                  {"broad",
                   "Trained on two databases and on analytic materials, with a "

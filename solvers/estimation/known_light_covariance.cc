@@ -35,6 +35,10 @@ Eigen::MatrixXd DataInformation(const std::vector<double>& L_o,
 
 }  // namespace
 
+double IndependentShare(int num_points) {
+  return std::min(1.0, kIndependent / num_points);
+}
+
 Eigen::MatrixXd KnownLightCovariance(const Transport& transport,
                                      const LobeModel& lobes,
                                      const MaterialPrior& prior,
@@ -52,7 +56,7 @@ Eigen::MatrixXd KnownLightCovariance(const Transport& transport,
   const double model = ReflectanceSearchOptions().sigma;
   const double variance =
       2.0 * likelihood.scale * likelihood.scale + model * model;
-  const double share = std::min(1.0, kIndependent / observed.num_valid);
+  const double share = IndependentShare(observed.num_valid);
   Eigen::MatrixXd information =
       DataInformation(L_o, dL_o, observed, likelihood, share / variance, n);
   prior.AddWallInformation(ToEigen(parameters), &information);

@@ -10,6 +10,10 @@
 
 namespace ibrdf {
 
+// What each of so many observed points counts: a joint estimate has some 200
+// bins, and the errors of more points than that are alike in neighbours.
+double IndependentShare(int num_points);
+
 // Laplace's covariance of the lobes' parameters at an optimum, as LobeModel has
 // them: the inverse of the Gauss-Newton Hessian,
 //   (G^T D^-1 G + K^-1)^-1,  G = d log L_o / d parameters,

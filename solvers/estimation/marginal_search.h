@@ -24,7 +24,8 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(
 // What a search among several models found with one of them.
 struct ModelOptima {
   const SolveSetup* setup = nullptr;
-  std::shared_ptr<const LevelGauge> gauge;  // of its materials
+  // Of its materials; null under a known light, which tells the level.
+  std::shared_ptr<const LevelGauge> gauge;
   ReflectanceEstimate estimate;
 };
 

@@ -42,12 +42,17 @@ std::vector<Optimum> WeightedOptima(const std::vector<ModelOptima>& models) {
   return optima;
 }
 
-// The optimum's table, at the level of its model's materials.
+// At the level of the model's materials where no image tells it.
+void FixLevel(const ModelOptima& of, std::vector<double>* lobes) {
+  if (of.gauge != nullptr) of.gauge->Fix(lobes->data());
+}
+
+// The optimum's table at its level.
 MerlTable TableOf(const Optimum& optimum,
                   const std::vector<ModelOptima>& models) {
   const ModelOptima& of = models[optimum.model];
   std::vector<double> lobes = optimum.candidate->parameters;
-  of.gauge->Fix(lobes.data());
+  FixLevel(of, &lobes);
   return of.setup->lobes->ToMerl(lobes.data());
 }
 
@@ -59,8 +64,10 @@ double DistanceFrom(const MerlTable& table, const std::vector<Optimum>& optima,
     const StatusOr<BrdfMetrics> metrics =
         CompareBrdfs(TableOf(optimum, models), table);
     if (!metrics.ok()) continue;  // the table is black
-    squares +=
-        optimum.weight * metrics->log_rmse_aligned * metrics->log_rmse_aligned;
+    const double distance = models[optimum.model].gauge != nullptr
+                                ? metrics->log_rmse_aligned
+                                : metrics->log_rmse;
+    squares += optimum.weight * distance * distance;
   }
   return std::sqrt(squares);
 }
@@ -130,7 +137,7 @@ void TakeMean(const std::vector<Optimum>& optima,
     return;
   }
   std::vector<double>& lobes = fit.parameters;
-  models[out->model].gauge->Fix(lobes.data());
+  FixLevel(models[out->model], &lobes);
   ReflectanceEstimate& estimate = out->estimate;
   const MerlTable found = setup.lobes->ToMerl(lobes.data());
   Dim(MeanLog(found) - MeanLog(before), &estimate.light.mode);

@@ -39,7 +39,7 @@ struct OptimumAverage {
 };
 
 // models: of one search, at least one. Each must have candidates of finite
-// cost.
+// cost, and a gauge where the light is unknown.
 OptimumAverage AverageOptima(const std::vector<ModelOptima>& models);
 
 }  // namespace ibrdf

@@ -170,9 +170,17 @@ TraceEntry Evaluate(const std::string& stage, const SolveSetup& setup,
                     ObservedPixels* pixels) {
   const PosteriorObjective on = ObjectiveOn(
       pixels, setup, iterate.light, iterate.light.priors, iterate.scale);
+  JointCost cost = on.objective->Evaluate(iterate.state);
+  if ((iterate.ambient != 0.0).any()) {
+    const LikelihoodValue value = EvaluateLikelihood(
+        on.objective->radiance(), pixels->observed(),
+        LikelihoodOf(setup, iterate.scale, iterate.ambient), nullptr);
+    cost.likelihood = value.cost;
+    cost.misfit = value.misfit;
+  }
+  cost.illumination_prior += setup.ambient.Cost(iterate.ambient);
   return MakeEntry(stage, setup, context, pixels->observed().num_valid,
-                   iterate.scale, iterate.state,
-                   on.objective->Evaluate(iterate.state));
+                   iterate.scale, iterate.state, cost);
 }
 
 }  // namespace ibrdf

@@ -63,7 +63,8 @@ struct Iterate {
 struct ReflectanceEstimate {
   std::vector<double> lobes;  // as LobeModel; empty where it is known
   // How far the local optima are whose mean the lobes are: root mean square of
-  // the aligned log-RMSE, by their weights. 0: it is one optimum.
+  // the log-RMSE, aligned where the light is unknown, by their weights. 0: it
+  // is one optimum.
   double between_optima = 0.0;
   // The material whose candidate became the estimate, and its lobes.
   std::string initial_guess;

@@ -277,17 +277,6 @@ double LargestExcess(const Estimate& estimate, const SolveSetup& setup,
   return largest;
 }
 
-// Sets the covariance that the estimate's pixels give, unless the time is over.
-void SetCovariance(const SolveSetup& setup, const SolveContext& context,
-                   Estimate* estimate) {
-  if (!context.IterationsLeft() || context.StopAfter(1.0)()) return;
-  const Iterate& iterate = estimate->iterate;
-  estimate->reflectance.covariance = KnownLightCovariance(
-      estimate->pixels->TransportFrom(setup.map_size()), *setup.lobes,
-      setup.materials, setup.known_map, estimate->pixels->observed(),
-      LikelihoodOf(setup, iterate.scale, iterate.ambient), iterate.state.lobes);
-}
-
 // Whether an estimate has a peak that no pixel it was fitted to shows.
 bool HasFalsePeak(const Estimate& estimate, const Observation& highlights,
                   const SolveSetup& setup) {
@@ -298,6 +287,16 @@ bool HasFalsePeak(const Estimate& estimate, const Observation& highlights,
 }
 
 }  // namespace
+
+void SetCovariance(const SolveSetup& setup, const SolveContext& context,
+                   Estimate* estimate) {
+  if (!context.IterationsLeft() || context.StopAfter(1.0)()) return;
+  const Iterate& iterate = estimate->iterate;
+  estimate->reflectance.covariance = KnownLightCovariance(
+      estimate->pixels->TransportFrom(setup.map_size()), *setup.lobes,
+      setup.materials, setup.known_map, estimate->pixels->observed(),
+      LikelihoodOf(setup, iterate.scale, iterate.ambient), iterate.state.lobes);
+}
 
 Estimate EstimateLobesGivenLight(const SolveSetup& setup,
                                  SolveContext* context) {

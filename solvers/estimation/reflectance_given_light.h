@@ -12,7 +12,12 @@ namespace ibrdf {
 Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
                                        SolveContext* context);
 
-// The same without its covariance; reflectance.candidates are those that took
+// The covariance of the lobes at the estimate's pixels, in place of the one it
+// has; as it was once the time is over.
+void SetCovariance(const SolveSetup& setup, const SolveContext& context,
+                   Estimate* estimate);
+
+// The estimate without a covariance; reflectance.candidates are those that took
 // more than their first steps, the best one first, their costs at its scale b.
 Estimate EstimateLobesGivenLight(const SolveSetup& setup,
                                  SolveContext* context);

@@ -82,9 +82,8 @@ struct MaterialSolution {
 struct Solution : MaterialSolution {
   MaterialSolution& reflectance() { return *this; }
   const MaterialSolution& reflectance() const { return *this; }
-  // Joint problems of one material: the models searched, the one that the lobes
-  // are of first, and their shares of the evidence, sum 1. Else empty: the
-  // problem's model.
+  // One material: the models searched, the one that the lobes are of first, and
+  // their shares of the evidence, sum 1. Else empty: the problem's model.
   std::vector<NamedModel> models;
   std::vector<double> model_weights;
   // Where the curve was unknown: the best of each family, the best first.

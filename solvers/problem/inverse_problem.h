@@ -59,8 +59,9 @@ struct InverseProblem {
   // known: null, and its grid.
   std::shared_ptr<const NeuralBrdfModel> model;
   std::string model_name = "default";
-  // Where light and one material are unknown: further models, which are
-  // searched as well (SolveJoint).
+  // Further models of one unknown material: where the light is unknown they are
+  // searched as well (SolveJoint), else where the first leaves more than noise
+  // (EstimateUnderKnownLight).
   std::vector<NamedModel> other_models;
   int lobes = 2;
   double prior_sigma = 0.5;

@@ -46,7 +46,7 @@ Status LoadReflectance(const Problem& problem, InverseProblem* inverse) {
   if (!model.ok()) return model.status();
   inverse->model = std::move(model->model);
   inverse->model_name = std::move(model->name);
-  if (!automatic || problem.kind != ProblemKind::kJoint) return OkStatus();
+  if (!automatic) return OkStatus();
   StatusOr<NamedModel> broad = LoadModel("broad");
   if (!broad.ok()) return broad.status();
   inverse->other_models.push_back(*std::move(broad));

@@ -126,11 +126,18 @@ std::string AtLeast(double least, double value) {
 }
 
 // The models that were searched, and what the estimate is the mean of.
-std::string ModelsInWords(const Solution& solution) {
+std::string ModelsInWords(const Solution& solution, bool light_unknown) {
   if (solution.models.empty()) return "";
-  std::string text =
-      "The estimate is the mean of the local optima, by evidence: those that "
-      "explain the image as well count alike.";
+  // Under a known light a model has one optimum.
+  if (!light_unknown && solution.models.size() == 1) {
+    return HtmlElement("p", "The model " + solution.models.front().name +
+                                " alone was searched.") +
+           "\n";
+  }
+  std::string text = std::string("The estimate is the mean of the ") +
+                     (light_unknown ? "local" : "models'") +
+                     " optima, by evidence: those that explain the image as "
+                     "well count alike.";
   for (size_t m = 0; solution.models.size() > 1 && m < solution.models.size();
        ++m) {
     text += (m == 0 ? " The model " : ", the model ") +
@@ -198,8 +205,8 @@ std::string PosteriorSection(const InverseProblem& inverse,
          LobesInWords(SummariseLobes(inverse, solution)) +
          DeterminedInWords(solution) + ExpectedErrorInWords(solution) +
          SlicesInWords(solution.slices, !inverse.known_map.has_value()) +
-         ModelsInWords(solution) + AlternativesInWords(solution.alternatives) +
-         "</section>\n";
+         ModelsInWords(solution, !inverse.known_map.has_value()) +
+         AlternativesInWords(solution.alternatives) + "</section>\n";
 }
 
 std::string LightPosteriorSection(const Solution& solution) {

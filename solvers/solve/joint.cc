@@ -3,7 +3,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -11,34 +10,11 @@
 #include "ibrdf/solvers/estimation/marginal_search.h"
 #include "ibrdf/solvers/estimation/optimum_average.h"
 #include "ibrdf/solvers/solve/joint_turns.h"
+#include "ibrdf/solvers/solve/other_model.h"
 #include "ibrdf/solvers/solve/summary.h"
 
 namespace ibrdf {
 namespace {
-
-// A problem with another model, and what its stages share.
-struct OtherModel {
-  std::unique_ptr<const InverseProblem> problem;
-  std::unique_ptr<const SolveSetup> setup;
-};
-
-InverseProblem WithModel(NamedModel model, InverseProblem problem) {
-  problem.model = std::move(model.model);
-  problem.model_name = std::move(model.name);
-  problem.other_models.clear();
-  return problem;
-}
-
-StatusOr<OtherModel> SetUpWith(const NamedModel& model,
-                               const InverseProblem& problem) {
-  OtherModel other;
-  other.problem =
-      std::make_unique<const InverseProblem>(WithModel(model, problem));
-  StatusOr<SolveSetup> setup = SetUp(*other.problem);
-  if (!setup.ok()) return setup.status();
-  other.setup = std::make_unique<const SolveSetup>(*std::move(setup));
-  return other;
-}
 
 // The models by name, the one that the lobes are of first.
 void NameModels(const std::vector<ModelOptima>& searches,

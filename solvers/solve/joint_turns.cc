@@ -1,15 +1,11 @@
 #include "ibrdf/solvers/solve/joint_turns.h"
 
-#include <glog/logging.h>
-
-#include <algorithm>
-#include <cmath>
 #include <utility>
-#include <vector>
 
 #include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/estimation/optimum_average.h"
 #include "ibrdf/solvers/estimation/reflectance_given_light.h"
+#include "ibrdf/solvers/solve/residual_statistics.h"
 
 namespace ibrdf {
 namespace {
@@ -17,9 +13,6 @@ namespace {
 // Residuals of neighbouring pixels that correlate less are noise: no turn would
 // explain them.
 constexpr double kStructured = 0.35;
-constexpr int kMostPixels = 2000;  // that correlation is taken of
-// As a multiple of the mean: beyond it a residual counts as that.
-constexpr double kLargestResidual = 4.0;
 
 Image MapOf(const LogMap& log_map) {
   Image map(log_map.size().width, log_map.size().height);
@@ -27,66 +20,7 @@ Image MapOf(const LogMap& log_map) {
   return map;
 }
 
-// Whole rows of the image, evenly spread: indices of pixels.
-std::vector<size_t> SomeRows(const Observation& pixels, int width) {
-  const size_t stride = pixels.points.size() / kMostPixels + 1;
-  std::vector<size_t> out;
-  for (size_t i = 0; i < pixels.points.size(); ++i) {
-    const size_t row = pixels.points[i].pixel / width;
-    if (row % stride == stride / 2 && pixels.observed.valid[i]) {
-      out.push_back(i);
-    }
-  }
-  return out;
-}
-
-// What the log radiance of these pixels lacks [indices * 3].
-std::vector<double> ResidualsOf(const Estimate& estimate,
-                                const std::vector<size_t>& indices,
-                                const SolveSetup& setup) {
-  Observation some;
-  for (const size_t i : indices) {
-    some.points.push_back(setup.pixels.points[i]);
-  }
-  const LogMap log_map = LogMapOf(estimate.iterate);
-  std::vector<double> L_o(3 * indices.size());
-  const std::vector<BrdfGrid> grids =
-      setup.GridsOf(estimate.iterate.state.lobes);
-  ObservedPixels(setup, std::move(some))
-      .TransportFrom(log_map.size())
-      .Render(ByMaterial(grids), MapOf(log_map).rgb.data(), L_o.data());
-  for (size_t k = 0; k < L_o.size(); ++k) {
-    const RadianceInterval seen =
-        setup.pixels.observed.Interval(3 * indices[k / 3] + k % 3);
-    const double rendered = std::max(L_o[k], setup.epsilon);
-    L_o[k] = std::log(std::clamp(rendered, seen.low, seen.high) / rendered);
-  }
-  return L_o;
-}
-
 }  // namespace
-
-double ResidualCorrelation(const SolveSetup& setup, const Estimate& estimate) {
-  const std::vector<size_t> indices =
-      SomeRows(setup.pixels, setup.problem->image.width);
-  if (indices.empty()) return 0.0;
-  std::vector<double> r = ResidualsOf(estimate, indices, setup);
-  double mean = 0.0;
-  for (const double v : r) mean += std::abs(v) / static_cast<double>(r.size());
-  const double largest = kLargestResidual * mean;
-  for (double& v : r) v = std::clamp(v, -largest, largest);
-  double products = 0.0, squares = 0.0;
-  for (size_t k = 0; k + 1 < indices.size(); ++k) {
-    const ShadingPoint& here = setup.pixels.points[indices[k]];
-    const ShadingPoint& next = setup.pixels.points[indices[k + 1]];
-    if (next.pixel != here.pixel + 1) continue;
-    for (size_t c = 3 * k; c < 3 * k + 3; ++c) {
-      products += r[c] * r[c + 3];
-      squares += 0.5 * (r[c] * r[c] + r[c + 3] * r[c + 3]);
-    }
-  }
-  return squares > 0.0 ? products / squares : 0.0;
-}
 
 JointTurns::JointTurns(const ModelOptima& found, SolveContext* context)
     : setup_(*found.setup),
@@ -125,9 +59,7 @@ bool JointTurns::Worthwhile(const Estimate& estimate) {
       !turns_.Another()) {
     return false;
   }
-  const double correlation = ResidualCorrelation(setup_, estimate);
-  VLOG(1) << "residuals of neighbouring pixels correlate by " << correlation;
-  return correlation >= kStructured;
+  return ResidualStatisticsOf(setup_, estimate).correlation >= kStructured;
 }
 
 }  // namespace ibrdf

@@ -39,8 +39,4 @@ class JointTurns {
   Turns turns_;
 };
 
-// How the log residuals of pixels beside each other correlate, in [-1, 1]:
-// noise by 0.
-double ResidualCorrelation(const SolveSetup& setup, const Estimate& estimate);
-
 }  // namespace ibrdf

@@ -7,7 +7,6 @@
 
 #include "ibrdf/solvers/estimation/light_given_reflectance.h"
 #include "ibrdf/solvers/estimation/marginal_search.h"
-#include "ibrdf/solvers/estimation/reflectance_given_light.h"
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 #include "ibrdf/solvers/problem/of_material.h"
@@ -15,6 +14,7 @@
 #include "ibrdf/solvers/solve/curve_search.h"
 #include "ibrdf/solvers/solve/exposure.h"
 #include "ibrdf/solvers/solve/joint.h"
+#include "ibrdf/solvers/solve/known_light.h"
 #include "ibrdf/solvers/solve/labelled.h"
 #include "ibrdf/solvers/solve/paint_evidence.h"
 #include "ibrdf/solvers/solve/painted.h"
@@ -31,11 +31,23 @@ StatusOr<Estimate> EstimateLightOfKnownReflectance(const SolveSetup& setup,
   return EstimateLight(setup, std::move(known), context);
 }
 
+StatusOr<Solution> SolveUnderKnownLight(const SolveSetup& setup,
+                                        bool may_be_painted,
+                                        SolveContext* context) {
+  StatusOr<KnownLightEstimate> found = EstimateUnderKnownLight(setup, context);
+  if (!found.ok()) return found.status();
+  const SolveSetup& of_model = found->SetupOr(setup);
+  if (may_be_painted && LeavesPaint(of_model, found->estimate, *context)) {
+    return SolvePaintedUnderKnownLight(setup, context);
+  }
+  Solution solution = Summarise(of_model, std::move(found->estimate), context);
+  solution.models = std::move(found->models);
+  solution.model_weights = std::move(found->model_weights);
+  return solution;
+}
+
 StatusOr<Estimate> EstimateUnknowns(const SolveSetup& setup,
                                     SolveContext* context) {
-  if (!setup.light_unknown()) {
-    return EstimateReflectanceGivenLight(setup, context);
-  }
   if (!setup.lobes_unknown()) {
     return EstimateLightOfKnownReflectance(setup, context);
   }
@@ -45,16 +57,14 @@ StatusOr<Estimate> EstimateUnknowns(const SolveSetup& setup,
 StatusOr<Solution> SolveOneMaterial(const SolveSetup& setup,
                                     bool may_be_painted,
                                     SolveContext* context) {
-  if (setup.light_unknown() && setup.lobes_unknown() &&
-      !setup.joint_maximum()) {
+  if (!setup.light_unknown()) {
+    return SolveUnderKnownLight(setup, may_be_painted, context);
+  }
+  if (setup.lobes_unknown() && !setup.joint_maximum()) {
     return SolveJoint(setup, context);
   }
   StatusOr<Estimate> estimate = EstimateUnknowns(setup, context);
   if (!estimate.ok()) return estimate.status();
-  if (may_be_painted && !setup.light_unknown() &&
-      LeavesPaint(setup, *estimate, *context)) {
-    return SolvePaintedUnderKnownLight(setup, context);
-  }
   return Summarise(setup, *std::move(estimate), context);
 }
 

@@ -12,6 +12,7 @@
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/estimation/light_given_reflectance.h"
+#include "ibrdf/solvers/solve/residual_statistics.h"
 #include "tests/solve/ball_problem.h"
 #include "tests/support/render_testing.h"
 #include "tests/support/solver_testing.h"
@@ -105,13 +106,14 @@ class JointTurnsTest : public ::testing::Test {
 
 TEST_F(JointTurnsTest, CorrelationTellsNoiseFromWhatIsNotExplained) {
   const double explained =
-      ResidualCorrelation(*setup_, EstimateLightOf(truth_));
+      ResidualStatisticsOf(*setup_, EstimateLightOf(truth_)).correlation;
   EXPECT_GE(explained, -1.0);
   EXPECT_LT(explained, 0.3);
   Estimate wrong = EstimateLightOf(Wrong());
   std::fill(wrong.iterate.state.light.begin(), wrong.iterate.state.light.end(),
             0.0f);
-  const double constant_light = ResidualCorrelation(*setup_, wrong);
+  const double constant_light =
+      ResidualStatisticsOf(*setup_, wrong).correlation;
   EXPECT_GT(constant_light, 0.6);
   EXPECT_LE(constant_light, 1.0);
 }
@@ -127,7 +129,7 @@ TEST_F(JointTurnsTest, WhatIsExplainedIsLeftAsItIs) {
 
 TEST_F(JointTurnsTest, AReflectanceFoundAnewIsAtTheLevelOfTheMaterials) {
   const Estimate estimate = EstimateLightOf(Wrong());
-  ASSERT_GT(ResidualCorrelation(*setup_, estimate), 0.35);
+  ASSERT_GT(ResidualStatisticsOf(*setup_, estimate).correlation, 0.35);
   const auto after = TakeAfter(estimate);
   ASSERT_TRUE(after.ok());
   ASSERT_TRUE(after->has_value());
