@@ -24,7 +24,7 @@ StatusOr<ReflectanceEstimate> EstimateReflectance(
 // What a search among several models found with one of them.
 struct ModelOptima {
   const SolveSetup* setup = nullptr;
-  // Of its materials; null under a known light, which tells the level.
+  // Its materials say the level; null under a known light, which tells it.
   std::shared_ptr<const LevelGauge> gauge;
   ReflectanceEstimate estimate;
 };

@@ -2,6 +2,7 @@
 // et al. 2020, Eq. 1), as the stages of a solve evaluate it.
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,6 +67,8 @@ struct ReflectanceEstimate {
   // the log-RMSE, aligned where the light is unknown, by their weights. 0: it
   // is one optimum.
   double between_optima = 0.0;
+  // As MaterialSolution's.
+  double structured_misfit = std::numeric_limits<double>::quiet_NaN();
   // The material whose candidate became the estimate, and its lobes.
   std::string initial_guess;
   std::vector<double> initial_lobes;

@@ -66,6 +66,10 @@ struct MaterialSolution {
   // The spread of that posterior, see reflectance_spread.h; NaN where it was
   // not found.
   double spread = std::numeric_limits<double>::quiet_NaN();
+  // One material under a known light: misfit * sqrt(correlation of neighbouring
+  // pixels' residuals), the part of the misfit that is no noise, of the first
+  // model searched. NaN elsewhere.
+  double structured_misfit = std::numeric_limits<double>::quiet_NaN();
   // Joint problems: other optima, with labels of all materials at once.
   std::vector<Alternative> alternatives;
   // Slices of the BRDF with the posterior's band; empty without covariance.

@@ -11,7 +11,8 @@
 namespace ibrdf {
 namespace {
 
-// Of the error of interpolation, that of the quadrature's far rule.
+// The far rule of the quadrature may make this share of the error of
+// interpolation.
 constexpr double kFarShare = 1.0 / 3;
 
 }  // namespace

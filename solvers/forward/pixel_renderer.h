@@ -67,7 +67,8 @@ class PixelRenderer {
   const int num_threads_;
   const RadianceRenderer::Progress& progress_;
   PixelCounts counts_;
-  // Of the object, and of its matte part; null before they are asked for.
+  // The object's radiance, and its matte part's; null before they are asked
+  // for.
   std::unique_ptr<SplitRadiance> split_, matte_split_;
 };
 

@@ -99,7 +99,7 @@ std::string DeterminedInWords(const Solution& solution) {
          "\n";
 }
 
-std::string ExpectedErrorInWords(const Solution& solution) {
+std::string ExpectedErrorInWords(const Solution& solution, bool light_unknown) {
   const double spread = solution.spread;
   if (!std::isfinite(spread)) return "";
   const ErrorToExpect error = ExpectError(solution);
@@ -108,10 +108,13 @@ std::string ExpectedErrorInWords(const Solution& solution) {
              "How far off to expect it: reflectances sampled from this "
              "posterior differ from the estimate by " +
                  Format("%.2g", spread) +
-                 " in the logarithm (root mean square over all angles, after "
-                 "the best scale). Of images "
-                 "whose truth is known, half were off by more than " +
-                 Format("%.2g", error.median) + " at such a spread (" +
+                 " in the logarithm (root mean square over all angles" +
+                 (light_unknown ? ", after the best scale)"
+                                : "; the median of samples)") +
+                 ". Of images whose truth is known, half were off by more "
+                 "than " +
+                 Format("%.2g", error.median) + " at such a spread" +
+                 (light_unknown ? "" : " and such residuals") + " (" +
                  ErrorInWords(error.median) + "), one in ten by more than " +
                  Format("%.2g", error.most) + " (" + ErrorInWords(error.most) +
                  ").") +
@@ -203,7 +206,8 @@ std::string PosteriorSection(const InverseProblem& inverse,
   return "<section>\n" +
          HtmlElement("h2", "How well the reflectance is known") + "\n" +
          LobesInWords(SummariseLobes(inverse, solution)) +
-         DeterminedInWords(solution) + ExpectedErrorInWords(solution) +
+         DeterminedInWords(solution) +
+         ExpectedErrorInWords(solution, !inverse.known_map.has_value()) +
          SlicesInWords(solution.slices, !inverse.known_map.has_value()) +
          ModelsInWords(solution, !inverse.known_map.has_value()) +
          AlternativesInWords(solution.alternatives) + "</section>\n";

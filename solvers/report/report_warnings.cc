@@ -116,7 +116,7 @@ std::string FewPixelsWarning(const SolvedProblem& solved) {
          " pixels.";
 }
 
-std::string UncertainWarning(const Solution& solution) {
+std::string UncertainWarning(const Solution& solution, bool light_unknown) {
   if (!std::isfinite(solution.spread)) return "";
   const double expected = ExpectError(solution).median;
   if (!(expected > kUncertain)) return "";
@@ -126,8 +126,8 @@ std::string UncertainWarning(const Solution& solution) {
   return "This image does not tell the reflectance well. It is expected to be "
          "off by " +
          ErrorInWords(expected) +
-         " (root mean square of its logarithm over all angles, after the best "
-         "scale).";
+         " (root mean square of its logarithm over all angles" +
+         (light_unknown ? ", after the best scale)." : ").");
 }
 
 // A curve in words: aces, gamma 0.52 (known to some 10 % at best).
@@ -211,7 +211,8 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
         MisfitWarning(solved), ViewWarning(solved), PhotographWarning(solved),
         PixelWarning(solved), UnlitWarning(solved), StrayLightWarning(solved),
         PaintWarning(solved), FewPixelsWarning(solved), CurveWarning(solved),
-        UncertainWarning(solved.solution),
+        UncertainWarning(solved.solution,
+                         !solved.inverse.known_map.has_value()),
         RivalWarning(solved.solution.alternatives)}) {
     if (!warning.empty()) warnings.push_back(std::move(warning));
   }

@@ -253,6 +253,9 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
     const ErrorToExpect error = ExpectError(solution);
     out["brdf_log_rmse_expected"] = error.median;
     out["brdf_log_rmse_90"] = error.most;
+    if (std::isfinite(solution.structured_misfit)) {
+      out["structured_misfit"] = solution.structured_misfit;
+    }
   }
   if (solution.has_paint()) {
     const AlbedoDeviation albedo =

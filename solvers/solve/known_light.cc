@@ -24,6 +24,11 @@ struct Search {
   Estimate estimate;
 };
 
+struct Searches {
+  std::vector<Search> of_models;  // the problem's own first
+  ResidualStatistics left;        // by that one
+};
+
 Search SearchOwn(const SolveSetup& setup, SolveContext* context) {
   Search search;
   search.model = {setup.problem->model_name, setup.problem->model};
@@ -35,21 +40,16 @@ Search SearchOwn(const SolveSetup& setup, SolveContext* context) {
 StatusOr<Search> SearchWith(const NamedModel& model,
                             const InverseProblem& problem,
                             SolveContext* context) {
-  Search search;
-  search.model = model;
   StatusOr<OtherModel> other = SetUpWith(model, problem);
   if (!other.ok()) return other.status();
+  Search search = SearchOwn(*other->setup, context);
   search.other = *std::move(other);
-  search.setup = search.other.setup.get();
-  search.estimate = EstimateLobesGivenLight(*search.setup, context);
   return search;
 }
 
-// Whether another model may explain more.
-bool MayTryAnother(const Search& last, const SolveContext& context) {
+bool MayTryAnother(const SolveContext& context) {
   return context.IterationsLeft() && !context.Interrupted() &&
-         context.Remaining() > 0.0 &&
-         ResidualStatisticsOf(*last.setup, last.estimate).correlation >= kNoise;
+         context.Remaining() > 0.0;
 }
 
 // The optima with their costs at one scale, the least of theirs, which tells
@@ -84,11 +84,27 @@ std::vector<ModelOptima> OptimaOf(const SolveContext& context,
   return optima;
 }
 
-KnownLightEstimate MeanOf(std::vector<Search> searches,
-                          const SolveContext& context) {
+StatusOr<Searches> SearchModels(const SolveSetup& setup,
+                                SolveContext* context) {
+  Searches out;
+  out.of_models.push_back(SearchOwn(setup, context));
+  out.left = ResidualStatisticsOf(setup, out.of_models.front().estimate);
+  if (out.left.correlation < kNoise) return out;
+  for (const NamedModel& model : setup.problem->other_models) {
+    if (!MayTryAnother(*context)) break;
+    StatusOr<Search> other = SearchWith(model, *setup.problem, context);
+    if (!other.ok()) return other.status();
+    out.of_models.push_back(*std::move(other));
+  }
+  return out;
+}
+
+KnownLightEstimate MeanOf(Searches found, const SolveContext& context) {
+  std::vector<Search>& searches = found.of_models;
   OptimumAverage mean = AverageOptima(OptimaOf(context, &searches));
   Search& best = searches[mean.model];
   KnownLightEstimate out;
+  mean.estimate.structured_misfit = found.left.Structured();
   out.estimate = std::move(best.estimate);
   out.estimate.iterate.state.lobes = mean.estimate.lobes;
   out.estimate.reflectance = std::move(mean.estimate);
@@ -104,17 +120,10 @@ KnownLightEstimate MeanOf(std::vector<Search> searches,
 
 StatusOr<KnownLightEstimate> EstimateUnderKnownLight(const SolveSetup& setup,
                                                      SolveContext* context) {
-  const InverseProblem& problem = *setup.problem;
-  std::vector<Search> searches;
-  searches.push_back(SearchOwn(setup, context));
-  for (const NamedModel& model : problem.other_models) {
-    if (!MayTryAnother(searches.back(), *context)) break;
-    StatusOr<Search> other = SearchWith(model, problem, context);
-    if (!other.ok()) return other.status();
-    searches.push_back(*std::move(other));
-  }
-  KnownLightEstimate found = MeanOf(std::move(searches), *context);
-  if (problem.other_models.empty()) {
+  StatusOr<Searches> searches = SearchModels(setup, context);
+  if (!searches.ok()) return searches.status();
+  KnownLightEstimate found = MeanOf(*std::move(searches), *context);
+  if (setup.problem->other_models.empty()) {
     found.models.clear();
     found.model_weights.clear();
   }

@@ -19,7 +19,7 @@ struct KnownLightEstimate {
   std::vector<NamedModel> models;
   std::vector<double> model_weights;
 
-  // Of the estimate's model. `own`: of the problem's.
+  // The setup of the estimate's model; `own` is that of the problem's.
   const SolveSetup& SetupOr(const SolveSetup& own) const {
     return other.setup != nullptr ? *other.setup : own;
   }

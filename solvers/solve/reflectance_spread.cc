@@ -22,6 +22,11 @@ constexpr double kMostRatio = 3.8;
 constexpr double kUnseen = 0.35;
 constexpr double kSpreadShare = 0.55;
 constexpr double kMostOverMedian = 1.8;
+// Under a known light: the spread's share, and how a misfit of radiance that
+// neighbours share becomes an error of the BRDF.
+constexpr double kKnownLightSpread = 0.55;
+constexpr double kPerMisfit = 12.0;
+constexpr double kKnownLightMost = 1.6;
 
 }  // namespace
 
@@ -56,6 +61,17 @@ std::vector<double> LobeDistance::LogValues(
 
 double LobeDistance::Aligned(const std::vector<double>& a,
                              const std::vector<double>& b) const {
+  return Distance(a, b, /*aligned=*/true);
+}
+
+double LobeDistance::WithLevel(const std::vector<double>& a,
+                               const std::vector<double>& b) const {
+  return Distance(a, b, /*aligned=*/false);
+}
+
+double LobeDistance::Distance(const std::vector<double>& a,
+                              const std::vector<double>& b,
+                              bool aligned) const {
   CHECK_EQ(3 * weights_.size(), a.size());
   CHECK_EQ(a.size(), b.size());
   double squares = 0.0;
@@ -67,7 +83,7 @@ double LobeDistance::Aligned(const std::vector<double>& a,
       mean += weights_[i] * d;
       square += weights_[i] * d * d;
     }
-    squares += std::max(square - mean * mean, 0.0);
+    squares += aligned ? std::max(square - mean * mean, 0.0) : square;
   }
   return std::sqrt(squares / 3.0);
 }
@@ -100,11 +116,33 @@ double ReflectanceSpread(const LobeDistance& distance,
   return std::sqrt(squares / draws);
 }
 
+double KnownLightSpread(const LobeDistance& distance,
+                        const std::vector<double>& parameters,
+                        const std::vector<double>& covariance, int draws,
+                        uint64_t seed) {
+  const std::vector<std::vector<double>> samples =
+      SampleReflectances(distance.lobes(), parameters, covariance, draws, seed);
+  if (samples.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> at = distance.LogValues(parameters);
+  std::vector<double> distances;
+  for (const std::vector<double>& sample : samples) {
+    distances.push_back(distance.WithLevel(distance.LogValues(sample), at));
+  }
+  const auto middle = distances.begin() + draws / 2;
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
 ErrorToExpect ExpectError(double spread) {
   return {kMedianRatio * spread, kMostRatio * spread};
 }
 
 ErrorToExpect ExpectError(const Solution& solution) {
+  if (std::isfinite(solution.structured_misfit)) {
+    const double median = std::hypot(kKnownLightSpread * solution.spread,
+                                     kPerMisfit * solution.structured_misfit);
+    return {median, kKnownLightMost * median};
+  }
   if (solution.models.size() < 2) return ExpectError(solution.spread);
   const double median = std::hypot(kUnseen, kSpreadShare * solution.spread);
   return {median, kMostOverMedian * median};

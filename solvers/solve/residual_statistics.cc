@@ -61,7 +61,7 @@ std::vector<double> ResidualsOf(const Estimate& estimate,
   return L_o;
 }
 
-// Of neighbours in a row; residuals beyond `largest` count as that.
+// Neighbours are those in a row. Residuals beyond `largest` count as that.
 double CorrelationOf(const std::vector<double>& residuals, double largest,
                      const std::vector<size_t>& indices,
                      const Observation& pixels) {

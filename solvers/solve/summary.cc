@@ -171,12 +171,17 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
         ReflectanceBand(factory, lobes, out.lobe_covariance, kBandSamples,
                         problem.seed, setup.light_unknown() ? &level : nullptr);
   }
-  // How spreads stand to errors was measured where the light is unknown.
-  if (covariance.size() > 0 && setup.light_unknown()) {
-    out.spread =
-        std::hypot(ReflectanceSpread(distance, lobes, out.lobe_covariance,
-                                     kSpreadSamples, problem.seed),
-                   reflectance.between_optima);
+  out.structured_misfit = reflectance.structured_misfit;
+  // How spreads stand to errors was measured where the light is unknown, and of
+  // one material under a known one.
+  const bool stated =
+      setup.light_unknown() || std::isfinite(out.structured_misfit);
+  if (covariance.size() > 0 && stated) {
+    const auto spread =
+        setup.light_unknown() ? ReflectanceSpread : KnownLightSpread;
+    out.spread = std::hypot(spread(distance, lobes, out.lobe_covariance,
+                                   kSpreadSamples, problem.seed),
+                            reflectance.between_optima);
   }
   out.alternatives = AlternativesOf(reflectance.candidates, distance, lobes);
   out.start = reflectance.initial_guess;

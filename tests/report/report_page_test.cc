@@ -217,6 +217,30 @@ TEST(PosteriorPlots, HoldWhatIsDetermined) {
   EXPECT_EQ(std::vector<double>({0.0, 1.0}), plot.series[0].x);
 }
 
+// The level is known, and what is not explained counts.
+TEST(ReportPage, UnderAKnownLightItSaysWhatWasSearchedAndExpected) {
+  Example example;
+  example.problem.kind = ProblemKind::kReflectance;
+  example.inverse.kind = ProblemKind::kReflectance;
+  example.inverse.known_map = Image(2, 1);
+  example.solution.spread = 0.1;
+  example.solution.structured_misfit = 0.01;
+  example.solution.models = {{"default", nullptr}};
+  example.solution.model_weights = {1.0};
+  const std::string one = Page(example);
+  EXPECT_TRUE(Contains(one, "The model default alone was searched."));
+  EXPECT_TRUE(Contains(one, "the median of samples"));
+  const double expected = std::hypot(0.055, 0.12);
+  EXPECT_NEAR(expected, ExpectError(example.solution).median, 1e-9);
+  EXPECT_TRUE(Contains(one, "half were off by more than 0.13"));
+  example.solution.models.push_back({"broad", nullptr});
+  example.solution.model_weights = {0.75, 0.25};
+  const std::string two = Page(example);
+  EXPECT_TRUE(Contains(two, "mean of the models&#39; optima") ||
+              Contains(two, "mean of the models' optima"));
+  EXPECT_TRUE(Contains(two, "the model broad has 25 %"));
+}
+
 TEST(ReportPage, EmptyAndShortTraces) {
   Example example;
   example.solution.trace.clear();

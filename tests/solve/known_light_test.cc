@@ -85,6 +85,9 @@ TEST_F(KnownLightTest, WhatOneModelExplainsIsSearchedByNoOther) {
   EXPECT_EQ((std::vector<double>{1.0}), found.model_weights);
   EXPECT_EQ(nullptr, found.other.setup);
   EXPECT_GT(found.estimate.reflectance.covariance.size(), 0);
+  const double unexplained = found.estimate.reflectance.structured_misfit;
+  EXPECT_GE(unexplained, 0.0);
+  EXPECT_LT(unexplained, 0.02);
   problem_.other_models.clear();
   const KnownLightEstimate alone = Run();
   EXPECT_TRUE(alone.models.empty());
@@ -104,6 +107,8 @@ TEST_F(KnownLightTest, ABallOfAnotherModelHasItsLobes) {
   EXPECT_EQ(static_cast<size_t>(found.other.setup->lobes->num_parameters()),
             found.estimate.iterate.state.lobes.size());
   EXPECT_TRUE(found.other.problem->other_models.empty());
+  // The problem's own model says how much one model does not explain.
+  EXPECT_GT(found.estimate.reflectance.structured_misfit, 0.02);
   const double with_both = MisfitOf(found);
   problem_.other_models.clear();
   EXPECT_LT(with_both, 0.7 * MisfitOf(Run()));

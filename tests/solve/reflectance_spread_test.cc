@@ -32,8 +32,10 @@ class ReflectanceSpreadTest : public ::testing::Test {
     }
     return covariance;
   }
-  double Spread(const std::vector<double>& covariance) const {
-    return ReflectanceSpread(distance_, parameters_, covariance, kDraws, 1);
+  double Spread(const std::vector<double>& covariance,
+                bool level_known = false) const {
+    return (level_known ? KnownLightSpread : ReflectanceSpread)(
+        distance_, parameters_, covariance, kDraws, 1);
   }
 
   NeuralBrdfModel model_;
@@ -55,11 +57,15 @@ TEST_F(ReflectanceSpreadTest, DistanceIsTheMetricsOfTables) {
     for (size_t i = 0; i < other.size(); ++i) {
       other[i] += step * std::sin(3.0 * static_cast<double>(i) + 1.0);
     }
-    const double table =
-        CompareBrdfs(lobes.ToMerl(other.data()), at)->log_rmse_aligned;
-    const double nodes = distance_.Aligned(distance_.LogValues(other),
-                                           distance_.LogValues(parameters_));
-    EXPECT_NEAR(table, nodes, 0.05 * table) << step;
+    const BrdfMetrics table = *CompareBrdfs(lobes.ToMerl(other.data()), at);
+    const std::vector<double> there = distance_.LogValues(other);
+    const std::vector<double> here = distance_.LogValues(parameters_);
+    EXPECT_NEAR(table.log_rmse_aligned, distance_.Aligned(there, here),
+                0.05 * table.log_rmse_aligned)
+        << step;
+    EXPECT_NEAR(table.log_rmse, distance_.WithLevel(there, here),
+                0.05 * table.log_rmse)
+        << step;
   }
 }
 
@@ -86,9 +92,14 @@ TEST_F(ReflectanceSpreadTest, SmallCovariancesSpreadByTheDerivatives) {
   EXPECT_NEAR(std::sqrt(trace), spread, 0.1 * spread);
 }
 
-// A colour of the only lobe is a scale, which alignment takes off.
+// A colour of the only lobe is a scale, which alignment takes off; but not
+// where the level is known.
 TEST_F(OneLobe, ColoursOfASingleLobeAreScales) {
   EXPECT_LT(Spread(Diagonal(0.0, 0.5)), 1e-3);
+  // The median of chi squared of three channels is 2.366.
+  const double median = std::sqrt(0.5 * 2.366 / 3.0);
+  EXPECT_NEAR(median, Spread(Diagonal(0.0, 0.5), /*level_known=*/true),
+              0.1 * median);
   EXPECT_GT(Spread(Diagonal(0.01, 0.0)), 1e-2);
 }
 
@@ -124,6 +135,23 @@ TEST(ExpectError, AMeanOverTwoModelsIsNotAsFarOff) {
   // A small one says little.
   solution.spread = 0.05;
   EXPECT_GT(ExpectError(solution).median, ExpectError(0.05).median);
+}
+
+// What the model cannot explain of the image is off in the BRDF too, however
+// sure the posterior is.
+TEST(ExpectError, UnderAKnownLightWhatIsNotExplainedCounts) {
+  Solution solution;
+  solution.spread = 0.1;
+  solution.structured_misfit = 0.0;
+  const double explained = ExpectError(solution).median;
+  EXPECT_LT(explained, ExpectError(0.1).median);
+  solution.structured_misfit = 0.04;
+  EXPECT_GT(ExpectError(solution).median, 2.0 * explained);
+  EXPECT_GT(ExpectError(solution).most, ExpectError(solution).median);
+  // It does not matter how many models were searched.
+  const double unexplained = ExpectError(solution).median;
+  solution.models = {{"a", nullptr}, {"b", nullptr}};
+  EXPECT_EQ(unexplained, ExpectError(solution).median);
 }
 
 }  // namespace

@@ -31,12 +31,12 @@ constexpr double kDark = 1e-3;            // of the geometric mean
 
 double MaxTheta() { return std::acos(double{kMinViewCosine}); }
 
-// Of a node: one stands for all turns around the view.
+// A node has one key for all its turns around the view.
 int NodeKey(int row, int column) {
   return row * kFinestColumns + (row == 0 ? 0 : column % kFinestColumns);
 }
 
-// Of a cell by its first node.
+// A cell is known by its first node.
 int64_t CellKey(int row, int column, int depth) {
   return (int64_t{depth} * (kRows * kCellSteps + 1) + row) * kFinestColumns +
          column;

@@ -71,7 +71,7 @@ class ReflectanceMap {
   // no interpolation is within the error. False: `progress` stopped it.
   bool Render(const std::vector<ShadingPoint>& points,
               const RadianceRenderer::Progress& progress, double* L_o) const;
-  // Of Fit: nothing is interpolated yet.
+  // It is that of Fit: nothing is interpolated yet.
   const ReflectanceMapReport& report() const;
 
  private:
