@@ -1,6 +1,7 @@
 #include "ibrdf/solvers/solve/known_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "ibrdf/solvers/estimation/known_light_covariance.h"
@@ -15,6 +16,9 @@ namespace {
 // model would explain them. The correlation of 2000 pixels of noise has a
 // standard deviation of 0.013.
 constexpr double kNoise = 0.05;
+
+// Beside it an optimum that has no finite cost counts nothing.
+constexpr double kNoCost = 1e300;
 
 // One model's optimum.
 struct Search {
@@ -74,6 +78,7 @@ std::vector<ModelOptima> OptimaOf(const SolveContext& context,
     iterate.scale = own_scale;
     optimum.cost = share * entry.likelihood + entry.reflectance_prior +
                    entry.illumination_prior;
+    if (!std::isfinite(optimum.cost)) optimum.cost = kNoCost;
     VLOG(1) << s.model.name << " costs " << optimum.cost;
     ModelOptima of_model;
     of_model.setup = s.setup;
