@@ -152,8 +152,11 @@ std::string ModelsInWords(const Solution& solution, bool light_unknown) {
          "\n";
 }
 
-std::string AlternativesInWords(const std::vector<Alternative>& alternatives) {
+std::string AlternativesInWords(const std::vector<Alternative>& alternatives,
+                                bool light_unknown) {
   if (alternatives.empty()) {
+    // Under a known light some were followed and are not kept.
+    if (!light_unknown) return "";
     return HtmlElement("p", "No other candidates were followed.") + "\n";
   }
   std::vector<std::vector<std::string>> rows;
@@ -203,14 +206,16 @@ std::string SlicesInWords(const std::vector<BrdfSlice>& slices,
 std::string PosteriorSection(const InverseProblem& inverse,
                              const Solution& solution) {
   if (solution.brdf.raw.empty()) return "";
+  const bool light_unknown = !inverse.known_map.has_value();
   return "<section>\n" +
          HtmlElement("h2", "How well the reflectance is known") + "\n" +
          LobesInWords(SummariseLobes(inverse, solution)) +
          DeterminedInWords(solution) +
-         ExpectedErrorInWords(solution, !inverse.known_map.has_value()) +
-         SlicesInWords(solution.slices, !inverse.known_map.has_value()) +
-         ModelsInWords(solution, !inverse.known_map.has_value()) +
-         AlternativesInWords(solution.alternatives) + "</section>\n";
+         ExpectedErrorInWords(solution, light_unknown) +
+         SlicesInWords(solution.slices, light_unknown) +
+         ModelsInWords(solution, light_unknown) +
+         AlternativesInWords(solution.alternatives, light_unknown) +
+         "</section>\n";
 }
 
 std::string LightPosteriorSection(const Solution& solution) {

@@ -227,7 +227,9 @@ TEST(ReportPage, UnderAKnownLightItSaysWhatWasSearchedAndExpected) {
   example.solution.structured_misfit = 0.01;
   example.solution.models = {{"default", nullptr}};
   example.solution.model_weights = {1.0};
+  example.solution.alternatives.clear();
   const std::string one = Page(example);
+  EXPECT_FALSE(Contains(one, "No other candidates"));
   EXPECT_TRUE(Contains(one, "The model default alone was searched."));
   EXPECT_TRUE(Contains(one, "the median of samples"));
   const double expected = std::hypot(0.055, 0.12);
