@@ -28,6 +28,24 @@ constexpr double kKnownLightSpread = 0.55;
 constexpr double kPerMisfit = 12.0;
 constexpr double kKnownLightMost = 1.6;
 
+using Distance = double (LobeDistance::*)(const std::vector<double>&,
+                                          const std::vector<double>&) const;
+
+// From each sample to `parameters`. Empty where a value is not finite.
+std::vector<double> SampleDistances(const LobeDistance& lobes,
+                                    Distance distance,
+                                    const std::vector<double>& parameters,
+                                    const std::vector<double>& covariance,
+                                    int draws, uint64_t seed) {
+  const std::vector<double> at = lobes.LogValues(parameters);
+  std::vector<double> distances;
+  for (const std::vector<double>& sample :
+       SampleReflectances(lobes.lobes(), parameters, covariance, draws, seed)) {
+    distances.push_back((lobes.*distance)(lobes.LogValues(sample), at));
+  }
+  return distances;
+}
+
 }  // namespace
 
 LobeDistance::LobeDistance(const LobeFactory& lobes, const BrdfGridShape& grid)
@@ -104,15 +122,11 @@ double ReflectanceSpread(const LobeDistance& distance,
                          const std::vector<double>& parameters,
                          const std::vector<double>& covariance, int draws,
                          uint64_t seed) {
-  const std::vector<std::vector<double>> samples =
-      SampleReflectances(distance.lobes(), parameters, covariance, draws, seed);
-  if (samples.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const std::vector<double> at = distance.LogValues(parameters);
+  const std::vector<double> distances = SampleDistances(
+      distance, &LobeDistance::Aligned, parameters, covariance, draws, seed);
+  if (distances.empty()) return std::numeric_limits<double>::quiet_NaN();
   double squares = 0.0;
-  for (const std::vector<double>& sample : samples) {
-    const double d = distance.Aligned(distance.LogValues(sample), at);
-    squares += d * d;
-  }
+  for (const double d : distances) squares += d * d;
   return std::sqrt(squares / draws);
 }
 
@@ -120,14 +134,9 @@ double KnownLightSpread(const LobeDistance& distance,
                         const std::vector<double>& parameters,
                         const std::vector<double>& covariance, int draws,
                         uint64_t seed) {
-  const std::vector<std::vector<double>> samples =
-      SampleReflectances(distance.lobes(), parameters, covariance, draws, seed);
-  if (samples.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const std::vector<double> at = distance.LogValues(parameters);
-  std::vector<double> distances;
-  for (const std::vector<double>& sample : samples) {
-    distances.push_back(distance.WithLevel(distance.LogValues(sample), at));
-  }
+  std::vector<double> distances = SampleDistances(
+      distance, &LobeDistance::WithLevel, parameters, covariance, draws, seed);
+  if (distances.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto middle = distances.begin() + draws / 2;
   std::nth_element(distances.begin(), middle, distances.end());
   return *middle;

@@ -1,8 +1,13 @@
 // A ball of the tiny model for the tests of whole solves.
 #pragma once
+#include <cmath>
 #include <memory>
+#include <random>
+#include <vector>
 
+#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/solvers/problem/inverse_problem.h"
+#include "ibrdf/transport/transport.h"
 #include "tests/support/solver_testing.h"
 
 namespace ibrdf {
@@ -21,6 +26,29 @@ inline InverseProblem BallProblem(int size) {
   problem.map_height = 8;
   problem.solver.seconds = 1e6;
   return problem;
+}
+
+// Radiance of two lobes of a model under a map [points * 3].
+inline std::vector<double> BallRadiance(const InverseProblem& problem,
+                                        const NeuralBrdfModel& model,
+                                        const std::vector<double>& parameters,
+                                        const Image& map) {
+  const FlowLobes lobes(model, 2, problem.transport.grid, 1);
+  std::vector<double> L_o(3 * problem.points.size());
+  Transport(problem.points, map.height, map.width, problem.transport)
+      .Render(lobes.Grid(parameters.data()), map.rgb.data(), L_o.data());
+  return L_o;
+}
+
+// Makes it the image, with log-normal noise of that deviation.
+inline void SetNoisyImage(const std::vector<double>& L_o, double deviation,
+                          InverseProblem* problem) {
+  std::mt19937 rng(1);
+  std::normal_distribution<double> noise(0.0, deviation);
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    problem->image.rgb[3 * problem->points[i / 3].pixel + i % 3] =
+        static_cast<float>(L_o[i] * std::exp(noise(rng)));
+  }
 }
 
 }  // namespace testing

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 #include <utility>
 #include <vector>
 
-#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/estimation/light_given_reflectance.h"
 #include "ibrdf/solvers/solve/residual_statistics.h"
@@ -30,17 +28,9 @@ class JointTurnsTest : public ::testing::Test {
   JointTurnsTest() : problem_(BallProblem(kTurnSize)) {
     problem_.solver.max_iterations = 60;
     problem_.solver.turns = 2;
-    const FlowLobes lobes(*problem_.model, 2, problem_.transport.grid, 1);
-    std::vector<double> L_o(3 * problem_.points.size());
-    Transport(problem_.points, 8, 16, problem_.transport)
-        .Render(lobes.Grid(truth_.data()), SmoothMap(8, 16).rgb.data(),
-                L_o.data());
-    std::mt19937 rng(1);
-    std::normal_distribution<double> noise(0.0, 0.05);
-    for (size_t i = 0; i < L_o.size(); ++i) {
-      problem_.image.rgb[3 * problem_.points[i / 3].pixel + i % 3] =
-          static_cast<float>(L_o[i] * std::exp(noise(rng)));
-    }
+    SetNoisyImage(
+        BallRadiance(problem_, *problem_.model, truth_, SmoothMap(8, 16)), 0.05,
+        &problem_);
     setup_ = std::make_unique<const SolveSetup>(*ibrdf::SetUp(problem_));
     gauge_ = std::make_shared<const LevelGauge>(*problem_.model,
                                                 setup_->materials, 1);

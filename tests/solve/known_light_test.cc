@@ -2,12 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
-#include <random>
 #include <vector>
 
-#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/solve/paint_evidence.h"
 #include "tests/solve/ball_problem.h"
@@ -43,17 +40,9 @@ class KnownLightTest : public ::testing::Test {
   // With noise of two per cent.
   void SetImageOf(const NeuralBrdfModel& model,
                   const std::vector<double>& parameters) {
-    const FlowLobes lobes(model, 2, problem_.transport.grid, 1);
-    std::vector<double> L_o(3 * problem_.points.size());
-    Transport(problem_.points, 8, 16, problem_.transport)
-        .Render(lobes.Grid(parameters.data()), problem_.known_map->rgb.data(),
-                L_o.data());
-    std::mt19937 rng(1);
-    std::normal_distribution<double> noise(0.0, 0.02);
-    for (size_t i = 0; i < L_o.size(); ++i) {
-      problem_.image.rgb[3 * problem_.points[i / 3].pixel + i % 3] =
-          static_cast<float>(L_o[i] * std::exp(noise(rng)));
-    }
+    SetNoisyImage(
+        BallRadiance(problem_, model, parameters, *problem_.known_map), 0.02,
+        &problem_);
   }
   KnownLightEstimate Run() {
     setup_ = std::make_unique<const SolveSetup>(*ibrdf::SetUp(problem_));

@@ -7,7 +7,6 @@
 #include <random>
 #include <vector>
 
-#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/environment_map.h"
 #include "tests/solve/ball_problem.h"
 #include "tests/support/render_testing.h"
@@ -23,11 +22,7 @@ class ResidualStatisticsTest : public ::testing::Test {
   ResidualStatisticsTest() : problem_(BallProblem(40)) {
     problem_.kind = ProblemKind::kReflectance;
     problem_.known_map = SmoothMap(8, 16);
-    const FlowLobes lobes(*problem_.model, 2, problem_.transport.grid, 1);
-    L_o_.resize(3 * problem_.points.size());
-    Transport(problem_.points, 8, 16, problem_.transport)
-        .Render(lobes.Grid(truth_.data()), problem_.known_map->rgb.data(),
-                L_o_.data());
+    L_o_ = BallRadiance(problem_, *problem_.model, truth_, *problem_.known_map);
     estimate_.iterate.state.lobes = truth_;
   }
   // log_ratio(point): of the image to the estimate's radiance.
