@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
+#include <vector>
 
-#include "ibrdf/metrics/brdf_metrics.h"
+#include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/solvers/estimation/lobe_distance.h"
 #include "ibrdf/solvers/table_fit/lobe_table_fit.h"
 
 namespace ibrdf {
@@ -14,7 +17,6 @@ namespace {
 
 constexpr double kTemperature = 20.0;  // nats
 constexpr double kLeastWeight = 0.01;
-constexpr double kFloor = 1e-6;  // raw units, as of CompareBrdfs
 
 // A local optimum with one of the models.
 struct Optimum {
@@ -47,58 +49,108 @@ void FixLevel(const ModelOptima& of, std::vector<double>* lobes) {
   if (of.gauge != nullptr) of.gauge->Fix(lobes->data());
 }
 
-// The optimum's table at its level.
-MerlTable TableOf(const Optimum& optimum,
-                  const std::vector<ModelOptima>& models) {
-  const ModelOptima& of = models[optimum.model];
+// The optimum's lobes at their level.
+std::vector<double> LobesOf(const Optimum& optimum,
+                            const std::vector<ModelOptima>& models) {
   std::vector<double> lobes = optimum.candidate->parameters;
-  FixLevel(of, &lobes);
-  return of.setup->lobes->ToMerl(lobes.data());
+  FixLevel(models[optimum.model], &lobes);
+  return lobes;
 }
 
-// Root mean square of the optima's distances from a table, by weight.
-double DistanceFrom(const MerlTable& table, const std::vector<Optimum>& optima,
+LobeFactory FactoryOf(const SolveSetup& setup) {
+  return FlowLobes::Factory(*setup.problem->model, setup.lobes->layout(),
+                            setup.problem->num_threads);
+}
+
+// Lobes and the log of their values, as LobeDistance's.
+struct Reflectance {
+  std::vector<double> lobes, log_values;
+};
+
+// Root mean square of the optima's distances from a reflectance of the model
+// that `metric` is of, by weight.
+double DistanceFrom(const Reflectance& from, const LobeDistance& metric,
+                    const std::vector<Optimum>& optima,
                     const std::vector<ModelOptima>& models) {
   double squares = 0.0;
   for (const Optimum& optimum : optima) {
-    const StatusOr<BrdfMetrics> metrics =
-        CompareBrdfs(TableOf(optimum, models), table);
-    if (!metrics.ok()) continue;  // the table is black
-    const double distance = models[optimum.model].gauge != nullptr
-                                ? metrics->log_rmse_aligned
-                                : metrics->log_rmse;
+    const ModelOptima& of = models[optimum.model];
+    const std::vector<double> values =
+        LobeDistance(FactoryOf(*of.setup)).LogValues(LobesOf(optimum, models));
+    const double distance = of.gauge != nullptr
+                                ? metric.Aligned(values, from.log_values)
+                                : metric.WithLevel(values, from.log_values);
     squares += optimum.weight * distance * distance;
   }
   return std::sqrt(squares);
 }
 
-// Mean of log(raw + floor) over the bins above the horizon, by channel.
-Eigen::Array3d MeanLog(const MerlTable& table) {
-  Eigen::Array3d sum = Eigen::Array3d::Zero(), count = sum;
-  for (int c = 0; c < 3; ++c) {
-    for (int bin = 0; bin < kMerlBins; ++bin) {
-      const double raw = table.Raw(c, bin);
-      if (raw < 0.0) continue;
-      sum[c] += std::log(raw + kFloor);
-      count[c] += 1.0;
-    }
-  }
-  return sum / count.max(1.0);
-}
+// Lobes and their logarithms' mean at the bins of a table fit.
+class LogMean {
+ public:
+  explicit LogMean(const SolveSetup& setup)
+      : fitter_(*setup.problem->model), options_(OptionsOf(*setup.problem)) {}
 
-// The lobes of a model that are nearest to a table, from the best of starts; no
-// parameters where no fit comes to anything.
-LobeTableFit NearestLobes(const MerlTable& table, const SolveSetup& setup,
-                          const std::vector<std::vector<double>>& starts) {
-  const InverseProblem& problem = *setup.problem;
-  const LobeTableFitter fitter(*problem.model);
+  // Of all optima, by weight. Each model has the same bins.
+  void Take(const std::vector<Optimum>& optima,
+            const std::vector<ModelOptima>& models);
+  // Root mean square of the difference from lobes of the setup's model.
+  double LogRmseOf(const std::vector<double>& lobes) const;
+  // The lobes of the setup's model that are nearest, from the best of starts;
+  // no parameters where no fit comes to anything.
+  LobeTableFit Nearest(const std::vector<std::vector<double>>& starts) const;
+
+ private:
+  static LobeTableFitOptions OptionsOf(const InverseProblem& problem);
+
+  const LobeTableFitter fitter_;
+  const LobeTableFitOptions options_;
+  std::vector<float> mean_;
+};
+
+LobeTableFitOptions LogMean::OptionsOf(const InverseProblem& problem) {
   LobeTableFitOptions options;
   options.num_threads = problem.num_threads;
   // Without fits of materials it is the prior of the search (LobePrior).
   if (problem.model->fit_lobes == 0) options.prior_sigma = problem.prior_sigma;
+  return options;
+}
+
+void LogMean::Take(const std::vector<Optimum>& optima,
+                   const std::vector<ModelOptima>& models) {
+  std::vector<std::unique_ptr<const LobeTableFitter>> fitters(models.size());
+  std::vector<double> sum;
+  for (const Optimum& optimum : optima) {
+    std::unique_ptr<const LobeTableFitter>& fitter = fitters[optimum.model];
+    if (fitter == nullptr) {
+      fitter = std::make_unique<const LobeTableFitter>(
+          *models[optimum.model].setup->problem->model);
+    }
+    const std::vector<float> values =
+        fitter->LogValues(LobesOf(optimum, models), options_);
+    sum.resize(values.size());
+    for (size_t i = 0; i < sum.size(); ++i) {
+      sum[i] += optimum.weight * values[i];
+    }
+  }
+  mean_.assign(sum.begin(), sum.end());
+}
+
+double LogMean::LogRmseOf(const std::vector<double>& lobes) const {
+  const std::vector<float> values = fitter_.LogValues(lobes, options_);
+  double squares = 0.0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    const double d = double{values[i]} - mean_[i];
+    squares += d * d;
+  }
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+LobeTableFit LogMean::Nearest(
+    const std::vector<std::vector<double>>& starts) const {
   LobeTableFit best;
   for (const std::vector<double>& start : starts) {
-    StatusOr<LobeTableFit> fit = fitter.FitFrom(table, start, options);
+    StatusOr<LobeTableFit> fit = fitter_.FitLogValues(mean_, start, options_);
     if (!fit.ok()) continue;
     if (best.parameters.empty() || fit->log_rmse < best.log_rmse) {
       best = *std::move(fit);
@@ -119,30 +171,30 @@ void Dim(const Eigen::Array3d& level, LogMap* mode) {
 void TakeMean(const std::vector<Optimum>& optima,
               const std::vector<ModelOptima>& models, OptimumAverage* out) {
   const SolveSetup& setup = *models[out->model].setup;
-  LogTableMean mean;
   std::vector<std::vector<double>> starts;
   for (const Optimum& optimum : optima) {
-    mean.Add(TableOf(optimum, models), optimum.weight);
     if (optimum.model == out->model) {
       starts.push_back(optimum.candidate->parameters);
     }
   }
-  const MerlTable middle = mean.Mean();
-  LobeTableFit fit = NearestLobes(middle, setup, starts);
-  const MerlTable before = setup.lobes->ToMerl(out->estimate.lobes.data());
-  const StatusOr<BrdfMetrics> of_best = CompareBrdfs(before, middle);
+  LogMean mean(setup);
+  mean.Take(optima, models);
+  LobeTableFit fit = mean.Nearest(starts);
+  ReflectanceEstimate& estimate = out->estimate;
   // Lobes that are held, as by a narrow prior, may not come near the mean.
-  if (fit.parameters.empty() || !of_best.ok() ||
-      !(fit.log_rmse < of_best->log_rmse)) {
+  if (fit.parameters.empty() ||
+      !(fit.log_rmse < mean.LogRmseOf(estimate.lobes))) {
     return;
   }
-  std::vector<double>& lobes = fit.parameters;
-  FixLevel(models[out->model], &lobes);
-  ReflectanceEstimate& estimate = out->estimate;
-  const MerlTable found = setup.lobes->ToMerl(lobes.data());
-  Dim(MeanLog(found) - MeanLog(before), &estimate.light.mode);
-  estimate.between_optima = DistanceFrom(found, optima, models);
-  estimate.lobes = std::move(lobes);
+  Reflectance found;
+  found.lobes = std::move(fit.parameters);
+  FixLevel(models[out->model], &found.lobes);
+  const LobeDistance metric(FactoryOf(setup));
+  found.log_values = metric.LogValues(found.lobes);
+  Dim(metric.MeanDifference(found.log_values, metric.LogValues(estimate.lobes)),
+      &estimate.light.mode);
+  estimate.between_optima = DistanceFrom(found, metric, optima, models);
+  estimate.lobes = std::move(found.lobes);
 }
 
 }  // namespace
@@ -166,28 +218,6 @@ std::vector<double> OptimumWeights(const std::vector<double>& costs) {
   }
   normalise();
   return weights;
-}
-
-void LogTableMean::Add(const MerlTable& table, double weight) {
-  CHECK_GT(weight, 0.0);
-  // A bin without a value has none in the mean.
-  if (sum_.empty()) sum_.assign(table.raw.size(), 0.0);
-  CHECK_EQ(sum_.size(), table.raw.size());
-  for (size_t i = 0; i < sum_.size(); ++i) {
-    sum_[i] += weight * std::log(table.raw[i] + kFloor);
-  }
-  weight_ += weight;
-}
-
-MerlTable LogTableMean::Mean() const {
-  CHECK_GT(weight_, 0.0);
-  MerlTable mean;
-  mean.raw.reserve(sum_.size());
-  for (const double sum : sum_) {
-    const double raw = std::exp(sum / weight_) - kFloor;
-    mean.raw.push_back(std::isfinite(sum) ? std::max(raw, 0.0) : -1.0);
-  }
-  return mean;
 }
 
 OptimumAverage AverageOptima(const std::vector<ModelOptima>& models) {

@@ -3,8 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "ibrdf/base/status.h"
-#include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/solvers/estimation/marginal_search.h"
 #include "ibrdf/solvers/estimation/posterior.h"
 
@@ -16,25 +14,13 @@ namespace ibrdf {
 // hundredth get 0. Empty for no costs; all must be finite.
 std::vector<double> OptimumWeights(const std::vector<double>& costs);
 
-// The weighted mean of log(raw + 1e-6), bin by bin. All tables must have values
-// in the same bins.
-class LogTableMean {
- public:
-  void Add(const MerlTable& table, double weight);
-  MerlTable Mean() const;
-
- private:
-  std::vector<double> sum_;
-  double weight_ = 0.0;
-};
-
 struct OptimumAverage {
   size_t model = 0;  // whose lobes the estimate has: that of the least cost
   // Share of the evidence of each model, sum 1.
   std::vector<double> model_weights;
-  // That model's estimate, its lobes the nearest to the mean of log BRDF over
-  // the optima of all models. Where one optimum has all the weight it is as it
-  // was.
+  // That model's estimate, its lobes the nearest to the mean of
+  // log(raw BRDF + 1e-6) over the optima of all models. Where one optimum has
+  // all the weight it is as it was.
   ReflectanceEstimate estimate;
 };
 

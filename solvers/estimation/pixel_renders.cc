@@ -7,7 +7,7 @@
 namespace ibrdf {
 namespace {
 
-constexpr size_t kPointsAtOnce = 4096;
+constexpr size_t kPointsAtOnce = 1024;
 
 }  // namespace
 

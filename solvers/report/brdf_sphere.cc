@@ -7,15 +7,19 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/base/parallel_for.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/camera.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/reference_renderer.h"
 #include "ibrdf/scene/scene.h"
+#include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
 namespace {
+
+constexpr size_t kPointsAtOnce = 1024;
 
 std::vector<ShadingPoint> SpherePoints(int size, int samples_per_side) {
   CHECK_GT(size, 1);
@@ -63,6 +67,27 @@ Eigen::Array3d SkyRadiance(const Eigen::Vector3d& d) {
   return sky + below * (land - sky);
 }
 
+Eigen::Array3d RadianceAt(const ShadingPoint& point, const BrdfFunction& brdf,
+                          const std::vector<DirectionalLight>& lights) {
+  const Eigen::Vector3d n = point.normal.cast<double>().normalized();
+  // The BRDF is isotropic: any tangents do.
+  Eigen::Matrix3d local_from_world;
+  local_from_world.row(0) = n.unitOrthogonal();
+  local_from_world.row(1) = n.cross(local_from_world.row(0).transpose());
+  local_from_world.row(2) = n;
+  const Eigen::Vector3d wo =
+      local_from_world * point.wo.cast<double>().normalized();
+  Eigen::Array3d radiance = Eigen::Array3d::Zero();
+  for (const DirectionalLight& light : lights) {
+    const Eigen::Vector3d wi = local_from_world * light.direction.normalized();
+    if (wi.z() <= 0.0) continue;
+    const HalfDiff angles = ToHalfDiff(wi, wo);
+    radiance += brdf(angles.theta_h, angles.theta_d, angles.phi_d) *
+                light.irradiance * wi.z();
+  }
+  return radiance;
+}
+
 }  // namespace
 
 std::vector<DirectionalLight> StudioLights() {
@@ -90,49 +115,63 @@ Image ProceduralSky(int height, int width) {
 
 Image RenderBrdfSphere(const BrdfFunction& brdf,
                        const std::vector<DirectionalLight>& lights, int size,
-                       int samples_per_side) {
+                       int samples_per_side, int num_threads) {
   const std::vector<ShadingPoint> points = SpherePoints(size, samples_per_side);
   std::vector<double> L_o(3 * points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d n = points[i].normal.cast<double>().normalized();
-    // The BRDF is isotropic: any tangents do.
-    Eigen::Matrix3d local_from_world;
-    local_from_world.row(0) = n.unitOrthogonal();
-    local_from_world.row(1) = n.cross(local_from_world.row(0).transpose());
-    local_from_world.row(2) = n;
-    const Eigen::Vector3d wo =
-        local_from_world * points[i].wo.cast<double>().normalized();
-    Eigen::Array3d radiance = Eigen::Array3d::Zero();
-    for (const DirectionalLight& light : lights) {
-      const Eigen::Vector3d wi =
-          local_from_world * light.direction.normalized();
-      if (wi.z() <= 0.0) continue;
-      const HalfDiff angles = ToHalfDiff(wi, wo);
-      radiance += brdf(angles.theta_h, angles.theta_d, angles.phi_d) *
-                  light.irradiance * wi.z();
+  const auto chunks = static_cast<int64_t>(points.size() / kPointsAtOnce + 1);
+  ParallelFor(chunks, num_threads, [&](int64_t chunk, int) {
+    const size_t begin = static_cast<size_t>(chunk) * kPointsAtOnce;
+    const size_t end = std::min(begin + kPointsAtOnce, points.size());
+    for (size_t i = begin; i < end; ++i) {
+      Eigen::Map<Eigen::Array3d>(L_o.data() + 3 * i) =
+          RadianceAt(points[i], brdf, lights);
     }
-    Eigen::Map<Eigen::Array3d>(L_o.data() + 3 * i) = radiance;
-  }
+  });
   return PixelMeans(points, L_o.data(), size, size);
 }
 
-Image RenderBrdfSphere(const MerlTable& table, const Image& map, int size,
-                       int num_threads) {
+std::vector<Image> RenderBrdfSpheres(const std::vector<BrdfGrid>& brdfs,
+                                     const Image& map, int size,
+                                     int num_threads) {
+  if (brdfs.empty()) return {};
   const std::vector<ShadingPoint> points = SpherePoints(size, 1);
-  ReferenceOptions options;
-  options.near_rings = 12;
-  options.near_ring_samples = 36;
-  options.far_width = 32;
+  TransportOptions options;
+  options.grid = brdfs.front().shape;
   options.num_threads = num_threads;
-  std::vector<double> L_o(3 * points.size());
-  ReferenceRenderer(map, options).Render(points, table, L_o.data());
-  return PixelMeans(points, L_o.data(), size, size);
+  options.quadrature.near_rings = 14;
+  options.quadrature.near_ring_samples = 36;
+  options.quadrature.far_width = 32;
+  // In such wide cells a sun would leave a ring where the two rules meet.
+  const BrightTexels light = SplitBrightTexels(map);
+  options.bright = SampleBrightTexels(light.texels, map.height, map.width, 2);
+  std::vector<std::vector<double>> L_o(brdfs.size(),
+                                       std::vector<double>(3 * points.size()));
+  for (size_t begin = 0; begin < points.size(); begin += kPointsAtOnce) {
+    const size_t end = std::min(begin + kPointsAtOnce, points.size());
+    const Transport transport(
+        std::vector<ShadingPoint>(points.begin() + begin, points.begin() + end),
+        map.height, map.width, options);
+    for (size_t k = 0; k < brdfs.size(); ++k) {
+      transport.Render(brdfs[k], light.rest.rgb.data(),
+                       L_o[k].data() + 3 * begin);
+    }
+  }
+  std::vector<Image> images;
+  for (const std::vector<double>& radiance : L_o) {
+    images.push_back(PixelMeans(points, radiance.data(), size, size));
+  }
+  return images;
 }
 
 Mask BrdfSphereMask(int size) {
+  CHECK_GT(size, 1);
+  const auto place = [size](int at) { return 2.0 * (at + 0.5) / size - 1.0; };
   Mask mask(size, size, 0);
-  for (const ShadingPoint& point : SpherePoints(size, 1)) {
-    mask.inside[point.pixel] = 1;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const double square = place(x) * place(x) + place(y) * place(y);
+      mask.inside[static_cast<size_t>(y) * size + x] = square < 1.0 ? 1 : 0;
+    }
   }
   return mask;
 }

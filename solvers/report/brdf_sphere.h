@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "ibrdf/brdf/brdf_grid.h"
-#include "ibrdf/brdf/merl_table.h"
 #include "ibrdf/image/image.h"
 
 namespace ibrdf {
@@ -29,12 +28,13 @@ Image ProceduralSky(int height, int width);
 // several threads at a time.
 Image RenderBrdfSphere(const BrdfFunction& brdf,
                        const std::vector<DirectionalLight>& lights, int size,
-                       int samples_per_side = 3);
+                       int samples_per_side = 3, int num_threads = 0);
 
-// The same of a complete table under an environment map, at pixel centres, with
-// a coarse quadrature (for the eye, not for measurements).
-Image RenderBrdfSphere(const MerlTable& table, const Image& map, int size,
-                       int num_threads = 0);
+// The same of each reflectance under an environment map, at pixel centres, with
+// a coarse quadrature (for the eye, not for measurements). All have one grid.
+std::vector<Image> RenderBrdfSpheres(const std::vector<BrdfGrid>& brdfs,
+                                     const Image& map, int size,
+                                     int num_threads = 0);
 
 // The pixels whose centre lies on that sphere.
 Mask BrdfSphereMask(int size);

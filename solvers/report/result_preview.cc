@@ -201,21 +201,32 @@ struct Spheres {
   Image directional, sky, small_sky;
 };
 
-Image DirectionalSphere(const BrdfFunction& brdf) {
+Image DirectionalSphere(const BrdfFunction& brdf, int num_threads) {
   return RenderBrdfSphere(brdf, StudioLights(), kSphereSamples * kSphereSize,
-                          1);
+                          /*samples_per_side=*/1, num_threads);
 }
 
-Spheres RenderSpheres(const MerlTable& table, int num_threads) {
-  Spheres spheres;
-  spheres.directional =
-      DirectionalSphere([&table](double theta_h, double theta_d, double phi_d) {
-        return InterpolateMerl(table, theta_h, theta_d, phi_d);
-      });
-  spheres.small_sky =
-      RenderBrdfSphere(table, ProceduralSky(kSkyHeight, 2 * kSkyHeight),
-                       kSkySphereSize, num_threads);
-  spheres.sky = ResizeSphere(spheres.small_sky, kSphereSamples * kSphereSize);
+std::vector<Spheres> RenderSpheres(const std::vector<const MerlTable*>& tables,
+                                   int num_threads) {
+  std::vector<Spheres> spheres(tables.size());
+  std::vector<BrdfGrid> grids;
+  for (size_t k = 0; k < tables.size(); ++k) {
+    const MerlTable& table = *tables[k];
+    spheres[k].directional = DirectionalSphere(
+        [&table](double theta_h, double theta_d, double phi_d) {
+          return InterpolateMerl(table, theta_h, theta_d, phi_d);
+        },
+        num_threads);
+    grids.push_back(BrdfGrid::FromMerl(table, BrdfGridShape()));
+  }
+  std::vector<Image> in_sky =
+      RenderBrdfSpheres(grids, ProceduralSky(kSkyHeight, 2 * kSkyHeight),
+                        kSkySphereSize, num_threads);
+  for (size_t k = 0; k < tables.size(); ++k) {
+    spheres[k].small_sky = std::move(in_sky[k]);
+    spheres[k].sky =
+        ResizeSphere(spheres[k].small_sky, kSphereSamples * kSphereSize);
+  }
   return spheres;
 }
 
@@ -231,11 +242,10 @@ double SphereExposure(const Image& sphere) {
   return ExposureOf(sphere, BrdfSphereMask(sphere.width), kImageWhite);
 }
 
-Row SpherePanels(const ResultPreviewInput& input, const Spheres& estimate) {
+// `reference` is the estimate's where there is none.
+Row SpherePanels(const ResultPreviewInput& input, const Spheres& estimate,
+                 const Spheres& reference) {
   const bool compare = !input.reference_brdf.raw.empty();
-  const Spheres reference =
-      compare ? RenderSpheres(input.reference_brdf, input.num_threads)
-              : estimate;
   const double scale =
       compare ? BrdfScale(input.brdf, input.reference_brdf) : 1.0;
   const std::string name =
@@ -320,7 +330,8 @@ Row AlternativePanels(const ResultPreviewInput& input,
     const Image sphere = DirectionalSphere(
         [&grid](double theta_h, double theta_d, double phi_d) {
           return grid.Evaluate(theta_h, theta_d, phi_d);
-        });
+        },
+        input.num_threads);
     row.push_back(SpherePanel(label, sphere, SphereExposure(sphere)));
   }
   return row;
@@ -398,19 +409,21 @@ ResultPanels MakeRows(const ResultPreviewInput& input) {
   panels.other_lights = OtherLightPanels(input);
   if (input.brdf.raw.empty()) return panels;
   if (input.materials.size() > 1) {
-    std::vector<Spheres> materials;
-    for (const auto& [label, brdf] : input.materials) {
-      materials.push_back(RenderSpheres(brdf, input.num_threads));
-    }
+    std::vector<const MerlTable*> tables;
+    for (const auto& [label, brdf] : input.materials) tables.push_back(&brdf);
+    const std::vector<Spheres> materials =
+        RenderSpheres(tables, input.num_threads);
     panels.spheres = MaterialPanels(input, materials);
     panels.relit = RelitPanels(input, materials);
     return panels;
   }
-  const Spheres estimate = RenderSpheres(input.brdf, input.num_threads);
-  panels.spheres = SpherePanels(input, estimate);
   panels.spheres_compared = !input.reference_brdf.raw.empty();
-  panels.relit = RelitPanels(input, {estimate});
-  panels.alternatives = AlternativePanels(input, estimate);
+  std::vector<const MerlTable*> tables = {&input.brdf};
+  if (panels.spheres_compared) tables.push_back(&input.reference_brdf);
+  const std::vector<Spheres> spheres = RenderSpheres(tables, input.num_threads);
+  panels.spheres = SpherePanels(input, spheres.front(), spheres.back());
+  panels.relit = RelitPanels(input, {spheres.front()});
+  panels.alternatives = AlternativePanels(input, spheres.front());
   return panels;
 }
 

@@ -346,12 +346,37 @@ StatusOr<LobeTableFit> LobeTableFitter::FitFrom(
   IBRDF_RETURN_IF_ERROR(options.Check());
   const StatusOr<TableColumns> columns = ColumnsOf(table);
   if (!columns.ok()) return columns.status();
+  return FitTo(*columns, std::move(parameters), options);
+}
+
+std::vector<float> LobeTableFitter::LogValues(
+    const std::vector<double>& parameters,
+    const LobeTableFitOptions& options) const {
+  TableColumns columns{ThinColumns(fit_columns_, kFitPoints), {}};
+  columns.log_raw.assign(3 * columns.points.num_points(), 0.0f);
+  const std::vector<double> values = Residuals(columns, parameters, options);
+  return {values.begin(), values.end()};
+}
+
+StatusOr<LobeTableFit> LobeTableFitter::FitLogValues(
+    std::vector<float> log_values, std::vector<double> parameters,
+    const LobeTableFitOptions& options) const {
+  IBRDF_RETURN_IF_ERROR(options.Check());
+  const TableColumns columns{ThinColumns(fit_columns_, kFitPoints),
+                             std::move(log_values)};
+  CHECK_EQ(columns.log_raw.size(), size_t{3} * columns.points.num_points());
+  return FitTo(columns, std::move(parameters), options);
+}
+
+StatusOr<LobeTableFit> LobeTableFitter::FitTo(
+    const TableColumns& columns, std::vector<double> parameters,
+    const LobeTableFitOptions& options) const {
   Start start = {std::move(parameters), 0.0};
-  Finish(*columns, options, &start);
+  Finish(columns, options, &start);
   if (!std::isfinite(start.cost)) {
     return Status(StatusCode::kNoImprovement, "no lobes near the start fit");
   }
-  return FitOf(*columns, options, std::move(start.parameters));
+  return FitOf(columns, options, std::move(start.parameters));
 }
 
 StatusOr<LobeTableFit> LobeTableFitter::AddLambertian(
@@ -406,14 +431,21 @@ LobeTableFitter::Start LobeTableFitter::AddLobes(
   return best;
 }
 
-double LobeTableFitter::LogRmse(const TableColumns& columns,
-                                const std::vector<double>& parameters,
-                                const LobeTableFitOptions& options) const {
+std::vector<double> LobeTableFitter::Residuals(
+    const TableColumns& columns, const std::vector<double>& parameters,
+    const LobeTableFitOptions& options) const {
   const LogTableCost cost(*flow_, LayoutOf(parameters), model_.exponent,
                           columns, kLogFloor, 1.0, options.num_threads);
   std::vector<double> residuals(columns.log_raw.size());
   const double* block = parameters.data();
   cost.Evaluate(&block, residuals.data(), nullptr);
+  return residuals;
+}
+
+double LobeTableFitter::LogRmse(const TableColumns& columns,
+                                const std::vector<double>& parameters,
+                                const LobeTableFitOptions& options) const {
+  const std::vector<double> residuals = Residuals(columns, parameters, options);
   const double square = std::inner_product(residuals.begin(), residuals.end(),
                                            residuals.begin(), 0.0);
   return std::sqrt(square / CountMeasured(columns.log_raw));

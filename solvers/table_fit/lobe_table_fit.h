@@ -65,6 +65,17 @@ class LobeTableFitter {
                                  std::vector<double> parameters,
                                  const LobeTableFitOptions& options) const;
 
+  // log(f + 1e-6) of lobes, raw units, at the bins that a fit sees, [3][bins]:
+  // some thousands, each as likely to be among them as any other of a table.
+  // They are the same of every model.
+  std::vector<float> LogValues(const std::vector<double>& parameters,
+                               const LobeTableFitOptions& options) const;
+
+  // As FitFrom to a table with these LogValues.
+  StatusOr<LobeTableFit> FitLogValues(std::vector<float> log_values,
+                                      std::vector<double> parameters,
+                                      const LobeTableFitOptions& options) const;
+
   // A Lambertian lobe beside the lobes of a table's fit without one, all of
   // them refined from there: near the same lobes of the flow, where Fit with
   // `lambertian` may find others that fit better.
@@ -80,6 +91,9 @@ class LobeTableFitter {
     std::vector<double> parameters;  // empty where no cost is finite
     double cost = 0.0;
   };
+  StatusOr<LobeTableFit> FitTo(const TableColumns& columns,
+                               std::vector<double> parameters,
+                               const LobeTableFitOptions& options) const;
   // What a fit sees of a table; refuses values that are not finite.
   StatusOr<TableColumns> ColumnsOf(const MerlTable& table) const;
   // Lobes of the flow added one by one to `base`, which may be empty, at the
@@ -104,6 +118,10 @@ class LobeTableFitter {
   // As many lobes as the parameters make.
   LobeLayout LayoutOf(const std::vector<double>& parameters) const;
 
+  // Of lobes at the columns, [3][points].
+  std::vector<double> Residuals(const TableColumns& columns,
+                                const std::vector<double>& parameters,
+                                const LobeTableFitOptions& options) const;
   // Root mean square of the residuals over the columns.
   double LogRmse(const TableColumns& columns,
                  const std::vector<double>& parameters,

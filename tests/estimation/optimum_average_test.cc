@@ -27,26 +27,6 @@ TEST(OptimumWeights, WhatIsFarOffCountsNothing) {
   EXPECT_TRUE(OptimumWeights({}).empty());
 }
 
-TEST(LogTableMean, IsGeometricAndKeepsBinsWithoutValues) {
-  LogTableMean mean;
-  mean.Add({{4.0, -1.0, 0.0, 1e8}}, 1.0);
-  mean.Add({{9.0, -1.0, 0.0, 1e-2}}, 1.0);
-  const MerlTable out = mean.Mean();
-  EXPECT_NEAR(6.0, out.raw[0], 1e-5);
-  EXPECT_EQ(-1.0, out.raw[1]);
-  EXPECT_NEAR(0.0, out.raw[2], 1e-15);
-  EXPECT_NEAR(1e3, out.raw[3], 0.1);
-}
-
-TEST(LogTableMean, OfOneTableIsIt) {
-  LogTableMean mean;
-  mean.Add({{4.0, 1e-5, 3e4}}, 0.3);
-  const MerlTable out = mean.Mean();
-  EXPECT_NEAR(4.0, out.raw[0], 1e-12);
-  EXPECT_NEAR(1e-5, out.raw[1], 1e-15);
-  EXPECT_NEAR(3e4, out.raw[2], 1e-8);
-}
-
 class AverageOptimaTest : public ::testing::Test {
  protected:
   AverageOptimaTest() : problem_(BallProblem(12)), other_(BallProblem(12)) {
@@ -93,6 +73,17 @@ class AverageOptimaTest : public ::testing::Test {
     return CompareBrdfs(TableOf(setup, lobes), table)->log_rmse_aligned;
   }
 
+  static MerlTable GeometricMean(const MerlTable& a, const MerlTable& b) {
+    constexpr double kFloor = 1e-6;
+    MerlTable mean = a;  // keeps the bins without values
+    for (size_t i = 0; i < mean.raw.size(); ++i) {
+      if (a.raw[i] < 0.0) continue;
+      mean.raw[i] =
+          std::sqrt((a.raw[i] + kFloor) * (b.raw[i] + kFloor)) - kFloor;
+    }
+    return mean;
+  }
+
   InverseProblem problem_, other_;
   std::unique_ptr<SolveSetup> setup_, of_other_;
 };
@@ -110,10 +101,8 @@ TEST_F(AverageOptimaTest, OneOptimumStaysAsItIs) {
 TEST_F(AverageOptimaTest, TwoOptimaAreMetHalfway) {
   const MaterialCandidate a = At(*setup_, 0, -800.0);
   const MaterialCandidate b = At(*setup_, 2, -800.0);
-  LogTableMean mean;
-  mean.Add(TableOf(*setup_, a.parameters), 1.0);
-  mean.Add(TableOf(*setup_, b.parameters), 1.0);
-  const MerlTable half = mean.Mean();
+  const MerlTable half = GeometricMean(TableOf(*setup_, a.parameters),
+                                       TableOf(*setup_, b.parameters));
   const OptimumAverage average = AverageOptima({Search(*setup_, {a, b})});
   const double of_either = Distance(*setup_, a.parameters, half);
   EXPECT_GT(of_either, 0.01);
@@ -149,7 +138,9 @@ TEST_F(AverageOptimaTest, ProductOfReflectanceAndLightKeepsItsLevel) {
           std::log((after.Raw(c, bin) + 1e-6) / (before.Raw(c, bin) + 1e-6));
       count += 1.0;
     }
-    EXPECT_NEAR(-gain / count, average.estimate.light.mode.Plane(c)(0, 0), 1e-4)
+    // The program sums over some thousands of nodes.
+    EXPECT_GT(std::abs(gain / count), 0.05);
+    EXPECT_NEAR(-gain / count, average.estimate.light.mode.Plane(c)(0, 0), 3e-3)
         << c;
   }
 }

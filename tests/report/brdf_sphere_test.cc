@@ -94,7 +94,8 @@ TEST(BrdfSphere, ConstantMapShowsTheAlbedo) {
     table.raw.insert(table.raw.end(), kMerlBins,
                      kAlbedo[c] / kPi / kMerlScale[c]);
   }
-  const Image image = RenderBrdfSphere(table, map, size);
+  const Image image = RenderBrdfSpheres(
+      {BrdfGrid::FromMerl(table, BrdfGridShape())}, map, size)[0];
   const Mask mask = BrdfSphereMask(size);
   for (size_t i = 0; i < mask.inside.size(); ++i) {
     for (int c = 0; c < 3; ++c) {

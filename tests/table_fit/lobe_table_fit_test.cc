@@ -265,6 +265,32 @@ TEST_F(LobeTableFitTest, CodesStayInTheBallAndScoreIsThatOfTheTable) {
   EXPECT_NEAR(full, fit->log_rmse, 0.1 * full);
 }
 
+// Lobes stand for their table: the same bins, the same fit.
+TEST_F(LobeTableFitTest, LogValuesOfLobesFitAsTheirTable) {
+  const std::vector<double> lobes = {0.3,  -0.2, 0.1, 0.4,  2.0, 1.5, 1.0,
+                                     -0.4, 0.3,  0.2, -0.1, 0.5, 0.9, 1.2};
+  std::vector<double> start = lobes;
+  for (double& x : start) x += 0.05;
+  const std::vector<float> values = fitter_.LogValues(lobes, options_);
+  const LobeTableFit by_values = *fitter_.FitLogValues(values, start, options_);
+  const LobeTableFit by_table =
+      *fitter_.FitFrom(TableOf(model_, lobes), start, options_);
+  EXPECT_NEAR(by_table.log_rmse, by_values.log_rmse, 1e-3);
+  EXPECT_LT(by_values.log_rmse, 0.02);
+  for (size_t i = 0; i < lobes.size(); ++i) {
+    EXPECT_NEAR(by_table.parameters[i], by_values.parameters[i], 0.02) << i;
+  }
+  // One channel brighter by a factor is that channel's log colours moved.
+  std::vector<double> brighter = lobes;
+  brighter[4] += 0.5;
+  brighter[11] += 0.5;
+  const std::vector<float> moved = fitter_.LogValues(brighter, options_);
+  const size_t bins = values.size() / 3;
+  for (size_t i = 0; i < values.size(); ++i) {
+    EXPECT_NEAR(values[i] + (i < bins ? 0.5 : 0.0), moved[i], 1e-3) << i;
+  }
+}
+
 TEST_F(LobeTableFitTest, OptionsOutOfRangeAreRefused) {
   EXPECT_TRUE(LobeTableFitOptions().Check().ok());
   const MerlTable table = TableOf(model_, {0.3, 0.3, 0.3, 0.3, 4.0, 3.0, 2.0});

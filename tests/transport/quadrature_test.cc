@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/simd_dispatch.h"
+#include "ibrdf/brdf/brdf_grid.h"
 #include "tests/support/render_testing.h"
 
 namespace ibrdf {
@@ -88,6 +91,7 @@ TEST(Quadrature, SamplesAgreeWithHalfDiffAngles) {
       const HalfDiff a = ToHalfDiff(to_local * s.wi, to_local * wo);
       ASSERT_NEAR(a.theta_h, s.theta_h, 1e-8);
       ASSERT_NEAR(a.theta_d, s.theta_d, 1e-8);
+      ASSERT_NEAR(ToUnitCube(a.theta_h, a.theta_d, a.phi_d)[0], s.x_h, 1e-6);
       // phi_d turns freely where theta_h or theta_d vanishes.
       const double dphi = std::abs(a.phi_d - s.phi_d);
       ASSERT_LT(std::min(dphi, kPi - dphi) * std::sin(a.theta_h) *
@@ -100,9 +104,70 @@ TEST(Quadrature, SamplesAgreeWithHalfDiffAngles) {
       const HalfDiff a = ToHalfDiff(to_local * wi, to_local * wo);
       ASSERT_NEAR(a.theta_h, s.theta_h, 1e-7);
       ASSERT_NEAR(a.theta_d, s.theta_d, 1e-7);
+      ASSERT_NEAR(ToUnitCube(a.theta_h, a.theta_d, a.phi_d)[0], s.x_h, 1e-6);
       const double dphi = std::abs(a.phi_d - s.phi_d);
       ASSERT_LT(std::min(dphi, kPi - dphi) * std::sin(a.theta_d), 1e-6);
     }
+  }
+}
+
+// Every version of the kernel against the formulas of its header, cells that
+// the horizon cuts among them, and blocks of any length.
+TEST(Quadrature, LevelsOfTheFarKernelAgreeWithPlainFormulas) {
+  std::vector<SampleFarFunction> levels = {portable::SampleFar};
+#if defined(IBRDF_HAVE_X86_KERNELS)
+  if (SimdLevelSupported(SimdLevel::kAvx2)) levels.push_back(avx2::SampleFar);
+  if (SimdLevelSupported(SimdLevel::kAvx512)) {
+    levels.push_back(avx512::SampleFar);
+  }
+#endif
+  const QuadratureOptions options;
+  const std::vector<FarCell> cells = MapCells(16, 32, 1);
+  const FarDirections directions(cells);
+  const Eigen::Vector3d n = Eigen::Vector3d(0.2, 0.5, 0.8).normalized();
+  FarView view{};
+  view.near_begin = options.near_begin_degrees * kPi / 180;
+  view.near_end = options.near_end_degrees * kPi / 180;
+  Eigen::Map<Eigen::Vector3d>(view.n) = n;
+  for (const double degrees : {0.0, 30.0, 89.0}) {
+    const double angle = degrees * kPi / 180;
+    const Eigen::Vector3d wo =
+        std::cos(angle) * n + std::sin(angle) * n.unitOrthogonal();
+    Eigen::Map<Eigen::Vector3d>(view.wo) = wo;
+    int counted = 0, cut = 0;
+    for (const SampleFarFunction level : levels) {
+      for (int begin = 0; begin < directions.count(); begin += 37) {
+        const int count = std::min(37, directions.count() - begin);
+        FarBlock block;
+        level(directions.columns(), begin, count, view, &block);
+        for (int i = 0; i < count; ++i) {
+          const FarCell& cell = cells[begin + i];
+          const double c = n.dot(cell.direction);
+          const double a =
+              std::hypot(n.dot(cell.half_theta), n.dot(cell.half_phi));
+          if (c <= -a) {
+            ASSERT_EQ(0.0, block.weight[i]);
+            continue;
+          }
+          if (c < 4.0 * a) {
+            ++cut;
+            ASSERT_TRUE(std::isfinite(block.weight[i]));
+            continue;  // moved above the horizon
+          }
+          const Eigen::Vector3d h = (cell.direction + wo).normalized();
+          const double theta_h = std::acos(std::min(n.dot(h), 1.0));
+          ASSERT_NEAR(
+              MeanClippedCosine(c, a) * (1.0 - NearShare(theta_h, options)),
+              block.weight[i], 1e-7);
+          if (block.weight[i] == 0.0) continue;
+          ++counted;
+          ASSERT_NEAR(theta_h, block.theta_h[i], 1e-7);
+          ASSERT_NEAR(std::acos(wo.dot(h)), block.theta_d[i], 1e-7);
+        }
+      }
+    }
+    EXPECT_GT(counted, 50);
+    EXPECT_GT(cut, 10);
   }
 }
 

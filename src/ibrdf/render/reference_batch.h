@@ -72,7 +72,7 @@ class ReferenceBatch {
   size_t sums_size_;  // doubles of a point
   PaddedMaps maps_;
   int far_height_, far_width_;
-  std::vector<FarCell> texels_;
+  FarDirections texels_;
   std::vector<float> block_power_, texel_power_;
   std::shared_ptr<const VisibilityGrid> shadows_;
   std::vector<GridRange> block_ranges_, texel_ranges_;  // under shadows

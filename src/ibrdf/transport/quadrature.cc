@@ -5,10 +5,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "ibrdf/base/fast_atan2.h"
 #include "ibrdf/base/pi.h"
+#include "ibrdf/base/simd_dispatch.h"
+#include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 
@@ -95,25 +98,61 @@ std::vector<FarCell> MapCells(int map_height, int map_width, int block) {
   return cells;
 }
 
-PointQuadrature::PointQuadrature(std::vector<FarCell> cells,
+FarDirections::FarDirections(const std::vector<FarCell>& cells) {
+  for (const FarCell& cell : cells) {
+    for (int k = 0; k < 3; ++k) {
+      values_[k].push_back(cell.direction[k]);
+      values_[3 + k].push_back(cell.half_theta[k]);
+      values_[6 + k].push_back(cell.half_phi[k]);
+    }
+  }
+}
+
+FarCellColumns FarDirections::columns() const {
+  FarCellColumns columns{};
+  for (int k = 0; k < 3; ++k) {
+    columns.direction[k] = values_[k].data();
+    columns.half_theta[k] = values_[3 + k].data();
+    columns.half_phi[k] = values_[6 + k].data();
+  }
+  return columns;
+}
+
+PointQuadrature::PointQuadrature(const std::vector<FarCell>& cells,
                                  const QuadratureOptions& options)
     : options_(options),
-      cos_near_begin_(std::cos(options.near_begin_degrees * kDegree)),
-      cos_near_end_(std::cos(options.near_end_degrees * kDegree)),
-      cells_(std::move(cells)),
+      directions_(cells),
       half_vectors_(
           Rings(options.near_rings, options.near_ring_samples, options)) {
+  for (const FarCell& cell : cells) solid_angles_.push_back(cell.solid_angle);
   CHECK(options.near_begin_degrees >= 0.0 &&
         options.near_begin_degrees < options.near_end_degrees &&
         options.near_end_degrees <= 90.0 && options.near_rings > 0 &&
         options.near_ring_samples > 0);
+  near_integral_ = NearIntegrals(options);
+}
+
+std::shared_ptr<const std::vector<double>> PointQuadrature::NearIntegrals(
+    const QuadratureOptions& options) {
+  static std::mutex mutex;
+  static double begin = 0.0, end = 0.0;
+  static std::shared_ptr<const std::vector<double>> last;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (last != nullptr && begin == options.near_begin_degrees &&
+      end == options.near_end_degrees) {
+    return last;
+  }
   const std::vector<HalfVector> fine =
       Rings(kIntegralRings, kIntegralRingSamples, options);
-  near_integral_.resize(kIntegralSteps + 1);
+  std::vector<double> integrals(kIntegralSteps + 1);
   for (int i = 0; i <= kIntegralSteps; ++i) {
     const double theta_o = 0.5 * kPi * i / kIntegralSteps;
-    near_integral_[i] = NearSum(fine, std::cos(theta_o), std::sin(theta_o));
+    integrals[i] = NearSum(fine, std::cos(theta_o), std::sin(theta_o));
   }
+  begin = options.near_begin_degrees;
+  end = options.near_end_degrees;
+  last = std::make_shared<const std::vector<double>>(std::move(integrals));
+  return last;
 }
 
 std::vector<PointQuadrature::HalfVector> PointQuadrature::Rings(
@@ -185,8 +224,8 @@ double PointQuadrature::NearSum(const std::vector<HalfVector>& half_vectors,
 double PointQuadrature::NearIntegral(double theta_o) const {
   const double x = std::clamp(theta_o / (0.5 * kPi), 0.0, 1.0) * kIntegralSteps;
   const int i = std::min(static_cast<int>(x), kIntegralSteps - 1);
-  return near_integral_[i] +
-         (x - i) * (near_integral_[i + 1] - near_integral_[i]);
+  const std::vector<double>& integral = *near_integral_;
+  return integral[i] + (x - i) * (integral[i + 1] - integral[i]);
 }
 
 double PointQuadrature::SampleNear(double cos_o, double sin_o,
@@ -214,6 +253,7 @@ double PointQuadrature::SampleNear(double cos_o, double sin_o,
       s.theta_h = angles.theta_h;
       s.theta_d = angles.theta_d;
       s.phi_d = angles.phi_d;
+      s.x_h = ToUnitCube(s.theta_h, s.theta_d, s.phi_d)[0];
     } else {
       // wo and wi are half a turn apart about h: phi_d mod pi is that of wo.
       const double x = sin_o * h.cos_p * h.cos_h - cos_o * h.sin_h;
@@ -221,6 +261,9 @@ double PointQuadrature::SampleNear(double cos_o, double sin_o,
       s.theta_h = h.theta_h;
       s.theta_d = FastAtan2(std::sqrt(x * x + y * y), cosine.oh);
       s.phi_d = FoldPhi(FastAtan2(y, x));
+      // ThetaHBound: x is sin(theta_d) cos(phi_d) of wo.
+      const double bound = FastAtan2(cosine.oh, std::abs(x));
+      s.x_h = std::sqrt(std::min(s.theta_h / bound, 1.0));
     }
     samples->push_back(s);
   }
@@ -230,49 +273,37 @@ double PointQuadrature::SampleNear(double cos_o, double sin_o,
   return correction;
 }
 
-void PointQuadrature::SampleCells(const std::vector<FarCell>& cells,
+void PointQuadrature::SampleCells(const FarDirections& cells,
                                   const Eigen::Vector3d& n,
                                   const Eigen::Vector3d& wo,
                                   std::vector<FarSample>* samples) const {
   samples->clear();
-  for (size_t i = 0; i < cells.size(); ++i) {
-    const FarCell& cell = cells[i];
-    const double c = n.dot(cell.direction);
-    const double along_theta = n.dot(cell.half_theta);
-    const double along_phi = n.dot(cell.half_phi);
-    const double a =
-        std::sqrt(along_theta * along_theta + along_phi * along_phi);
-    if (c <= -a) continue;
-    const Eigen::Vector3d wi = c < 4.0 * a
-                                   ? CentreAboveHorizon(cell.direction, n, c, a)
-                                   : cell.direction;
-    const Eigen::Vector3d h = wi + wo;
-    const double length = h.norm();
-    const double cos_h = std::min(n.dot(h) / length, 1.0);
-    if (cos_h >= cos_near_begin_) continue;
-    FarSample s;
-    s.theta_h = FastAtan2(std::sqrt(1.0 - cos_h * cos_h), cos_h);
-    s.weight = MeanClippedCosine(c, a);
-    if (cos_h > cos_near_end_) s.weight *= 1.0 - NearShare(s.theta_h, options_);
-    if (s.weight <= 0.0) continue;
-    const double cos_d = std::min(0.5 * length, 1.0);
-    s.theta_d = FastAtan2(std::sqrt(1.0 - cos_d * cos_d), cos_d);
-    // Components of wi across and along the direction of growing theta_h, both
-    // times sin(theta_h), which is not small here.
-    s.phi_d = FoldPhi(
-        FastAtan2(n.cross(h).dot(wi) / length, cos_h * cos_d - n.dot(wi)));
-    s.cell = static_cast<int>(i);
-    samples->push_back(s);
+  const SampleFarFunction sample = IBRDF_ACTIVE_KERNEL(SampleFar);
+  const FarCellColumns columns = cells.columns();
+  FarView view{};
+  Eigen::Map<Eigen::Vector3d>(view.n) = n;
+  Eigen::Map<Eigen::Vector3d>(view.wo) = wo;
+  view.near_begin = options_.near_begin_degrees * kDegree;
+  view.near_end = options_.near_end_degrees * kDegree;
+  FarBlock block;
+  for (int begin = 0; begin < cells.count(); begin += kFarBlock) {
+    const int count = std::min(kFarBlock, cells.count() - begin);
+    sample(columns, begin, count, view, &block);
+    for (int i = 0; i < count; ++i) {
+      if (!(block.weight[i] > 0.0)) continue;
+      samples->push_back({block.theta_h[i], block.theta_d[i], block.phi_d[i],
+                          block.x_h[i], begin + i, block.weight[i]});
+    }
   }
 }
 
 double PointQuadrature::SampleFar(const Eigen::Vector3d& n,
                                   const Eigen::Vector3d& wo,
                                   std::vector<FarSample>* samples) const {
-  SampleCells(cells_, n, wo, samples);
+  SampleCells(directions_, n, wo, samples);
   double sum = 0.0;
   for (const FarSample& s : *samples) {
-    sum += s.weight * cells_[s.cell].solid_angle;
+    sum += s.weight * solid_angles_[s.cell];
   }
   Eigen::Vector3d t, b;
   ViewFrame(n, wo, &t, &b);

@@ -6,7 +6,11 @@
 // f_r or L, so that L_o is linear in each of them.
 #pragma once
 #include <Eigen/Core>
+#include <array>
+#include <memory>
 #include <vector>
+
+#include "ibrdf/transport/quadrature_kernels.h"
 
 namespace ibrdf {
 
@@ -45,6 +49,17 @@ int NumFarCells(int map_height, int map_width, int far_width);
 // Cells of blocks of block x block texels, row-major; block divides both sides.
 std::vector<FarCell> MapCells(int map_height, int map_width, int block);
 
+// What the far rule reads of cells, component by component.
+class FarDirections {
+ public:
+  explicit FarDirections(const std::vector<FarCell>& cells);
+  int count() const { return static_cast<int>(values_[0].size()); }
+  FarCellColumns columns() const;
+
+ private:
+  std::array<std::vector<double>, 9> values_;
+};
+
 // A frame around n whose first axis t lies in the plane of n and wo, on the
 // side of wo: wo = (wo.t, 0, n.wo). n, wo: unit.
 void ViewFrame(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
@@ -52,11 +67,13 @@ void ViewFrame(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
 
 struct NearSample {
   double theta_h, theta_d, phi_d;  // radians
+  double x_h;                      // of ToUnitCube
   Eigen::Vector3d wi;              // world, unit; L is looked up here
   double weight;                   // L_o += weight f_r L
 };
 struct FarSample {
   double theta_h, theta_d, phi_d;
+  double x_h;
   int cell;
   double weight;  // L_o += weight f_r (radiance times solid angle of the cell)
 };
@@ -72,7 +89,8 @@ struct PointSamples {
 // Immutable; safe to share between threads.
 class PointQuadrature {
  public:
-  PointQuadrature(std::vector<FarCell> cells, const QuadratureOptions& options);
+  PointQuadrature(const std::vector<FarCell>& cells,
+                  const QuadratureOptions& options);
 
   // n, wo: world, unit, n.wo > 0. Sums of near and far weights (far: times the
   // cell's solid angle) are the exact shares of int cos = pi.
@@ -87,7 +105,7 @@ class PointQuadrature {
   double SampleFar(const Eigen::Vector3d& n, const Eigen::Vector3d& wo,
                    std::vector<FarSample>* samples) const;
   // The far rule over other cells, without correction.
-  void SampleCells(const std::vector<FarCell>& cells, const Eigen::Vector3d& n,
+  void SampleCells(const FarDirections& cells, const Eigen::Vector3d& n,
                    const Eigen::Vector3d& wo,
                    std::vector<FarSample>* samples) const;
 
@@ -100,15 +118,19 @@ class PointQuadrature {
   };
   static std::vector<HalfVector> Rings(int rings, int ring_samples,
                                        const QuadratureOptions& options);
+  // It takes milliseconds: kept for the options of the last call.
+  static std::shared_ptr<const std::vector<double>> NearIntegrals(
+      const QuadratureOptions& options);
   static double NearSum(const std::vector<HalfVector>& half_vectors,
                         double cos_o, double sin_o);
   double NearIntegral(double theta_o) const;
 
   QuadratureOptions options_;
-  double cos_near_begin_, cos_near_end_;
-  std::vector<FarCell> cells_;
+  FarDirections directions_;          // of the cells
+  std::vector<double> solid_angles_;  // sr
   std::vector<HalfVector> half_vectors_;
-  std::vector<double> near_integral_;  // at equal steps of theta_o
+  // At equal steps of theta_o.
+  std::shared_ptr<const std::vector<double>> near_integral_;
 };
 
 }  // namespace ibrdf

@@ -7,6 +7,7 @@
 
 #include "ibrdf/base/fast_atan2.h"
 #include "ibrdf/base/parallel_for.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/transport/map_sources.h"
@@ -24,8 +25,8 @@ uint16_t Quantise(double fraction) {
 // A pair where a sample's angles lie in the grid.
 template <typename Pair, typename Sample>
 Pair PairAt(const BrdfGridShape& shape, const Sample& sample, double weight) {
-  const BrdfGridCell cell =
-      FindCell(shape, ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d));
+  const BrdfGridCell cell = FindCell(
+      shape, {sample.x_h, sample.theta_d / (kPi / 2), sample.phi_d / kPi});
   Pair pair{};
   pair.node = static_cast<uint32_t>(
       (cell.h * shape.d + cell.d) * (shape.p + 1) + cell.p);
@@ -234,6 +235,7 @@ void ChunkBuilder::AddBright(const Sight& sight) {
     // an isotropic reflectance does not depend on it.
     sample.phi_d =
         FoldPhi(FastAtan2(across.dot(wi), cos_h * cos_d - n.dot(wi)));
+    sample.x_h = ToUnitCube(sample.theta_h, sample.theta_d, sample.phi_d)[0];
     AddSource(sample, pairs_.first_bright() + static_cast<int>(k),
               sample.weight);
   }
