@@ -57,47 +57,37 @@ std::vector<double> LobesOf(const Optimum& optimum,
   return lobes;
 }
 
-LobeFactory FactoryOf(const SolveSetup& setup) {
-  return FlowLobes::Factory(*setup.problem->model, setup.lobes->layout(),
-                            setup.problem->num_threads);
-}
-
-// Lobes and the log of their values, as LobeDistance's.
-struct Reflectance {
-  std::vector<double> lobes, log_values;
-};
-
-// Root mean square of the optima's distances from a reflectance of the model
-// that `metric` is of, by weight.
-double DistanceFrom(const Reflectance& from, const LobeDistance& metric,
-                    const std::vector<Optimum>& optima,
-                    const std::vector<ModelOptima>& models) {
+// Root mean square of a - b, [3][bins]; aligned: after each channel's mean.
+double LogRmse(const std::vector<float>& a, const std::vector<float>& b,
+               bool aligned) {
+  const size_t bins = a.size() / 3;
   double squares = 0.0;
-  for (const Optimum& optimum : optima) {
-    const ModelOptima& of = models[optimum.model];
-    const std::vector<double> values =
-        LobeDistance(FactoryOf(*of.setup)).LogValues(LobesOf(optimum, models));
-    const double distance = of.gauge != nullptr
-                                ? metric.Aligned(values, from.log_values)
-                                : metric.WithLevel(values, from.log_values);
-    squares += optimum.weight * distance * distance;
+  for (size_t first = 0; first < a.size(); first += bins) {
+    double sum = 0.0, square = 0.0;
+    for (size_t i = first; i < first + bins; ++i) {
+      const double d = double{a[i]} - b[i];
+      sum += d;
+      square += d * d;
+    }
+    squares += square - (aligned ? sum * sum / static_cast<double>(bins) : 0.0);
   }
-  return std::sqrt(squares);
+  return std::sqrt(std::max(squares, 0.0) / static_cast<double>(a.size()));
 }
 
-// Lobes and their logarithms' mean at the bins of a table fit.
+// The optima's logarithms at the bins of a table fit, which are the same of
+// every model, and their mean by weight. (Nodes of a grid would not do: at
+// theta_d = 90 degrees, where no bin is, lobes of two models are far apart.)
 class LogMean {
  public:
-  explicit LogMean(const SolveSetup& setup)
-      : fitter_(*setup.problem->model), options_(OptionsOf(*setup.problem)) {}
+  // setup: of the model whose lobes are to be near the mean.
+  LogMean(const SolveSetup& setup, const std::vector<Optimum>& optima,
+          const std::vector<ModelOptima>& models);
 
-  // Of all optima, by weight. Each model has the same bins.
-  void Take(const std::vector<Optimum>& optima,
-            const std::vector<ModelOptima>& models);
-  // Root mean square of the difference from lobes of the setup's model.
-  double LogRmseOf(const std::vector<double>& lobes) const;
-  // The lobes of the setup's model that are nearest, from the best of starts;
-  // no parameters where no fit comes to anything.
+  double DistanceOf(const std::vector<double>& lobes) const;
+  // Root mean square of the optima's distances from lobes, by weight.
+  double Spread(const std::vector<double>& lobes, bool aligned) const;
+  // The lobes that are nearest to the mean, from the best of starts; no
+  // parameters where no fit comes to anything.
   LobeTableFit Nearest(const std::vector<std::vector<double>>& starts) const;
 
  private:
@@ -105,6 +95,8 @@ class LogMean {
 
   const LobeTableFitter fitter_;
   const LobeTableFitOptions options_;
+  std::vector<double> weights_;             // of the optima
+  std::vector<std::vector<float>> values_;  // of each, [3][bins]
   std::vector<float> mean_;
 };
 
@@ -116,8 +108,9 @@ LobeTableFitOptions LogMean::OptionsOf(const InverseProblem& problem) {
   return options;
 }
 
-void LogMean::Take(const std::vector<Optimum>& optima,
-                   const std::vector<ModelOptima>& models) {
+LogMean::LogMean(const SolveSetup& setup, const std::vector<Optimum>& optima,
+                 const std::vector<ModelOptima>& models)
+    : fitter_(*setup.problem->model), options_(OptionsOf(*setup.problem)) {
   std::vector<std::unique_ptr<const LobeTableFitter>> fitters(models.size());
   std::vector<double> sum;
   for (const Optimum& optimum : optima) {
@@ -126,24 +119,28 @@ void LogMean::Take(const std::vector<Optimum>& optima,
       fitter = std::make_unique<const LobeTableFitter>(
           *models[optimum.model].setup->problem->model);
     }
-    const std::vector<float> values =
-        fitter->LogValues(LobesOf(optimum, models), options_);
-    sum.resize(values.size());
+    weights_.push_back(optimum.weight);
+    values_.push_back(fitter->LogValues(LobesOf(optimum, models), options_));
+    sum.resize(values_.back().size());
     for (size_t i = 0; i < sum.size(); ++i) {
-      sum[i] += optimum.weight * values[i];
+      sum[i] += optimum.weight * values_.back()[i];
     }
   }
   mean_.assign(sum.begin(), sum.end());
 }
 
-double LogMean::LogRmseOf(const std::vector<double>& lobes) const {
+double LogMean::DistanceOf(const std::vector<double>& lobes) const {
+  return LogRmse(fitter_.LogValues(lobes, options_), mean_, /*aligned=*/false);
+}
+
+double LogMean::Spread(const std::vector<double>& lobes, bool aligned) const {
   const std::vector<float> values = fitter_.LogValues(lobes, options_);
   double squares = 0.0;
-  for (size_t i = 0; i < values.size(); ++i) {
-    const double d = double{values[i]} - mean_[i];
-    squares += d * d;
+  for (size_t k = 0; k < values_.size(); ++k) {
+    const double distance = LogRmse(values_[k], values, aligned);
+    squares += weights_[k] * distance * distance;
   }
-  return std::sqrt(squares / static_cast<double>(values.size()));
+  return std::sqrt(squares);
 }
 
 LobeTableFit LogMean::Nearest(
@@ -170,31 +167,32 @@ void Dim(const Eigen::Array3d& level, LogMap* mode) {
 // Puts the mean of the optima in the place of the best one.
 void TakeMean(const std::vector<Optimum>& optima,
               const std::vector<ModelOptima>& models, OptimumAverage* out) {
-  const SolveSetup& setup = *models[out->model].setup;
+  const ModelOptima& model = models[out->model];
   std::vector<std::vector<double>> starts;
   for (const Optimum& optimum : optima) {
     if (optimum.model == out->model) {
       starts.push_back(optimum.candidate->parameters);
     }
   }
-  LogMean mean(setup);
-  mean.Take(optima, models);
+  const LogMean mean(*model.setup, optima, models);
   LobeTableFit fit = mean.Nearest(starts);
   ReflectanceEstimate& estimate = out->estimate;
   // Lobes that are held, as by a narrow prior, may not come near the mean.
   if (fit.parameters.empty() ||
-      !(fit.log_rmse < mean.LogRmseOf(estimate.lobes))) {
+      !(fit.log_rmse < mean.DistanceOf(estimate.lobes))) {
     return;
   }
-  Reflectance found;
-  found.lobes = std::move(fit.parameters);
-  FixLevel(models[out->model], &found.lobes);
-  const LobeDistance metric(FactoryOf(setup));
-  found.log_values = metric.LogValues(found.lobes);
-  Dim(metric.MeanDifference(found.log_values, metric.LogValues(estimate.lobes)),
+  std::vector<double>& lobes = fit.parameters;
+  FixLevel(model, &lobes);
+  const LobeDistance metric(FlowLobes::Factory(
+      *model.setup->problem->model, model.setup->lobes->layout(),
+      model.setup->problem->num_threads));
+  Dim(metric.MeanDifference(metric.LogValues(lobes),
+                            metric.LogValues(estimate.lobes)),
       &estimate.light.mode);
-  estimate.between_optima = DistanceFrom(found, metric, optima, models);
-  estimate.lobes = std::move(found.lobes);
+  // Where the light is unknown no image tells the level.
+  estimate.between_optima = mean.Spread(lobes, model.gauge != nullptr);
+  estimate.lobes = std::move(lobes);
 }
 
 }  // namespace

@@ -127,6 +127,11 @@ MarginalReflectance::MarginalReflectance(
       process, resolution.map_height, resolution.map_width,
       static_cast<int>(directional_lights_.size()), num_threads,
       std::move(covariance), std::move(mean_paint));
+  const std::vector<float> ones(lobes_->grid_shape().num_nodes(), 1.0f);
+  for (Block& block : blocks_) {
+    if (block.transport == nullptr) continue;
+    block.uniform = std::move(TexelMatrices(block, {ones.data()})[0]);
+  }
 }
 
 std::vector<MarginalReflectance::Block> MarginalReflectance::MakeBlocks(
@@ -259,27 +264,61 @@ std::vector<double> MarginalReflectance::LogRadiance(
   return out;
 }
 
-MarginalReflectance::FloatMatrix MarginalReflectance::CellMatrix(
-    const Block& block, const DirectionalLightResponses& directional_lights,
-    const float* field) const {
+std::vector<MarginalReflectance::FloatMatrix>
+MarginalReflectance::TexelMatrices(
+    const Block& block, const std::vector<const float*>& fields) const {
   const Eigen::Index t = likelihood_->num_texels();
-  FloatMatrix by_bin(block.num_bins, likelihood_->num_sources());
-  if (block.transport == nullptr) return by_bin;
-  FloatMatrix by_point(block.num_points, t);
-  block.transport->LightMatrix(field, by_point.data());
+  std::vector<FloatMatrix> by_point(fields.size(),
+                                    FloatMatrix(block.num_points, t));
+  std::vector<float*> out;
+  for (FloatMatrix& matrix : by_point) out.push_back(matrix.data());
+  block.transport->LightMatrices(fields, out);
+  std::vector<FloatMatrix> by_bin(fields.size(),
+                                  FloatMatrix(block.num_bins, t));
   const int* const first = &binned_.first[block.first_bin];
-  for (int i = 0; i < block.num_bins; ++i) {
-    by_bin.row(i).head(t) =
-        by_point
-            .middleRows(first[i] - block.first_point, first[i + 1] - first[i])
-            .colwise()
-            .mean();
+  for (size_t k = 0; k < fields.size(); ++k) {
+    for (int i = 0; i < block.num_bins; ++i) {
+      by_bin[k].row(i) =
+          by_point[k]
+              .middleRows(first[i] - block.first_point, first[i + 1] - first[i])
+              .colwise()
+              .mean();
+    }
   }
-  by_bin.rightCols(directional_lights.num_directional_lights()) =
-      directional_lights.Of(field)
-          .middleRows(block.first_bin, block.num_bins)
-          .cast<float>();
   return by_bin;
+}
+
+std::vector<MarginalReflectance::FloatMatrix> MarginalReflectance::CellMatrices(
+    const Block& block, const DirectionalLightResponses& directional_lights,
+    const std::vector<const float*>& fields) const {
+  std::vector<FloatMatrix> cells(
+      fields.size(), FloatMatrix(block.num_bins, likelihood_->num_sources()));
+  if (block.transport == nullptr) return cells;
+  std::vector<const float*> others;
+  std::vector<FloatMatrix*> of_others;
+  const Eigen::Index t = likelihood_->num_texels();
+  for (size_t k = 0; k < fields.size(); ++k) {
+    cells[k].rightCols(directional_lights.num_directional_lights()) =
+        directional_lights.Of(fields[k])
+            .middleRows(block.first_bin, block.num_bins)
+            .cast<float>();
+    if (IsUniform(fields[k])) {
+      cells[k].leftCols(t) = block.uniform;
+    } else {
+      others.push_back(fields[k]);
+      of_others.push_back(&cells[k]);
+    }
+  }
+  const std::vector<FloatMatrix> texels = TexelMatrices(block, others);
+  for (size_t k = 0; k < others.size(); ++k) {
+    of_others[k]->leftCols(t) = texels[k];
+  }
+  return cells;
+}
+
+bool MarginalReflectance::IsUniform(const float* field) const {
+  return std::all_of(field, field + lobes_->grid_shape().num_nodes(),
+                     [](float value) { return value == 1.0f; });
 }
 
 void MarginalReflectance::CellMatrixGradient(
@@ -312,9 +351,13 @@ MarginalReflectance::ShapeMatrices(
   const size_t nodes = lobes_->grid_shape().num_nodes();
   std::vector<FloatMatrix> shapes;
   for (int m = 0; m < num_materials(); ++m) {
+    std::vector<const float*> of_material;
     for (int k = 0; k < lobes_->num_lobes(); ++k) {
-      shapes.push_back(CellMatrix(blocks_[m], directional_lights,
-                                  &fields[m][k * stride * nodes]));
+      of_material.push_back(&fields[m][k * stride * nodes]);
+    }
+    for (FloatMatrix& cells :
+         CellMatrices(blocks_[m], directional_lights, of_material)) {
+      shapes.push_back(std::move(cells));
     }
   }
   return shapes;
@@ -408,7 +451,9 @@ void MarginalReflectance::AddGradient(
       by_lobe.log_colour(k)[c] =
           colour_slopes(c, k) * by_row.cwiseProduct(shape.cast<double>()).sum();
     }
-    CellMatrixGradient(block, directional_lights, adjoint, by_node.data());
+    if (lobes.code(k).size() > 0) {
+      CellMatrixGradient(block, directional_lights, adjoint, by_node.data());
+    }
     for (Eigen::Index i = 0; i < slope.cols(); ++i) {
       gradient[num_lobe_parameters() + i] +=
           adjoint.col(t + i / 2).cast<double>().dot(

@@ -104,6 +104,7 @@ class MarginalReflectance {
     int first_bin = 0, num_bins = 0;
     int first_point = 0, num_points = 0;
     std::unique_ptr<Transport> transport;  // of the points; null: none
+    FloatMatrix uniform;  // of a shape that is 1, [bins][texels]
   };
   std::vector<Block> MakeBlocks(int num_materials, int num_threads) const;
   // Fields of each material's lobes (LobeModel::Tabulate).
@@ -149,10 +150,15 @@ class MarginalReflectance {
   // T_c of lobes of those shapes and the parameters' colours.
   std::array<RowMatrix, 3> Coloured(
       const double* parameters, const std::vector<FloatMatrix>& shapes) const;
-  // [bins of a material][sources] of a scalar field, and its transpose.
-  FloatMatrix CellMatrix(const Block& block,
-                         const DirectionalLightResponses& directional_lights,
-                         const float* field) const;
+  // [bins of a material][texels] of scalar fields.
+  std::vector<FloatMatrix> TexelMatrices(
+      const Block& block, const std::vector<const float*>& fields) const;
+  // [bins of a material][sources] of scalar fields, and the transpose of one.
+  std::vector<FloatMatrix> CellMatrices(
+      const Block& block, const DirectionalLightResponses& directional_lights,
+      const std::vector<const float*>& fields) const;
+  // Whether a shape is that of a Lambertian lobe.
+  bool IsUniform(const float* field) const;
   void CellMatrixGradient(const Block& block,
                           const DirectionalLightResponses& directional_lights,
                           const FloatMatrix& adjoint, float* gradient) const;

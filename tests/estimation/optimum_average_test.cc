@@ -120,7 +120,24 @@ TEST_F(AverageOptimaTest, LobesAreOfTheModelWhoseOptimumCostsLeast) {
   EXPECT_GT(average.model_weights[0], 0.3);
   EXPECT_EQ(static_cast<size_t>(of_other_->lobes->num_parameters()),
             average.estimate.lobes.size());
-  EXPECT_GT(average.estimate.between_optima, 0.0);
+}
+
+// The slow reference: whole tables of both models. The program looks at some
+// thousands of their bins.
+TEST_F(AverageOptimaTest, DistanceBetweenOptimaIsThatOfTheirTables) {
+  const MaterialCandidate a = At(*setup_, 0, -800.0);
+  const MaterialCandidate b = At(*of_other_, 0, -810.0);
+  const OptimumAverage average =
+      AverageOptima({Search(*setup_, {a}), Search(*of_other_, {b})});
+  const MerlTable mean = TableOf(*of_other_, average.estimate.lobes);
+  const double squares =
+      average.model_weights[0] *
+          std::pow(Distance(*setup_, a.parameters, mean), 2) +
+      average.model_weights[1] *
+          std::pow(Distance(*of_other_, b.parameters, mean), 2);
+  EXPECT_GT(squares, 1e-4);
+  EXPECT_NEAR(std::sqrt(squares), average.estimate.between_optima,
+              0.1 * std::sqrt(squares));
 }
 
 // What the reflectance gains by a mean, the light loses.

@@ -54,6 +54,31 @@ TEST_F(LightMatrixTest, TimesTheMapIsTheRender) {
   }
 }
 
+// Five fields are one more than are taken at once.
+TEST_F(LightMatrixTest, SeveralFieldsHaveTheBitsOfEach) {
+  std::vector<std::vector<float>> fields(5, RandomField());
+  for (size_t k = 0; k < fields.size(); ++k) {
+    for (size_t i = 0; i < fields[k].size(); ++i) {
+      fields[k][i] *= 1.0f + 0.1f * static_cast<float>((i + k) % 7);
+    }
+  }
+  std::vector<std::vector<float>> matrices(
+      fields.size(), std::vector<float>(points_.size() * texels_));
+  std::vector<const float*> from;
+  std::vector<float*> to;
+  for (size_t k = 0; k < fields.size(); ++k) {
+    from.push_back(fields[k].data());
+    to.push_back(matrices[k].data());
+  }
+  transport_.LightMatrices(from, to);
+  for (size_t k = 0; k < fields.size(); ++k) {
+    std::vector<float> alone(matrices[k].size());
+    transport_.LightMatrix(fields[k].data(), alone.data());
+    EXPECT_EQ(alone, matrices[k]) << k;
+    EXPECT_NE(matrices[(k + 1) % fields.size()], matrices[k]);
+  }
+}
+
 TEST_F(LightMatrixTest, GradientIsTheTranspose) {
   const std::vector<float> field = RandomField();
   std::vector<float> matrix(points_.size() * texels_), adjoint(matrix.size());

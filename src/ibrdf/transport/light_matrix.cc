@@ -17,6 +17,8 @@ using namespace taps;  // NOLINT
 
 namespace {
 
+constexpr size_t kFieldsAtOnce = 4;  // a vector of Float4
+
 // What a pair of one point reads, as shares of the map's texels, which are the
 // far rule's blocks. Light is a row of the matrix, or its adjoint.
 class TexelTaps {
@@ -30,17 +32,18 @@ class TexelTaps {
     }
   }
 
-  void Add(const FarPair& pair, float value, float* light) const {
-    light[pair.source] += value * solid_angle_[pair.source];
+  // light: [texel][4].
+  void Add(const FarPair& pair, Float4 value, float* light) const {
+    Add4(light + size_t{4} * pair.source, value * solid_angle_[pair.source]);
   }
-  void Add(const NearPair& pair, float value, float* light) const {
+  void Add(const NearPair& pair, Float4 value, float* light) const {
     float weight[4];
     BilinearWeights(pair, weight);
     const int* const to = &texel_[pair.texel];
-    light[to[0]] += weight[0] * value;
-    light[to[1]] += weight[1] * value;
-    light[to[row_]] += weight[2] * value;
-    light[to[row_ + 1]] += weight[3] * value;
+    Add4(light + size_t{4} * to[0], weight[0] * value);
+    Add4(light + size_t{4} * to[1], weight[1] * value);
+    Add4(light + size_t{4} * to[row_], weight[2] * value);
+    Add4(light + size_t{4} * to[row_ + 1], weight[3] * value);
   }
 
   float WeightedLight(const FarPair& pair, const float* light) const {
@@ -88,31 +91,45 @@ void JoinNodes(const BrdfGridShape& s,
 
 }  // namespace
 
-void Transport::LightMatrix(const float* field, float* matrix) const {
+void Transport::LightMatrices(const std::vector<const float*>& fields,
+                              const std::vector<float*>& matrices) const {
+  CHECK_EQ(fields.size(), matrices.size());
   CheckIsForMatrix(*pairs_, options_);
+  for (size_t begin = 0; begin < fields.size(); begin += kFieldsAtOnce) {
+    const size_t count = std::min(kFieldsAtOnce, fields.size() - begin);
+    FewLightMatrices(&fields[begin], &matrices[begin], count);
+  }
+}
+
+// At most kFieldsAtOnce, a lane each.
+void Transport::FewLightMatrices(const float* const* fields,
+                                 float* const* matrices, size_t count) const {
   const std::vector<float> nodes =
-      PadFields(options_.grid, &field, 1, 1, options_.num_threads);
+      PadFields(options_.grid, fields, static_cast<int>(count), kFieldsAtOnce,
+                options_.num_threads);
   const Corners corners(options_.grid);
   const TexelTaps texels(*pairs_);
+  const size_t num_texels = pairs_->num_texels();
   const auto value = [&](const auto& pair) {
-    float weight[8], sum = 0.0f;
-    TrilinearWeights(pair, weight);
-    for (int k = 0; k < 8; ++k) {
-      sum += weight[k] * nodes[pair.node + corners.offset[k]];
-    }
-    return sum * pair.weight;
+    return Interpolate(pair, corners, nodes.data()) * pair.weight;
   };
   ParallelFor(static_cast<int64_t>(pairs_->chunks.size()), options_.num_threads,
               [&](int64_t index, int) {
+                std::vector<float> sums(kFieldsAtOnce * num_texels);
                 ForPoints(pairs_->chunks[index], [&](int point, const auto& far,
                                                      const auto& near) {
-                  float* const out = matrix + pairs_->num_texels() * point;
-                  std::fill_n(out, pairs_->num_texels(), 0.0f);
+                  std::fill(sums.begin(), sums.end(), 0.0f);
                   for (const FarPair& pair : far) {
-                    texels.Add(pair, value(pair), out);
+                    texels.Add(pair, value(pair), sums.data());
                   }
                   for (const NearPair& pair : near) {
-                    texels.Add(pair, value(pair), out);
+                    texels.Add(pair, value(pair), sums.data());
+                  }
+                  for (size_t k = 0; k < count; ++k) {
+                    float* const out = matrices[k] + num_texels * point;
+                    for (size_t t = 0; t < num_texels; ++t) {
+                      out[t] = sums[kFieldsAtOnce * t + k];
+                    }
                   }
                 });
               });

@@ -127,7 +127,12 @@ class Transport {
   // scalar field [nodes], matrix [points][H * W] with L_o_i = sum_t matrix_it
   // L_t. The map must not be wider than QuadratureOptions::far_width; neither
   // interreflection nor bright light is taken.
-  void LightMatrix(const float* field, float* matrix) const;
+  void LightMatrix(const float* field, float* matrix) const {
+    LightMatrices({field}, {matrix});
+  }
+  // Of several fields, with the same bits: four take little more time than one.
+  void LightMatrices(const std::vector<const float*>& fields,
+                     const std::vector<float*>& matrices) const;
   // Its transpose in the field: gradient [nodes] of sum adjoint . matrix.
   void LightMatrixGradient(const float* adjoint, float* gradient) const;
 
@@ -138,6 +143,8 @@ class Transport {
   Transport(const TransportOptions& options,
             std::shared_ptr<const TransportPairs> pairs);
 
+  void FewLightMatrices(const float* const* fields, float* const* matrices,
+                        size_t count) const;
   // Three channels on the padded grid: four floats a node, the last one 0.
   std::vector<float> PadGrid(const BrdfGrid& grid) const;
   PaddedGrids PadGrids(const MaterialGrids& grids) const;
