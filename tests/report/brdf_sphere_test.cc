@@ -7,7 +7,11 @@
 #include <cmath>
 
 #include "ibrdf/base/pi.h"
+#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/geometry/camera.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/render/reference_renderer.h"
+#include "ibrdf/scene/scene.h"
 
 namespace ibrdf {
 namespace {
@@ -28,6 +32,13 @@ bool NormalAt(int x, int y, int size, Eigen::Vector3d* n) {
   if (u * u + v * v >= 1.0) return false;
   *n = Eigen::Vector3d(u, v, std::sqrt(1.0 - u * u - v * v));
   return true;
+}
+
+// Of a pixel from the middle, by that of the sphere.
+double Radius(size_t pixel, int size) {
+  const double u = 2.0 * (pixel % size + 0.5) / size - 1.0;
+  const double v = 1.0 - 2.0 * (pixel / size + 0.5) / size;
+  return std::hypot(u, v);
 }
 
 TEST(BrdfSphere, LambertianIsAlbedoTimesTheCosinesOfItsLights) {
@@ -102,6 +113,39 @@ TEST(BrdfSphere, ConstantMapShowsTheAlbedo) {
       EXPECT_NEAR(image.rgb[3 * i + c], mask.inside[i] ? 2.0 * kAlbedo[c] : 0.0,
                   kQuadratureTolerance);
     }
+  }
+}
+
+// Against the slow renderer under the report's own sky: matte, glossy and a
+// mirror of some degrees, the sun in each.
+TEST(BrdfSphere, ShowsTheSkyAsTheReferenceDoes) {
+  const Image sky = ProceduralSky(64, 128);
+  const int size = 40;
+  const std::vector<ShadingPoint> points =
+      *FindShadingPoints(Scene::UnitSphere(), Camera(), size, size, Mask(), 1);
+  for (const double roughness : {0.5, 0.2, 0.05}) {
+    CookTorrance brdf;
+    brdf.roughness.setConstant(roughness);
+    brdf.f0.setConstant(0.5);
+    const Image image = RenderBrdfSpheres(
+        {BrdfGrid::FromFunction(brdf.Function(), BrdfGridShape())}, sky,
+        size)[0];
+    std::vector<double> L_o(3 * points.size());
+    ReferenceRenderer(sky, {}).Render(points, brdf.Function(), L_o.data());
+    const Image reference = PixelMeans(points, L_o.data(), size, size);
+    double sum = 0.0, largest = 0.0;
+    int count = 0;
+    for (size_t i = 0; i < image.rgb.size(); ++i) {
+      // At the limb the grid is off, not the sky.
+      if (Radius(i / 3, size) > 0.97) continue;
+      const double d = std::abs(std::log(image.rgb[i] / reference.rgb[i]));
+      sum += d;
+      largest = std::max(largest, d);
+      ++count;
+    }
+    EXPECT_GT(count, 3000);
+    EXPECT_LT(sum / count, 0.02) << roughness;
+    EXPECT_LT(largest, 0.2) << roughness;
   }
 }
 
