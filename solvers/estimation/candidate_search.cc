@@ -77,9 +77,10 @@ std::vector<CandidateSearch::Candidate> CandidateSearch::FirstCandidates(
   for (int k = 0; k < count && !(k > 0 && stop()); ++k) {
     JointState material;
     material.lobes = ranked[k].parameters;
-    candidates.push_back(
-        Moved(MakeCandidate(ranked[k].name, material, setup_.ambient.mean),
-              kFirstSteps, kFirstRadius));
+    const Candidate from =
+        k == 0 ? candidates.front()
+               : MakeCandidate(ranked[k].name, material, setup_.ambient.mean);
+    candidates.push_back(Moved(from, kFirstSteps, kFirstRadius));
     context_->Report(Entry("candidate " + ranked[k].name, candidates.back()));
   }
   return candidates;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/metrics/log_difference.h"
 #include "ibrdf/solvers/estimation/lobe_distance.h"
 #include "ibrdf/solvers/table_fit/lobe_table_fit.h"
 
@@ -61,17 +62,13 @@ std::vector<double> LobesOf(const Optimum& optimum,
 double LogRmse(const std::vector<float>& a, const std::vector<float>& b,
                bool aligned) {
   const size_t bins = a.size() / 3;
-  double squares = 0.0;
-  for (size_t first = 0; first < a.size(); first += bins) {
-    double sum = 0.0, square = 0.0;
-    for (size_t i = first; i < first + bins; ++i) {
-      const double d = double{a[i]} - b[i];
-      sum += d;
-      square += d * d;
-    }
-    squares += square - (aligned ? sum * sum / static_cast<double>(bins) : 0.0);
+  LogDifferences differences;
+  differences.Reserve(bins);
+  const auto at = [&](size_t i) { return double{a[i]} - b[i]; };
+  for (size_t i = 0; i < bins; ++i) {
+    differences.Add({at(i), at(bins + i), at(2 * bins + i)}, 1.0);
   }
-  return std::sqrt(std::max(squares, 0.0) / static_cast<double>(a.size()));
+  return differences.Rms(aligned);
 }
 
 // The optima's logarithms at the bins of a table fit, which are the same of
@@ -79,8 +76,8 @@ double LogRmse(const std::vector<float>& a, const std::vector<float>& b,
 // theta_d = 90 degrees, where no bin is, lobes of two models are far apart.)
 class LogMean {
  public:
-  // setup: of the model whose lobes are to be near the mean.
-  LogMean(const SolveSetup& setup, const std::vector<Optimum>& optima,
+  // model: whose lobes are to be near the mean; one of the optima is its.
+  LogMean(size_t model, const std::vector<Optimum>& optima,
           const std::vector<ModelOptima>& models);
 
   double DistanceOf(const std::vector<double>& lobes) const;
@@ -93,8 +90,8 @@ class LogMean {
  private:
   static LobeTableFitOptions OptionsOf(const InverseProblem& problem);
 
-  const LobeTableFitter fitter_;
   const LobeTableFitOptions options_;
+  std::unique_ptr<const LobeTableFitter> fitter_;
   std::vector<double> weights_;             // of the optima
   std::vector<std::vector<float>> values_;  // of each, [3][bins]
   std::vector<float> mean_;
@@ -108,9 +105,9 @@ LobeTableFitOptions LogMean::OptionsOf(const InverseProblem& problem) {
   return options;
 }
 
-LogMean::LogMean(const SolveSetup& setup, const std::vector<Optimum>& optima,
+LogMean::LogMean(size_t model, const std::vector<Optimum>& optima,
                  const std::vector<ModelOptima>& models)
-    : fitter_(*setup.problem->model), options_(OptionsOf(*setup.problem)) {
+    : options_(OptionsOf(*models[model].setup->problem)) {
   std::vector<std::unique_ptr<const LobeTableFitter>> fitters(models.size());
   std::vector<double> sum;
   for (const Optimum& optimum : optima) {
@@ -127,14 +124,15 @@ LogMean::LogMean(const SolveSetup& setup, const std::vector<Optimum>& optima,
     }
   }
   mean_.assign(sum.begin(), sum.end());
+  fitter_ = std::move(fitters[model]);
 }
 
 double LogMean::DistanceOf(const std::vector<double>& lobes) const {
-  return LogRmse(fitter_.LogValues(lobes, options_), mean_, /*aligned=*/false);
+  return LogRmse(fitter_->LogValues(lobes, options_), mean_, /*aligned=*/false);
 }
 
 double LogMean::Spread(const std::vector<double>& lobes, bool aligned) const {
-  const std::vector<float> values = fitter_.LogValues(lobes, options_);
+  const std::vector<float> values = fitter_->LogValues(lobes, options_);
   double squares = 0.0;
   for (size_t k = 0; k < values_.size(); ++k) {
     const double distance = LogRmse(values_[k], values, aligned);
@@ -147,7 +145,7 @@ LobeTableFit LogMean::Nearest(
     const std::vector<std::vector<double>>& starts) const {
   LobeTableFit best;
   for (const std::vector<double>& start : starts) {
-    StatusOr<LobeTableFit> fit = fitter_.FitLogValues(mean_, start, options_);
+    StatusOr<LobeTableFit> fit = fitter_->FitLogValues(mean_, start, options_);
     if (!fit.ok()) continue;
     if (best.parameters.empty() || fit->log_rmse < best.log_rmse) {
       best = *std::move(fit);
@@ -174,7 +172,7 @@ void TakeMean(const std::vector<Optimum>& optima,
       starts.push_back(optimum.candidate->parameters);
     }
   }
-  const LogMean mean(*model.setup, optima, models);
+  const LogMean mean(out->model, optima, models);
   LobeTableFit fit = mean.Nearest(starts);
   ReflectanceEstimate& estimate = out->estimate;
   // Lobes that are held, as by a narrow prior, may not come near the mean.

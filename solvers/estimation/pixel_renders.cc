@@ -13,18 +13,23 @@ constexpr size_t kPointsAtOnce = 1024;
 
 void RenderPixels(const SolveSetup& setup, MapSize size,
                   const std::vector<PixelRender>& renders) {
+  RenderPoints(setup.pixels.points, size, setup.transport, renders);
+}
+
+void RenderPoints(const std::vector<ShadingPoint>& points, MapSize size,
+                  const TransportOptions& options,
+                  const std::vector<PixelRender>& renders) {
   if (renders.empty()) return;
-  const std::vector<ShadingPoint>& points = setup.pixels.points;
   for (const PixelRender& render : renders) {
     render.radiance->resize(3 * points.size());
   }
-  const bool bounces = setup.transport.patches != nullptr;
+  const bool bounces = options.patches != nullptr;
   const size_t at_once = bounces ? kPointsAtOnceWithBounces : kPointsAtOnce;
   for (size_t begin = 0; begin < points.size(); begin += at_once) {
     const size_t end = std::min(begin + at_once, points.size());
     const Transport transport(
         std::vector<ShadingPoint>(points.begin() + begin, points.begin() + end),
-        size.height, size.width, setup.transport);
+        size.height, size.width, options);
     for (const PixelRender& render : renders) {
       transport.Render(render.brdfs, render.map,
                        render.radiance->data() + 3 * begin);

@@ -21,6 +21,11 @@ struct PixelRender {
 void RenderPixels(const SolveSetup& setup, MapSize size,
                   const std::vector<PixelRender>& renders);
 
+// The same of any points.
+void RenderPoints(const std::vector<ShadingPoint>& points, MapSize size,
+                  const TransportOptions& options,
+                  const std::vector<PixelRender>& renders);
+
 // Values [pixels * 3] at the object's pixels, 0 elsewhere.
 Image AtPixels(const SolveSetup& setup, const std::vector<double>& values);
 

@@ -14,6 +14,7 @@
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/render/reference_renderer.h"
 #include "ibrdf/scene/scene.h"
+#include "ibrdf/solvers/estimation/pixel_renders.h"
 #include "ibrdf/transport/transport.h"
 
 namespace ibrdf {
@@ -144,18 +145,12 @@ std::vector<Image> RenderBrdfSpheres(const std::vector<BrdfGrid>& brdfs,
   // In such wide cells a sun would leave a ring where the two rules meet.
   const BrightTexels light = SplitBrightTexels(map);
   options.bright = SampleBrightTexels(light.texels, map.height, map.width, 2);
-  std::vector<std::vector<double>> L_o(brdfs.size(),
-                                       std::vector<double>(3 * points.size()));
-  for (size_t begin = 0; begin < points.size(); begin += kPointsAtOnce) {
-    const size_t end = std::min(begin + kPointsAtOnce, points.size());
-    const Transport transport(
-        std::vector<ShadingPoint>(points.begin() + begin, points.begin() + end),
-        map.height, map.width, options);
-    for (size_t k = 0; k < brdfs.size(); ++k) {
-      transport.Render(brdfs[k], light.rest.rgb.data(),
-                       L_o[k].data() + 3 * begin);
-    }
+  std::vector<std::vector<double>> L_o(brdfs.size());
+  std::vector<PixelRender> renders;
+  for (size_t k = 0; k < brdfs.size(); ++k) {
+    renders.push_back({{&brdfs[k]}, light.rest.rgb.data(), &L_o[k]});
   }
+  RenderPoints(points, {map.width, map.height}, options, renders);
   std::vector<Image> images;
   for (const std::vector<double>& radiance : L_o) {
     images.push_back(PixelMeans(points, radiance.data(), size, size));

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/solvers/joint/reflectance_solver.h"
 #include "tests/solve/ball_problem.h"
 #include "tests/support/render_testing.h"
@@ -45,9 +46,8 @@ class CoarseStepsTest : public ::testing::Test {
   }
   // Likelihood and prior of the lobes on the problem's grid.
   double Total(const JointState& state) {
-    Eigen::VectorXd x(static_cast<Eigen::Index>(state.lobes.size()));
-    std::copy(state.lobes.begin(), state.lobes.end(), x.begin());
-    return Cost(state, nullptr).likelihood + setup_->materials.Cost(x, nullptr);
+    return Cost(state, nullptr).likelihood +
+           setup_->materials.Cost(ToEigen(state.lobes), nullptr);
   }
   JointState AfterSteps(int batches, bool correct) {
     CoarseSteps steps(*setup_, setup_->pixels);
@@ -113,12 +113,11 @@ TEST_F(CoarseStepsTest, BlackRadianceCorrectsNothing) {
   options.max_steps = 3;
   options.radius = 10.0;
   options.scale = kScale;
-  const std::vector<double> black(3 * pixels_->points().size(), 0.0);
+  const size_t values = 3 * pixels_->points().size();
   for (const double value : {0.0, -1.0, std::nan("")}) {
     JointState state = start_;
     Eigen::Array3d ambient = Eigen::Array3d::Zero();
-    steps.Take(options, std::vector<double>(black.size(), value), &state,
-               &ambient);
+    steps.Take(options, std::vector<double>(values, value), &state, &ambient);
     for (const double x : state.lobes) EXPECT_TRUE(std::isfinite(x)) << value;
   }
 }
