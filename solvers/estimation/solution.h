@@ -90,6 +90,9 @@ struct Solution : MaterialSolution {
   // their shares of the evidence, sum 1. Else empty: the problem's model.
   std::vector<NamedModel> models;
   std::vector<double> model_weights;
+  // One material under a known light that leaves a large misfit: the share of
+  // it that mirrored light explains, in [0, 1]. Else 0.
+  double mirrored_share = 0.0;
   // Where the curve was unknown: the best of each family, the best first.
   std::vector<CurveEstimate> curves;
   // Labelled materials, by ShadingPoint::material. Empty: no labels.

@@ -79,6 +79,9 @@ struct InverseProblem {
   IlluminationPrior illumination_prior = IlluminationPrior::kProcess;
   int unet_channels = 32;
   std::optional<Image> known_map;
+  // The known map as fine as its file, to 1024 columns, in the file's units:
+  // what a mirror shows. Null: known_map is.
+  std::shared_ptr<const Image> fine_known_map;
   // Pixels that a known map does not light, where the reflectance is unknown.
   DarkPixels dark;
 

@@ -20,6 +20,7 @@ namespace {
 constexpr int kLeastKnownWidth = 128;
 // Beyond it texels are finer than pixels and rings (PointQuadrature) show them.
 constexpr int kMostKnownWidth = 256;
+constexpr int kMostFineWidth = 1024;
 // Blocks of texels that a transport takes of a map; the rest of its sources are
 // patches and bright samples.
 constexpr int kMostFarCells = 3 * kMaxFarSources / 4;
@@ -75,6 +76,14 @@ int KnownMapWidth(int width) {
   return out;
 }
 
+// Null where the map is no finer than it is taken.
+std::shared_ptr<const Image> FineMap(const Image& map, int taken_width) {
+  if (map.width <= taken_width || map.width % 2 != 0) return nullptr;
+  const int width = std::min(map.width, kMostFineWidth);
+  return std::make_shared<const Image>(
+      width == map.width ? map : ResizeMap(map, width / 2, width));
+}
+
 // Sets the known map, and the size that it is taken at.
 Status LoadIllumination(const Problem& problem, InverseProblem* inverse) {
   const IlluminationSpec& illumination = problem.illumination;
@@ -91,6 +100,7 @@ Status LoadIllumination(const Problem& problem, InverseProblem* inverse) {
     inverse->map_width = KnownMapWidth(map->width);
     inverse->map_height = inverse->map_width / 2;
   }
+  inverse->fine_known_map = FineMap(*map, inverse->map_width);
   inverse->known_map =
       map->width == inverse->map_width && map->height == inverse->map_height
           ? *map
@@ -134,6 +144,9 @@ Status PlanAndTraceEffects(const Problem& problem, const Scene& scene,
       inverse->map_width > kLeastKnownWidth) {
     inverse->map_width = kLeastKnownWidth;
     inverse->map_height = kLeastKnownWidth / 2;
+    if (inverse->fine_known_map == nullptr) {
+      inverse->fine_known_map = std::make_shared<const Image>(**map);
+    }
     *map = ResizeMap(**map, inverse->map_height, inverse->map_width);
   }
   TraceEffects(scene, inverse);

@@ -14,6 +14,8 @@
 namespace ibrdf {
 namespace {
 
+constexpr double kMostlyMirrored = 0.5;
+
 std::string StatusWarning(const Status& status) {
   switch (status.code()) {
     case StatusCode::kOk:
@@ -40,9 +42,17 @@ std::string MisfitWarning(const SolvedProblem& solved) {
   const double misfit = solved.metrics.misfit;
   if (!std::isfinite(misfit)) return "The misfit is not a number.";
   if (misfit <= kLargeMisfit) return "";
-  return "The estimate does not explain the image: its misfit, the mean "
-         "absolute log error, is " +
-         Format("%.2g", misfit) + ", far above usual noise. " +
+  const std::string found =
+      "The estimate does not explain the image: its misfit, the mean absolute "
+      "log error, is " +
+      Format("%.2g", misfit) + ", far above usual noise. ";
+  if (solved.solution.mirrored_share > kMostlyMirrored) {
+    return found + "Most of it is the light, mirrored more sharply. " +
+           (solved.inverse.fine_known_map != nullptr
+                ? "The map is finer than it is taken: set illumination.width."
+                : "No lobe of the models is as sharp as this mirror.");
+  }
+  return found +
          (IsOutOfTime(solved) ? "If more time does not help, check" : "Check") +
          " the shape, the mask, the camera, and that the image is linear "
          "radiance.";

@@ -2,7 +2,11 @@
 
 #include <glog/logging.h>
 
+#include <cmath>
+
 #include "ibrdf/solvers/estimation/marginal_search.h"
+#include "ibrdf/solvers/solve/mirrored_light.h"
+#include "ibrdf/solvers/solve/residual_statistics.h"
 
 namespace ibrdf {
 namespace {
@@ -12,6 +16,9 @@ namespace {
 // balls had 226 and more (docs/notes/paint.md).
 constexpr double kLeastEvidence = 180.0;
 constexpr double kUnexplained = 0.1;  // misfit
+// Paint scales what is matte as each pixel wants it. What it leaves of a
+// painted ball was a fifth of what one material left, or less.
+constexpr double kMostLeftByPaint = 0.5;
 
 }  // namespace
 
@@ -24,11 +31,30 @@ bool IsProbablyPainted(const SolveSetup& setup, SolveContext* context) {
   return evidence > kLeastEvidence;
 }
 
-bool LeavesPaint(const SolveSetup& setup, const Estimate& one_material,
-                 const SolveContext& context) {
-  return Evaluate("one material", setup, context, one_material.iterate,
-                  one_material.pixels.get())
-             .misfit > kUnexplained;
+bool LeftByOneMaterial::MayBePaint() const {
+  return misfit * std::sqrt(1.0 - mirrored) > kUnexplained;
+}
+
+bool LeftByOneMaterial::IsExplainedBy(double painted_misfit) const {
+  return painted_misfit < kMostLeftByPaint * misfit;
+}
+
+LeftByOneMaterial LeftBy(const SolveSetup& setup, const Estimate& one_material,
+                         const SolveContext& context) {
+  LeftByOneMaterial left;
+  left.misfit = Evaluate("one material", setup, context, one_material.iterate,
+                         one_material.pixels.get())
+                    .misfit;
+  if (left.misfit <= kUnexplained) return left;
+  const InverseProblem& problem = *setup.problem;
+  left.mirrored =
+      MirroredShare(problem.fine_known_map != nullptr ? *problem.fine_known_map
+                                                      : *problem.known_map,
+                    setup.pixels.points, problem.image.width,
+                    ResidualRowsOf(setup, one_material));
+  VLOG(1) << "one material leaves " << left.misfit << ", of which "
+          << left.mirrored << " is mirrored light";
+  return left;
 }
 
 }  // namespace ibrdf

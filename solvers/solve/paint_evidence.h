@@ -12,9 +12,19 @@ namespace ibrdf {
 // light, and of the former the albedo too, integrated out. Takes some seconds.
 bool IsProbablyPainted(const SolveSetup& setup, SolveContext* context);
 
-// Light known: whether the estimate of one material leaves much of the image
-// unexplained, which then nothing but the object can be.
-bool LeavesPaint(const SolveSetup& setup, const Estimate& one_material,
-                 const SolveContext& context);
+// Light known: what one material leaves of the image.
+struct LeftByOneMaterial {
+  double misfit = 0.0;
+  // The share of it that mirrored light explains (MirroredShare); 0 where the
+  // misfit is small.
+  double mirrored = 0.0;
+
+  // Much is left that nothing but the object can be.
+  bool MayBePaint() const;
+  // Paint leaves much less than one material does.
+  bool IsExplainedBy(double painted_misfit) const;
+};
+LeftByOneMaterial LeftBy(const SolveSetup& setup, const Estimate& one_material,
+                         const SolveContext& context);
 
 }  // namespace ibrdf

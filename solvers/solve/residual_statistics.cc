@@ -13,8 +13,6 @@ namespace ibrdf {
 namespace {
 
 constexpr int kMostPixels = 2000;  // that correlation is taken of
-// As a multiple of the mean: beyond it a residual counts as that.
-constexpr double kLargestResidual = 4.0;
 
 std::vector<float> RadianceOf(const LogMap& log_map) {
   std::vector<float> radiance;
@@ -35,45 +33,17 @@ std::vector<size_t> SomeRows(const Observation& pixels, int width) {
   return out;
 }
 
-// What the log radiance of these pixels lacks [indices * 3].
-std::vector<double> ResidualsOf(const Estimate& estimate,
-                                const std::vector<size_t>& indices,
-                                const SolveSetup& setup) {
-  Observation some;
-  for (const size_t i : indices) {
-    some.points.push_back(setup.pixels.points[i]);
-  }
-  const Iterate& iterate = estimate.iterate;
-  const std::vector<float> map =
-      setup.light_unknown() ? RadianceOf(LogMapOf(iterate)) : setup.known_map;
-  std::vector<double> L_o(3 * indices.size());
-  const std::vector<BrdfGrid> grids = setup.GridsOf(iterate.state.lobes);
-  ObservedPixels(setup, std::move(some))
-      .TransportFrom(SizeOf(iterate.light, setup))
-      .Render(ByMaterial(grids), map.data(), L_o.data());
-  for (size_t k = 0; k < L_o.size(); ++k) {
-    const RadianceInterval seen =
-        setup.pixels.observed.Interval(3 * indices[k / 3] + k % 3);
-    const double rendered =
-        std::max(L_o[k] + iterate.ambient[k % 3], setup.epsilon);
-    L_o[k] = std::log(std::clamp(rendered, seen.low, seen.high) / rendered);
-  }
-  return L_o;
-}
-
-// Neighbours are those in a row. Residuals beyond `largest` count as that.
-double CorrelationOf(const std::vector<double>& residuals, double largest,
-                     const std::vector<size_t>& indices,
-                     const Observation& pixels) {
+// Neighbours are those in a row.
+double CorrelationOf(const ResidualRows& rows,
+                     const std::vector<ShadingPoint>& points) {
+  const double largest = rows.LargestResidual();
   double products = 0.0, squares = 0.0;
-  for (size_t k = 0; k + 1 < indices.size(); ++k) {
-    if (pixels.points[indices[k + 1]].pixel !=
-        pixels.points[indices[k]].pixel + 1) {
-      continue;
-    }
-    for (size_t c = 3 * k; c < 3 * k + 3; ++c) {
-      const double here = std::clamp(residuals[c], -largest, largest);
-      const double next = std::clamp(residuals[c + 3], -largest, largest);
+  for (const auto& [first, second] : PairsInRows(points, rows.indices)) {
+    for (size_t c = 0; c < 3; ++c) {
+      const double here =
+          std::clamp(rows.residuals[3 * first + c], -largest, largest);
+      const double next =
+          std::clamp(rows.residuals[3 * second + c], -largest, largest);
       products += here * next;
       squares += 0.5 * (here * here + next * next);
     }
@@ -83,18 +53,61 @@ double CorrelationOf(const std::vector<double>& residuals, double largest,
 
 }  // namespace
 
+double ResidualRows::Misfit() const {
+  double sum = 0.0;
+  for (const double v : residuals) {
+    sum += std::abs(v) / static_cast<double>(residuals.size());
+  }
+  return sum;
+}
+
+std::vector<std::pair<size_t, size_t>> PairsInRows(
+    const std::vector<ShadingPoint>& points,
+    const std::vector<size_t>& indices) {
+  std::vector<std::pair<size_t, size_t>> pairs;
+  for (size_t k = 0; k + 1 < indices.size(); ++k) {
+    if (points[indices[k + 1]].pixel == points[indices[k]].pixel + 1) {
+      pairs.emplace_back(k, k + 1);
+    }
+  }
+  return pairs;
+}
+
+ResidualRows ResidualRowsOf(const SolveSetup& setup, const Estimate& estimate) {
+  ResidualRows rows;
+  rows.indices = SomeRows(setup.pixels, setup.problem->image.width);
+  if (rows.indices.empty()) return rows;
+  Observation some;
+  for (const size_t i : rows.indices) {
+    some.points.push_back(setup.pixels.points[i]);
+  }
+  const Iterate& iterate = estimate.iterate;
+  const std::vector<float> map =
+      setup.light_unknown() ? RadianceOf(LogMapOf(iterate)) : setup.known_map;
+  std::vector<double> L_o(3 * rows.indices.size());
+  const std::vector<BrdfGrid> grids = setup.GridsOf(iterate.state.lobes);
+  ObservedPixels(setup, std::move(some))
+      .TransportFrom(SizeOf(iterate.light, setup))
+      .Render(ByMaterial(grids), map.data(), L_o.data());
+  for (size_t k = 0; k < L_o.size(); ++k) {
+    const RadianceInterval seen =
+        setup.pixels.observed.Interval(3 * rows.indices[k / 3] + k % 3);
+    const double rendered =
+        std::max(L_o[k] + iterate.ambient[k % 3], setup.epsilon);
+    rows.log_render.push_back(std::log(rendered));
+    rows.residuals.push_back(
+        std::log(std::clamp(rendered, seen.low, seen.high) / rendered));
+  }
+  return rows;
+}
+
 ResidualStatistics ResidualStatisticsOf(const SolveSetup& setup,
                                         const Estimate& estimate) {
+  const ResidualRows rows = ResidualRowsOf(setup, estimate);
   ResidualStatistics out;
-  const std::vector<size_t> indices =
-      SomeRows(setup.pixels, setup.problem->image.width);
-  if (indices.empty()) return out;
-  const std::vector<double> residuals = ResidualsOf(estimate, indices, setup);
-  for (const double v : residuals) {
-    out.misfit += std::abs(v) / static_cast<double>(residuals.size());
-  }
-  out.correlation = CorrelationOf(residuals, kLargestResidual * out.misfit,
-                                  indices, setup.pixels);
+  if (rows.indices.empty()) return out;
+  out.misfit = rows.Misfit();
+  out.correlation = CorrelationOf(rows, setup.pixels.points);
   VLOG(1) << setup.problem->model_name << " leaves " << out.misfit
           << " of the log radiance; neighbours correlate by "
           << out.correlation;

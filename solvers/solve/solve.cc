@@ -37,12 +37,15 @@ StatusOr<Solution> SolveUnderKnownLight(const SolveSetup& setup,
   StatusOr<KnownLightEstimate> found = EstimateUnderKnownLight(setup, context);
   if (!found.ok()) return found.status();
   const SolveSetup& of_model = found->SetupOr(setup);
-  if (may_be_painted && LeavesPaint(of_model, found->estimate, *context)) {
-    return SolvePaintedUnderKnownLight(setup, context);
+  const LeftByOneMaterial left = LeftBy(of_model, found->estimate, *context);
+  if (may_be_painted && left.MayBePaint()) {
+    StatusOr<Solution> painted = SolvePaintedUnderKnownLight(setup, context);
+    if (!painted.ok() || left.IsExplainedBy(painted->misfit)) return painted;
   }
   Solution solution = Summarise(of_model, std::move(found->estimate), context);
   solution.models = std::move(found->models);
   solution.model_weights = std::move(found->model_weights);
+  solution.mirrored_share = left.mirrored;
   return solution;
 }
 

@@ -140,7 +140,8 @@ TEST_F(KnownLightTest, StrayLightIsNoPaint) {
   problem_.dark.ambient_deviation = 0.2 * ambient;
   const KnownLightEstimate found = Run();
   EXPECT_LT(MisfitOf(found), 0.05);
-  EXPECT_FALSE(LeavesPaint(found.SetupOr(*setup_), found.estimate, *context_));
+  EXPECT_FALSE(
+      LeftBy(found.SetupOr(*setup_), found.estimate, *context_).MayBePaint());
 }
 
 }  // namespace
