@@ -76,12 +76,10 @@ int KnownMapWidth(int width) {
   return out;
 }
 
-// Null where the map is no finer than it is taken.
-std::shared_ptr<const Image> FineMap(const Image& map, int taken_width) {
-  if (map.width <= taken_width || map.width % 2 != 0) return nullptr;
-  const int width = std::min(map.width, kMostFineWidth);
-  return std::make_shared<const Image>(
-      width == map.width ? map : ResizeMap(map, width / 2, width));
+Image FineMap(const Image& map) {
+  return map.width <= kMostFineWidth
+             ? map
+             : ResizeMap(map, kMostFineWidth / 2, kMostFineWidth);
 }
 
 // Sets the known map, and the size that it is taken at.
@@ -100,7 +98,7 @@ Status LoadIllumination(const Problem& problem, InverseProblem* inverse) {
     inverse->map_width = KnownMapWidth(map->width);
     inverse->map_height = inverse->map_width / 2;
   }
-  inverse->fine_known_map = FineMap(*map, inverse->map_width);
+  inverse->fine_known_map = std::make_shared<const Image>(FineMap(*map));
   inverse->known_map =
       map->width == inverse->map_width && map->height == inverse->map_height
           ? *map
@@ -144,9 +142,6 @@ Status PlanAndTraceEffects(const Problem& problem, const Scene& scene,
       inverse->map_width > kLeastKnownWidth) {
     inverse->map_width = kLeastKnownWidth;
     inverse->map_height = kLeastKnownWidth / 2;
-    if (inverse->fine_known_map == nullptr) {
-      inverse->fine_known_map = std::make_shared<const Image>(**map);
-    }
     *map = ResizeMap(**map, inverse->map_height, inverse->map_width);
   }
   TraceEffects(scene, inverse);

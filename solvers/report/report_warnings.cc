@@ -38,6 +38,12 @@ std::string TimeWarning(const SolvedProblem& solved) {
          "may still change.";
 }
 
+// Whether the known map has detail that the solve does not see.
+bool IsTakenCoarser(const InverseProblem& inverse) {
+  return inverse.fine_known_map != nullptr &&
+         inverse.fine_known_map->width > inverse.map_width;
+}
+
 std::string MisfitWarning(const SolvedProblem& solved) {
   const double misfit = solved.metrics.misfit;
   if (!std::isfinite(misfit)) return "The misfit is not a number.";
@@ -48,7 +54,7 @@ std::string MisfitWarning(const SolvedProblem& solved) {
       Format("%.2g", misfit) + ", far above usual noise. ";
   if (solved.solution.mirrored_share > kMostlyMirrored) {
     return found + "Most of it is the light, mirrored more sharply. " +
-           (solved.inverse.fine_known_map != nullptr
+           (IsTakenCoarser(solved.inverse)
                 ? "The map is finer than it is taken: set illumination.width."
                 : "No lobe of the models is as sharp as this mirror.");
   }

@@ -33,7 +33,7 @@ std::vector<std::pair<size_t, size_t>> PairsInRows(
     const std::vector<ShadingPoint>& points,
     const std::vector<size_t>& indices);
 
-// Of ResidualRows.
+// Two numbers for the residuals of ResidualRows.
 struct ResidualStatistics {
   double misfit = 0.0;  // mean of the absolute residuals
   // Pixels beside each other correlate by it, in [-1, 1]: noise by some 0.

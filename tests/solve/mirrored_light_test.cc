@@ -17,7 +17,7 @@ namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-// Radiance of random blobs, five octaves of it.
+// Every texel has a radiance by itself.
 Image Woods(int height) {
   std::mt19937 rng(3);
   std::normal_distribution<float> value(0.0f, 0.7f);
