@@ -117,13 +117,14 @@ StatusOr<StoredMap> DecodeStoredMap(const std::string& path,
 }
 
 StatusOr<Image> ReadMap(const std::string& path, std::optional<MapFrame> frame,
-                        std::vector<std::string>* warnings) {
+                        std::vector<std::string>* warnings, MapFrame* taken) {
   const StatusOr<StoredMap> stored = ReadStoredMap(path, frame);
   if (!stored.ok()) return stored.status();
   if (warnings != nullptr) {
     warnings->insert(warnings->end(), stored->warnings.begin(),
                      stored->warnings.end());
   }
+  if (taken != nullptr) *taken = stored->frame;
   return ToLibraryFrame(path, stored->image, stored->frame);
 }
 

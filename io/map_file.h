@@ -41,9 +41,10 @@ StatusOr<StoredMap> DecodeStoredMap(const std::string& path,
                                     const ImageLimits& limits = {});
 
 // A stored map in the library's frame, as fine as the file. `warnings` receives
-// those of the stored map; it may be null.
+// those of the stored map, `taken` its frame; both may be null.
 StatusOr<Image> ReadMap(const std::string& path, std::optional<MapFrame> frame,
-                        std::vector<std::string>* warnings = nullptr);
+                        std::vector<std::string>* warnings = nullptr,
+                        MapFrame* taken = nullptr);
 
 // Writes a map of the library to an .exr file in `frame` (FromLibraryFrame),
 // with the attribute ibrdf:frame, and envmap where the frame is openexr. Whole

@@ -51,6 +51,14 @@ struct CurveEstimate {
   double cost = 0.0;  // -log evidence, nats, above the best one's
 };
 
+// A known map in another frame: mirrored left to right or not, and then turned
+// about the up axis.
+struct MapTurn {
+  bool mirrored = false;
+  double degrees = 0.0;  // [0, 360); what was at +z is at +x after 90
+  double misfit = 0.0;   // that simple materials leave under it
+};
+
 // What a solution says of another photograph (OtherPhotograph).
 struct OtherLight {
   Image map, render;  // as Solution has them
@@ -93,6 +101,10 @@ struct Solution : MaterialSolution {
   // One material under a known light that leaves a large misfit: the share of
   // it that mirrored light explains, in [0, 1]. Else 0.
   double mirrored_share = 0.0;
+  // The same where the known map in another frame would explain the image far
+  // better, and the misfit of simple materials under the map as it is given.
+  std::optional<MapTurn> better_map_turn;
+  double misfit_of_given_map = 0.0;
   // Where the curve was unknown: the best of each family, the best first.
   std::vector<CurveEstimate> curves;
   // Labelled materials, by ShadingPoint::material. Empty: no labels.

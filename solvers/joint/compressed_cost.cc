@@ -6,6 +6,28 @@
 #include <cmath>
 
 namespace ibrdf {
+namespace {
+
+// Of the largest diagonal element.
+constexpr double kFloatRounding = 1e-7, kLargestShift = 1e-3;
+
+// H has float rounding, which may take the least of its eigenvalues below 0. It
+// is factorised with the least of a few multiples of the identity that mends
+// this. False: none does, or H is not finite.
+bool FactoriseNearly(Eigen::MatrixXd H, Eigen::LLT<Eigen::MatrixXd>* factor) {
+  if (!H.allFinite()) return false;
+  factor->compute(H);
+  const double largest = H.diagonal().maxCoeff();
+  for (double shift = kFloatRounding;
+       factor->info() != Eigen::Success && shift <= kLargestShift;
+       shift *= 10.0) {
+    H.diagonal().array() += shift * largest;
+    factor->compute(H);
+  }
+  return factor->info() == Eigen::Success;
+}
+
+}  // namespace
 
 CompressedCost::CompressedCost(JointObjective* objective,
                                const JointState& start, OnEvaluate on_evaluate)
@@ -52,8 +74,8 @@ bool CompressedCost::Compress(const JointCost& cost, double* residuals,
     H.col(i) = objective_->PriorProduct(unit);
   }
   // Symmetric but for the rounding of float kernels.
-  const Eigen::LLT<Eigen::MatrixXd> factor((H + H.transpose()) / 2);
-  if (factor.info() != Eigen::Success) return false;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+  if (!FactoriseNearly((H + H.transpose()) / 2, &factor)) return false;
   J.bottomRows(n) = factor.matrixU();
   Eigen::VectorXd r(m + n);
   r.head(m) =

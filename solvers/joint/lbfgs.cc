@@ -54,13 +54,22 @@ void RunLbfgs(MethodRun* run) {
   ceres::GradientProblemSolver::Options o;
   o.line_search_direction_type = ceres::LBFGS;
   o.max_lbfgs_rank = 20;
-  o.max_num_iterations = options.max_iterations * options.max_cg_iterations;
   o.function_tolerance = options.tolerance / options.max_cg_iterations;
+  o.parameter_tolerance = 0.0;
   o.logging_type = ceres::SILENT;
   CeresProgress progress(run);
   o.callbacks.push_back(&progress);
-  ceres::GradientProblemSolver::Summary summary;
-  ceres::Solve(o, problem, x.data(), &summary);
+  const int most = options.max_iterations * options.max_cg_iterations;
+  const int before = run->iterations();
+  // At kinks of the likelihood and of a network's activations the directions
+  // break down, and steps shrink to nothing. Without their memory they go on.
+  for (double gain = 1.0; gain > options.tolerance && !run->Stop();) {
+    o.max_num_iterations = most - (run->iterations() - before);
+    if (o.max_num_iterations <= 0) break;
+    ceres::GradientProblemSolver::Summary summary;
+    ceres::Solve(o, problem, x.data(), &summary);
+    gain = (summary.initial_cost - summary.final_cost) / summary.initial_cost;
+  }
 }
 
 }  // namespace ibrdf

@@ -11,6 +11,7 @@
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/radiance_bounds.h"
 #include "ibrdf/io/problem.h"
+#include "ibrdf/light/map_frame.h"
 #include "ibrdf/scene/scene.h"
 #include "ibrdf/solvers/effects/effects_plan.h"
 #include "ibrdf/solvers/problem/dark_pixels.h"
@@ -82,6 +83,7 @@ struct InverseProblem {
   // The known map as fine as its file, to 1024 columns, in the file's units:
   // what a mirror shows. Null: known_map is.
   std::shared_ptr<const Image> fine_known_map;
+  MapFrame known_map_frame = MapFrame::kCamera;  // that its file was read in
   // Pixels that a known map does not light, where the reflectance is unknown.
   DarkPixels dark;
 

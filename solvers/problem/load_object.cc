@@ -266,8 +266,11 @@ ReflectanceVariation ChosenVariation(const Problem& problem,
     return problem.reflectance.variation;
   }
   if (check.SeveralMaterials()) return ReflectanceVariation::kAlbedo;
-  return check.MayBePainted() ? ReflectanceVariation::kAuto
-                              : ReflectanceVariation::kNone;
+  // Under known light what one material leaves tells of paint without edges.
+  const bool by_misfit =
+      problem.kind == ProblemKind::kReflectance && !check.colours.observable;
+  return by_misfit || check.MayBePainted() ? ReflectanceVariation::kAuto
+                                           : ReflectanceVariation::kNone;
 }
 
 }  // namespace ibrdf

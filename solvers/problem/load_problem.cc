@@ -86,8 +86,8 @@ Image FineMap(const Image& map) {
 Status LoadIllumination(const Problem& problem, InverseProblem* inverse) {
   const IlluminationSpec& illumination = problem.illumination;
   if (!illumination.known()) return OkStatus();
-  const StatusOr<Image> map =
-      LoadKnownIllumination(illumination, &inverse->warnings);
+  const StatusOr<Image> map = LoadKnownIllumination(
+      illumination, &inverse->warnings, &inverse->known_map_frame);
   if (!map.ok()) return map.status();
   if (std::none_of(map->rgb.begin(), map->rgb.end(),
                    [](float v) { return v > 0.0f; })) {

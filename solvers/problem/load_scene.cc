@@ -205,12 +205,13 @@ StatusOr<TexturedSurface> LoadTexturedSurface(
 }
 
 StatusOr<Image> LoadKnownIllumination(const IlluminationSpec& illumination,
-                                      std::vector<std::string>* warnings) {
+                                      std::vector<std::string>* warnings,
+                                      MapFrame* frame) {
   if (illumination.sky.has_value()) {
     return RenderSky(*illumination.sky, illumination.height,
                      illumination.width);
   }
-  return ReadMap(illumination.known_file, illumination.frame, warnings);
+  return ReadMap(illumination.known_file, illumination.frame, warnings, frame);
 }
 
 Disney PrincipledBrdf(const PrincipledSpec& spec) {

@@ -31,10 +31,10 @@ StatusOr<TexturedSurface> LoadTexturedSurface(
     const Problem& problem, std::vector<std::string>* warnings);
 
 // The known illumination in the library's frame: the file (ReadMap), or the sky
-// made into a map of the problem's size.
+// made into a map of the problem's size. `frame` receives that of the file.
 StatusOr<Image> LoadKnownIllumination(
     const IlluminationSpec& illumination,
-    std::vector<std::string>* warnings = nullptr);
+    std::vector<std::string>* warnings = nullptr, MapFrame* frame = nullptr);
 
 // Rendered in place of all below.
 inline constexpr double kMinRoughness = 0.03;

@@ -22,6 +22,21 @@ inline constexpr double kRivalDifference = 0.1;
 // than 0.6, a quarter of the others.
 inline constexpr double kUncertain = 0.84;
 
+// What leaves the misfit of an object that mirrors known light.
+enum class MirrorCause { kNone, kMapTakenCoarser, kNoLobeAsSharp };
+inline MirrorCause CauseInMirror(const SolvedProblem& solved) {
+  constexpr double kMostlyMirrored = 0.5;
+  const InverseProblem& inverse = solved.inverse;
+  if (!(solved.metrics.misfit > kLargeMisfit) ||
+      !(solved.solution.mirrored_share > kMostlyMirrored)) {
+    return MirrorCause::kNone;
+  }
+  return inverse.fine_known_map != nullptr &&
+                 inverse.fine_known_map->width > inverse.map_width
+             ? MirrorCause::kMapTakenCoarser
+             : MirrorCause::kNoLobeAsSharp;
+}
+
 // Whether so few of the object's pixels took part that an estimate from them
 // tells nothing: two lobes alone have about as many numbers, and a fiftieth of
 // an object shows hardly any of its normals.

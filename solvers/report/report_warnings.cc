@@ -6,6 +6,7 @@
 #include "ibrdf/base/format.h"
 #include "ibrdf/solvers/effects/describe_plan.h"
 #include "ibrdf/solvers/report/light_results.h"
+#include "ibrdf/solvers/report/map_advice.h"
 #include "ibrdf/solvers/report/readable_numbers.h"
 #include "ibrdf/solvers/report/report_limits.h"
 #include "ibrdf/solvers/report/view_results.h"
@@ -13,8 +14,6 @@
 
 namespace ibrdf {
 namespace {
-
-constexpr double kMostlyMirrored = 0.5;
 
 std::string StatusWarning(const Status& status) {
   switch (status.code()) {
@@ -38,12 +37,6 @@ std::string TimeWarning(const SolvedProblem& solved) {
          "may still change.";
 }
 
-// Whether the known map has detail that the solve does not see.
-bool IsTakenCoarser(const InverseProblem& inverse) {
-  return inverse.fine_known_map != nullptr &&
-         inverse.fine_known_map->width > inverse.map_width;
-}
-
 std::string MisfitWarning(const SolvedProblem& solved) {
   const double misfit = solved.metrics.misfit;
   if (!std::isfinite(misfit)) return "The misfit is not a number.";
@@ -52,11 +45,17 @@ std::string MisfitWarning(const SolvedProblem& solved) {
       "The estimate does not explain the image: its misfit, the mean absolute "
       "log error, is " +
       Format("%.2g", misfit) + ", far above usual noise. ";
-  if (solved.solution.mirrored_share > kMostlyMirrored) {
+  const MirrorCause cause = CauseInMirror(solved);
+  if (cause != MirrorCause::kNone) {
     return found + "Most of it is the light, mirrored more sharply. " +
-           (IsTakenCoarser(solved.inverse)
+           (cause == MirrorCause::kMapTakenCoarser
                 ? "The map is finer than it is taken: set illumination.width."
                 : "No lobe of the models is as sharp as this mirror.");
+  }
+  if (solved.solution.better_map_turn.has_value()) {
+    return found +
+           "The known map may be in another frame: " + MapTurnAdvice(solved) +
+           ".";
   }
   return found +
          (IsOutOfTime(solved) ? "If more time does not help, check" : "Check") +

@@ -7,8 +7,8 @@
 #include "ibrdf/base/format.h"
 #include "ibrdf/brdf/lobe_mixture.h"
 #include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/report/map_advice.h"
 #include "ibrdf/solvers/report/readable_numbers.h"
-#include "ibrdf/solvers/report/report_limits.h"
 #include "ibrdf/solvers/solve/reflectance_spread.h"
 
 namespace ibrdf {
@@ -99,7 +99,7 @@ Trust RatePaint(const VerdictNumbers& n) {
   const bool known = n.kind == ProblemKind::kReflectance;
   return Lower(Rate(known ? kPaintErrorUnderKnownLight : kPaintErrorOfOneLight,
                     kGoodError, kFairError),
-               LevelsLost(n) + (known ? 0 : 1));
+               LevelsLost(n) + (known ? 0 : 1) + (n.paint_by_misfit ? 1 : 0));
 }
 
 TrustRatings RatingsOf(const VerdictNumbers& n) {
@@ -204,6 +204,10 @@ std::string FewPixels(const VerdictNumbers& n) {
 
 std::string MisfitReason(const VerdictNumbers& n) {
   const std::string misfit = "the misfit of " + Format("%.2f", n.misfit);
+  if (n.mirror != MirrorCause::kNone) {
+    return misfit + " is mostly light, mirrored more sharply than in the " +
+           "estimate";
+  }
   if (!FloorExplains(n)) return misfit + " is far above noise";
   return "one material in distant light cannot explain " +
          Format("%.2f", std::min(n.floor, n.misfit)) + " of " + misfit +
@@ -240,6 +244,11 @@ std::vector<std::string> Reasons(const VerdictNumbers& n) {
   }
   if (PaintMayBeGloss(n)) {
     reasons.emplace_back("paint and broad gloss explain each other");
+  }
+  if (n.paint_by_misfit) {
+    reasons.emplace_back(
+        "what no single material explains is taken for paint, and a wrong "
+        "curve, light or shape looks the same");
   }
   if (ClippedShare(n) > kClippedWord) {
     reasons.push_back(Format("%.0f", 100.0 * ClippedShare(n)) +
@@ -296,6 +305,15 @@ std::string NextSentence(const VerdictNumbers& n) {
            "together.";
   }
   const bool misfit = n.misfit > kLargeMisfit;
+  if (!n.map_advice.empty()) return "Next, " + n.map_advice + ".";
+  if (n.mirror == MirrorCause::kMapTakenCoarser) {
+    return "Next, take the known light as fine as it is: --set "
+           "illumination.width=...";
+  }
+  if (n.mirror == MirrorCause::kNoLobeAsSharp) {
+    return "Next, take the object for a sharper mirror than the estimate: no "
+           "lobe of the models is as sharp.";
+  }
   if (n.several_materials || (misfit && FloorExplains(n))) {
     return "Next, mask one material alone, without shadows of other parts.";
   }
@@ -310,7 +328,7 @@ std::string NextSentence(const VerdictNumbers& n) {
   }
   if (misfit && !n.has_mask) return "Next, give a mask of the object.";
   if (n.out_of_time) return "Next, give it more time: --set solver.seconds=...";
-  if (misfit) {
+  if (misfit || n.paint_by_misfit) {
     return "Next, check the shape, the mask, the camera and the curve of the "
            "image's values (--response).";
   }
@@ -396,6 +414,17 @@ double MedianOverLight(const Image& map, const Image& deviation) {
   return VerdictNumbers::kNone;
 }
 
+bool IsPaintByMisfit(const SolvedProblem& solved) {
+  const Problem& problem = solved.problem;
+  if (problem.kind != ProblemKind::kReflectance ||
+      problem.reflectance.variation != ReflectanceVariation::kAuto ||
+      solved.inverse.look == nullptr) {
+    return false;
+  }
+  const PhotographCheck& check = solved.inverse.look->check;
+  return !check.SeveralMaterials() && !check.MayBePainted();
+}
+
 void TakeLook(const PhotographCheck& check, VerdictNumbers* n) {
   n->floor = check.like_normals.Floor();
   n->several_materials = check.SeveralMaterials();
@@ -431,10 +460,13 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
   n.status = solution.status.code();
   n.out_of_time = IsOutOfTime(solved);
   n.misfit = solved.metrics.misfit;
+  n.mirror = CauseInMirror(solved);
   n.object_pixels = static_cast<int64_t>(solved.inverse.points.size());
   n.used_pixels = solution.pixels_used;
   if (solved.inverse.look != nullptr) TakeLook(solved.inverse.look->check, &n);
   n.has_paint = solution.has_paint();
+  n.paint_by_misfit = n.has_paint && IsPaintByMisfit(solved);
+  n.map_advice = MapTurnAdvice(solved);
   n.num_photographs = std::max<size_t>(solved.inverse.sheet.views.size(), 1) +
                       solved.inverse.other_photographs.size();
   n.num_lights = 1 + solution.other_lights.size();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ibrdf/io/problem.h"
+#include "ibrdf/solvers/report/report_limits.h"
 #include "ibrdf/solvers/report/solved_problem.h"
 
 namespace ibrdf {
@@ -44,11 +45,15 @@ struct VerdictNumbers {
   bool out_of_time = false;
   double misfit = kNone;  // mean |log L_o - log I|
   double floor = 0.0;     // what like normals leave of it for any one material
+  MirrorCause mirror = MirrorCause::kNone;
   bool several_materials = false;  // as colours of like normals say
   bool has_paint = false;          // that was estimated
-  size_t num_photographs = 1;      // views or lights
-  size_t num_lights = 1;           // of one view
+  // Nothing else asked for it than what one material leaves under known light.
+  bool paint_by_misfit = false;
+  size_t num_photographs = 1;  // views or lights
+  size_t num_lights = 1;       // of one view
   bool has_mask = true;
+  std::string map_advice;      // where another frame of the known map would be
   std::string normals_advice;  // where other normals would be more plausible
   int64_t object_pixels = 0, used_pixels = 0, clipped_pixels = 0;
   // Errors to expect, natural logarithm: of the reflectance after the best

@@ -31,6 +31,8 @@ bool IsProbablyPainted(const SolveSetup& setup, SolveContext* context) {
   return evidence > kLeastEvidence;
 }
 
+bool LeftByOneMaterial::IsMuch() const { return misfit > kUnexplained; }
+
 bool LeftByOneMaterial::MayBePaint() const {
   return misfit * std::sqrt(1.0 - mirrored) > kUnexplained;
 }
@@ -45,7 +47,7 @@ LeftByOneMaterial LeftBy(const SolveSetup& setup, const Estimate& one_material,
   left.misfit = Evaluate("one material", setup, context, one_material.iterate,
                          one_material.pixels.get())
                     .misfit;
-  if (left.misfit <= kUnexplained) return left;
+  if (!left.IsMuch()) return left;
   const InverseProblem& problem = *setup.problem;
   left.mirrored =
       MirroredShare(problem.fine_known_map != nullptr ? *problem.fine_known_map

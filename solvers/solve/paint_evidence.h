@@ -19,6 +19,7 @@ struct LeftByOneMaterial {
   // misfit is small.
   double mirrored = 0.0;
 
+  bool IsMuch() const;
   // Much is left that nothing but the object can be.
   bool MayBePaint() const;
   // Paint leaves much less than one material does.

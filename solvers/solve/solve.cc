@@ -16,6 +16,7 @@
 #include "ibrdf/solvers/solve/joint.h"
 #include "ibrdf/solvers/solve/known_light.h"
 #include "ibrdf/solvers/solve/labelled.h"
+#include "ibrdf/solvers/solve/map_turns.h"
 #include "ibrdf/solvers/solve/paint_evidence.h"
 #include "ibrdf/solvers/solve/painted.h"
 #include "ibrdf/solvers/solve/painted_known_light.h"
@@ -38,7 +39,9 @@ StatusOr<Solution> SolveUnderKnownLight(const SolveSetup& setup,
   if (!found.ok()) return found.status();
   const SolveSetup& of_model = found->SetupOr(setup);
   const LeftByOneMaterial left = LeftBy(of_model, found->estimate, *context);
-  if (may_be_painted && left.MayBePaint()) {
+  MapTurns turns;
+  if (left.IsMuch()) turns = FindMapTurns(setup);
+  if (may_be_painted && left.MayBePaint() && !turns.IsFarBetter()) {
     StatusOr<Solution> painted = SolvePaintedUnderKnownLight(setup, context);
     if (!painted.ok() || left.IsExplainedBy(painted->misfit)) return painted;
   }
@@ -46,6 +49,10 @@ StatusOr<Solution> SolveUnderKnownLight(const SolveSetup& setup,
   solution.models = std::move(found->models);
   solution.model_weights = std::move(found->model_weights);
   solution.mirrored_share = left.mirrored;
+  if (turns.IsFarBetter()) {
+    solution.better_map_turn = turns.best;
+    solution.misfit_of_given_map = turns.as_given;
+  }
   return solution;
 }
 

@@ -120,6 +120,11 @@ TEST(ChosenVariation, IsWhatIsSaidOrSeen) {
   EXPECT_EQ(ReflectanceVariation::kAuto, ChosenVariation(problem, edges));
   edges.colours.observable = true;
   EXPECT_EQ(kNone, ChosenVariation(problem, edges));
+  // Known light tells of paint that has none.
+  problem.kind = ProblemKind::kReflectance;
+  EXPECT_EQ(ReflectanceVariation::kAuto, ChosenVariation(problem, plain));
+  EXPECT_EQ(kNone, ChosenVariation(problem, edges));
+  problem.kind = ProblemKind::kJoint;
   problem.reflectance.variation = kNone;
   EXPECT_EQ(kNone, ChosenVariation(problem, painted));
   problem.reflectance.variation = kAlbedo;

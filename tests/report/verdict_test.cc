@@ -91,6 +91,97 @@ TEST(Verdict, PaintIsTheReasonOfAMisfit) {
   EXPECT_EQ(Trust::kPoor, MakeVerdict(n).ratings.light);
 }
 
+// The shape and the camera are not to blame for what a mirror shows sharply.
+TEST(Verdict, AMirrorIsTheReasonOfAMisfit) {
+  VerdictNumbers n = Good();
+  n.kind = ProblemKind::kReflectance;
+  n.misfit = 0.12;
+  n.floor = 0.1;
+  EXPECT_TRUE(Contains(MakeVerdict(n).doubt, "like normals"));
+  n.mirror = MirrorCause::kMapTakenCoarser;
+  Verdict v = MakeVerdict(n);
+  EXPECT_TRUE(Contains(v.doubt, "misfit of 0.12 is mostly light, mirrored"))
+      << v.doubt;
+  EXPECT_TRUE(Contains(v.next, "--set illumination.width=")) << v.next;
+  n.mirror = MirrorCause::kNoLobeAsSharp;
+  v = MakeVerdict(n);
+  EXPECT_TRUE(Contains(v.doubt, "mostly light, mirrored")) << v.doubt;
+  EXPECT_TRUE(Contains(v.next, "no lobe of the models is as sharp")) << v.next;
+}
+
+TEST(Verdict, CauseInMirrorIsThatOfALargeMisfitAndAMirror) {
+  const Problem problem;
+  InverseProblem inverse;
+  inverse.model = std::make_shared<const NeuralBrdfModel>(TinyModel(4));
+  const Truth truth;
+  Solution solution;
+  ResultMetrics metrics;
+  const SolvedProblem solved = {problem, inverse, truth, solution, metrics};
+  metrics.misfit = 0.2;
+  solution.mirrored_share = 0.4;
+  EXPECT_EQ(MirrorCause::kNone, CauseInMirror(solved));
+  solution.mirrored_share = 0.6;
+  EXPECT_EQ(MirrorCause::kNoLobeAsSharp, CauseInMirror(solved));
+  inverse.fine_known_map = std::make_shared<const Image>(512, 256);
+  inverse.map_width = 512;
+  EXPECT_EQ(MirrorCause::kNoLobeAsSharp, CauseInMirror(solved));
+  inverse.map_width = 256;
+  EXPECT_EQ(MirrorCause::kMapTakenCoarser, CauseInMirror(solved));
+  EXPECT_EQ(MirrorCause::kMapTakenCoarser, NumbersForVerdict(solved).mirror);
+  metrics.misfit = 0.09;
+  EXPECT_EQ(MirrorCause::kNone, CauseInMirror(solved));
+}
+
+TEST(Verdict, PaintThatOnlyAMisfitAskedForIsTrustedLess) {
+  VerdictNumbers n = Good();
+  n.kind = ProblemKind::kReflectance;
+  n.has_paint = true;
+  EXPECT_EQ(Trust::kGood, MakeVerdict(n).ratings.paint);
+  n.paint_by_misfit = true;
+  const Verdict v = MakeVerdict(n);
+  EXPECT_EQ(Trust::kFair, v.ratings.paint);
+  EXPECT_TRUE(Contains(v.doubt, "a wrong curve, light or shape looks the same"))
+      << v.doubt;
+  EXPECT_TRUE(Contains(v.next, "the curve")) << v.next;
+}
+
+// Nobody asked for it, no edge of colour is seen, and nobody gave the light.
+TEST(Verdict, PaintByMisfitIsThatOfKnownLightAndNoEdges) {
+  Problem problem;
+  problem.kind = ProblemKind::kReflectance;
+  InverseProblem inverse;
+  inverse.model = std::make_shared<const NeuralBrdfModel>(TinyModel(4));
+  ObjectLook look;
+  const Truth truth;
+  Solution solution;
+  const ResultMetrics metrics;
+  const auto by_misfit = [&] {
+    inverse.look = std::make_shared<const ObjectLook>(look);
+    return NumbersForVerdict({problem, inverse, truth, solution, metrics})
+        .paint_by_misfit;
+  };
+  EXPECT_FALSE(by_misfit());
+  solution.albedo = Image(2, 2);
+  EXPECT_TRUE(by_misfit());
+  look.check.colour_steps = 2.0 * kMayBePainted;
+  EXPECT_FALSE(by_misfit());
+  look.check.colour_steps = 0.0;
+  problem.reflectance.variation = ReflectanceVariation::kAlbedo;
+  EXPECT_FALSE(by_misfit());
+  problem.reflectance.variation = ReflectanceVariation::kAuto;
+  problem.kind = ProblemKind::kJoint;
+  EXPECT_FALSE(by_misfit());
+}
+
+TEST(Verdict, AnotherFrameOfTheMapComesFirst) {
+  VerdictNumbers n = Good();
+  n.kind = ProblemKind::kReflectance;
+  n.misfit = 0.3;
+  n.mirror = MirrorCause::kMapTakenCoarser;
+  n.map_advice = "try illumination.frame: mitsuba";
+  EXPECT_EQ("Next, try illumination.frame: mitsuba.", MakeVerdict(n).next);
+}
+
 TEST(Verdict, PaintTakesFromWhatIsKnownOfGlossAlone) {
   VerdictNumbers n = Good();
   n.has_paint = true;

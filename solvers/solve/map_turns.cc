@@ -1,0 +1,195 @@
+#include "ibrdf/solvers/solve/map_turns.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/brdf/lambertian.h"
+#include "ibrdf/light/environment_map.h"
+
+namespace ibrdf {
+namespace {
+
+using FloatMatrix =
+    Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr int kMostColumns = 64;
+constexpr size_t kMostPixels = 500;
+// Of the microfacet lobes: from near a mirror at this map's size to dull, of
+// plastic and of metal.
+constexpr double kRoughness[] = {0.07, 0.15, 0.35};
+constexpr double kF0[] = {0.04, 0.6};
+// Weights of the colours' fit, so that outliers count by their absolute value.
+constexpr int kReweightings = 5;
+constexpr double kSmallResidual = 0.05;
+constexpr int kSweeps = 60;
+// The best of many turns is somewhat better by chance.
+constexpr double kFarBetter = 0.5;
+// Renders darker than this share of the image's mean count as that.
+constexpr double kDarkestRender = 1e-4;
+
+std::vector<BrdfGrid> SimpleLobes(const BrdfGridShape& shape) {
+  std::vector<BrdfGrid> lobes = {BrdfGrid::FromFunction(
+      Lambertian{Eigen::Array3d::Ones()}.Function(), shape)};
+  for (const double roughness : kRoughness) {
+    for (const double f0 : kF0) {
+      CookTorrance lobe;
+      lobe.diffuse = 0.0;
+      lobe.roughness = roughness;
+      lobe.f0 = f0;
+      lobes.push_back(BrdfGrid::FromFunction(lobe.Function(), shape));
+    }
+  }
+  return lobes;
+}
+
+struct SomePixels {
+  std::vector<ShadingPoint> points;
+  Eigen::MatrixX3d radiance;
+};
+
+// Some whose radiance is known, not bounded.
+SomePixels SomeOf(const Observation& pixels) {
+  const Observations& observed = pixels.observed;
+  std::vector<size_t> known;
+  for (size_t i = 0; i < pixels.points.size(); ++i) {
+    bool all = observed.valid[i] != 0;
+    for (size_t v = 3 * i; v < 3 * i + 3; ++v) {
+      const RadianceInterval seen = observed.Interval(v);
+      all = all && seen.low > 0.0 && std::isfinite(seen.high);
+    }
+    if (all) known.push_back(i);
+  }
+  const size_t stride = (known.size() + kMostPixels - 1) / kMostPixels;
+  SomePixels some;
+  some.radiance.resize(static_cast<Eigen::Index>(
+                           known.empty() ? 0 : (known.size() - 1) / stride + 1),
+                       3);
+  for (size_t k = 0; k < known.size(); k += stride) {
+    for (int c = 0; c < 3; ++c) {
+      some.radiance(static_cast<Eigen::Index>(some.points.size()), c) =
+          observed.radiance[3 * known[k] + c];
+    }
+    some.points.push_back(pixels.points[known[k]]);
+  }
+  return some;
+}
+
+// At most kMostColumns wide.
+Image CoarseMap(const Image& map) {
+  int block = 1;
+  while (map.width / block > kMostColumns && map.width % (2 * block) == 0 &&
+         map.height % (2 * block) == 0) {
+    block *= 2;
+  }
+  return block == 1 ? map
+                    : ResizeMap(map, map.height / block, map.width / block);
+}
+
+// All turns, the unmirrored first: columns [turn * 3 + channel].
+FloatMatrix AllTurns(const Image& map) {
+  const int turns = 2 * map.width;
+  FloatMatrix out(static_cast<Eigen::Index>(map.num_pixels()), 3 * turns);
+  for (int turn = 0; turn < turns; ++turn) {
+    const Image turned = Turned(map, turn >= map.width, turn % map.width);
+    out.middleCols(3 * turn, 3) =
+        Eigen::Map<const FloatMatrix>(turned.rgb.data(), out.rows(), 3);
+  }
+  return out;
+}
+
+// argmin x' A x / 2 - b' x over x >= 0, from x, coordinate by coordinate.
+void MinimiseOverPositive(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+                          Eigen::VectorXd* x) {
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (Eigen::Index k = 0; k < b.size(); ++k) {
+      if (!(A(k, k) > 0.0)) continue;
+      const double step = (b[k] - A.row(k).dot(*x)) / A(k, k);
+      (*x)[k] = std::max((*x)[k] + step, 0.0);
+    }
+  }
+}
+
+// The sum over pixels of |log radiance| of a channel that the best mixture of
+// lobes leaves; shading [pixels, lobes].
+double LeftByMixture(const Eigen::MatrixXd& shading,
+                     const Eigen::VectorXd& radiance) {
+  const Eigen::MatrixXd relative =
+      radiance.cwiseInverse().asDiagonal() * shading;
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(radiance.size());
+  Eigen::VectorXd colours = Eigen::VectorXd::Zero(shading.cols());
+  for (int i = 0; i < kReweightings; ++i) {
+    const Eigen::MatrixXd weighted = weights.asDiagonal() * relative;
+    MinimiseOverPositive(relative.transpose() * weighted,
+                         weighted.colwise().sum().transpose(), &colours);
+    weights = ((relative * colours).array() - 1.0)
+                  .abs()
+                  .max(kSmallResidual)
+                  .inverse()
+                  .matrix();
+  }
+  const double darkest = kDarkestRender * radiance.mean();
+  const Eigen::ArrayXd render = (shading * colours).array().max(darkest);
+  return (render.log() - radiance.array().log()).abs().sum();
+}
+
+}  // namespace
+
+Image Turned(const Image& map, bool mirrored, int columns) {
+  Image out(map.width, map.height);
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      const int before = ((x - columns) % map.width + map.width) % map.width;
+      const float* from = map.At(mirrored ? map.width - 1 - before : before, y);
+      std::copy(from, from + 3, out.At(x, y));
+    }
+  }
+  return out;
+}
+
+bool MapTurns::IsFarBetter() const {
+  return best.misfit < kFarBetter * as_given;
+}
+
+MapTurns FindMapTurns(const SolveSetup& setup) {
+  MapTurns found;
+  const SomePixels pixels = SomeOf(setup.pixels);
+  if (pixels.points.empty()) return found;
+  const Image map = CoarseMap(*setup.problem->known_map);
+  TransportOptions options = setup.transport;
+  options.patches = nullptr;
+  options.bright.clear();
+  options.quadrature.far_width =
+      std::max(options.quadrature.far_width, map.width);
+  const Transport transport(pixels.points, map.height, map.width, options);
+  const std::vector<BrdfGrid> lobes = SimpleLobes(options.grid);
+  const FloatMatrix maps = AllTurns(map);
+  std::vector<FloatMatrix> shading;
+  FloatMatrix of_lobe(pixels.radiance.rows(), maps.rows());
+  for (const BrdfGrid& lobe : lobes) {
+    transport.LightMatrices({lobe.Channel(0)}, {of_lobe.data()});
+    shading.push_back(of_lobe * maps);
+  }
+  Eigen::MatrixXd under(pixels.radiance.rows(),
+                        static_cast<Eigen::Index>(lobes.size()));
+  for (int turn = 0; turn < 2 * map.width; ++turn) {
+    double left = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      for (Eigen::Index k = 0; k < under.cols(); ++k) {
+        under.col(k) =
+            shading[static_cast<size_t>(k)].col(3 * turn + c).cast<double>();
+      }
+      left += LeftByMixture(under, pixels.radiance.col(c));
+    }
+    const double misfit = left / static_cast<double>(pixels.radiance.size());
+    if (turn == 0) found.as_given = misfit;
+    if (turn == 0 || misfit < found.best.misfit) {
+      found.best = {turn >= map.width, 360.0 * (turn % map.width) / map.width,
+                    misfit};
+    }
+  }
+  return found;
+}
+
+}  // namespace ibrdf

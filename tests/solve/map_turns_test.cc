@@ -1,0 +1,149 @@
+#include "ibrdf/solvers/solve/map_turns.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/solve/solve.h"
+#include "tests/solve/ball_problem.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+// A room with a lamp, a window and a dark floor; no turn of it is like it.
+Image Room() {
+  Image map(32, 16);
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const bool lamp = x >= 3 && x < 6 && y >= 3 && y < 6;
+      const bool window = x >= 12 && x < 18 && y >= 5 && y < 9;
+      float* rgb = map.At(x, y);
+      for (int c = 0; c < 3; ++c) {
+        rgb[c] = y >= 9 ? 0.1f : 0.3f;
+        if (lamp) rgb[c] = c == 2 ? 10.0f : 20.0f;
+        if (window) rgb[c] = c == 2 ? 4.0f : 2.5f;
+      }
+    }
+  }
+  return map;
+}
+
+CookTorrance Plastic() {
+  CookTorrance brdf;
+  brdf.diffuse = {0.4, 0.3, 0.2};
+  brdf.roughness = 0.2;
+  return brdf;
+}
+
+// Of plastic under Room(), whose paint has log albedo `paint`(normal).
+template <typename Paint>
+InverseProblem PlasticBall(const Paint& paint) {
+  InverseProblem problem = BallProblem(40);
+  const Image map = Room();
+  problem.map_width = map.width;
+  problem.map_height = map.height;
+  problem.known_map = map;
+  const Transport transport(problem.points, map.height, map.width,
+                            problem.transport);
+  std::vector<double> L_o(3 * problem.points.size());
+  transport.Render(
+      BrdfGrid::FromFunction(Plastic().Function(), problem.transport.grid),
+      map.rgb.data(), L_o.data());
+  for (size_t i = 0; i < L_o.size(); ++i) {
+    L_o[i] *= std::exp(paint(problem.points[i / 3].normal));
+  }
+  SetNoisyImage(L_o, 0.01, &problem);
+  return problem;
+}
+
+MapTurns TurnsOf(const InverseProblem& problem) {
+  const StatusOr<SolveSetup> setup = SetUp(problem);
+  EXPECT_TRUE(setup.ok()) << setup.status().message();
+  return FindMapTurns(*setup);
+}
+
+double NoPaint(const Eigen::Vector3f&) { return 0.0; }
+// Stripes that darken the ball to two fifths, with no sharp edge.
+double Stripes(const Eigen::Vector3f& normal) {
+  return 0.6 * std::sin(7.0 * normal.x() + 4.0 * normal.y());
+}
+
+TEST(Turned, BringsDirectionsWhereItSays) {
+  const Image map = Room();
+  for (const bool mirrored : {false, true}) {
+    const Image turned = Turned(map, mirrored, 8);  // a quarter
+    for (const Eigen::Vector3d& from :
+         {Eigen::Vector3d(0.2, 0.3, 1.0), Eigen::Vector3d(-0.7, 0.4, 0.2)}) {
+      const double x = mirrored ? -from.x() : from.x();
+      // +z comes to +x, +x to -z.
+      const Eigen::Vector3d to(from.z(), from.y(), -x);
+      EXPECT_TRUE(LookUpMap(turned, to).isApprox(LookUpMap(map, from), 1e-5));
+    }
+  }
+}
+
+TEST(FindMapTurns, FindsWhatUndoesATurn) {
+  InverseProblem problem = PlasticBall(NoPaint);
+  const MapTurns right = TurnsOf(problem);
+  EXPECT_LT(right.as_given, 0.06);
+  EXPECT_FALSE(right.IsFarBetter());
+  const Image map = *problem.known_map;
+  for (const bool mirrored : {false, true}) {
+    problem.known_map = Turned(map, mirrored, 12);
+    const MapTurns turns = TurnsOf(problem);
+    EXPECT_GT(turns.as_given, 0.2);
+    EXPECT_TRUE(turns.IsFarBetter());
+    EXPECT_NEAR(right.as_given, turns.best.misfit, 0.01);
+    EXPECT_EQ(mirrored, turns.best.mirrored);
+    // A mirrored turn undoes itself.
+    EXPECT_EQ((mirrored ? 12 : 20) * 360.0 / 32, turns.best.degrees);
+  }
+}
+
+TEST(FindMapTurns, PaintIsNoTurn) {
+  const MapTurns turns = TurnsOf(PlasticBall(Stripes));
+  EXPECT_GT(turns.as_given, 0.2);
+  EXPECT_FALSE(turns.IsFarBetter());
+}
+
+TEST(FindMapTurns, EvenLightHasNone) {
+  InverseProblem problem = PlasticBall(Stripes);
+  std::fill(problem.known_map->rgb.begin(), problem.known_map->rgb.end(), 1.0f);
+  const MapTurns turns = TurnsOf(problem);
+  EXPECT_FALSE(turns.IsFarBetter());
+  EXPECT_FALSE(turns.best.mirrored);
+  EXPECT_EQ(0.0, turns.best.degrees);
+}
+
+// Under known light paint is what one material leaves; but not what another
+// frame of the map explains.
+TEST(SolveInverseRendering, TakesAMapInTheWrongFrameForNoPaint) {
+  InverseProblem problem = PlasticBall(Stripes);
+  problem.variation = ReflectanceVariation::kAuto;
+  problem.solver.max_iterations = 20;
+  StatusOr<Solution> solution =
+      SolveInverseRendering(problem, nullptr, nullptr);
+  ASSERT_TRUE(solution.ok()) << solution.status().message();
+  EXPECT_TRUE(solution->has_paint());
+  EXPECT_FALSE(solution->better_map_turn.has_value());
+
+  problem = PlasticBall(NoPaint);
+  problem.variation = ReflectanceVariation::kAuto;
+  problem.solver.max_iterations = 20;
+  problem.known_map = Turned(*problem.known_map, true, 0);
+  solution = SolveInverseRendering(problem, nullptr, nullptr);
+  ASSERT_TRUE(solution.ok()) << solution.status().message();
+  EXPECT_FALSE(solution->has_paint());
+  ASSERT_TRUE(solution->better_map_turn.has_value());
+  EXPECT_TRUE(solution->better_map_turn->mirrored);
+  EXPECT_EQ(0.0, solution->better_map_turn->degrees);
+  EXPECT_LT(solution->better_map_turn->misfit,
+            0.5 * solution->misfit_of_given_map);
+}
+
+}  // namespace
+}  // namespace ibrdf
