@@ -12,6 +12,8 @@
 namespace ibrdf {
 namespace {
 
+// Steps of this much are paint's: all of what no shading explains.
+constexpr double kAnyStep = 0.005;
 constexpr double kStudentDegrees = 3.0;
 constexpr double kSeenAnchor = 1e3;
 
@@ -139,6 +141,14 @@ AlbedoFitOptions UnderKnownShading() {
   options.edge = 0.03;
   options.edge_by_turn = 1.0;
   options.reach = 0.3;
+  return options;
+}
+
+AlbedoFitOptions OfPaintThatFades() {
+  AlbedoFitOptions options;
+  options.edge = options.chroma_edge = kAnyStep;
+  options.edge_by_turn = 0.0;
+  options.reach = 1.0;
   return options;
 }
 

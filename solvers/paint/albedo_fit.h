@@ -47,6 +47,11 @@ struct AlbedoFitOptions {
 // the render has not.
 AlbedoFitOptions UnderKnownShading();
 
+// The options where all of what changes over the object and the render has not
+// is paint's, however gently it changes. Broad gloss that the render lacks is
+// then paint, too.
+AlbedoFitOptions OfPaintThatFades();
+
 // The options where the object's size is that of one of the points' views.
 AlbedoFitOptions InViews(AlbedoFitOptions options,
                          const std::vector<ShadingPoint>& points);

@@ -33,8 +33,6 @@ constexpr double kContrast = 1.3, kMostOfObject = 0.03;
 // as simple, and the light of one lamp and a room holds where there are
 // shadows.
 constexpr double kFewerColours = 0.1;
-// Steps of this much are paint's: all of what no shading explains.
-constexpr double kAnyStep = 0.005;
 // So many of the object's points are no brighter than its brightest paint.
 constexpr double kBrightest = 0.95;
 
@@ -170,9 +168,8 @@ void TakeIfSimpler(const std::vector<ShadingPoint>& points,
   UnpaintedRadiance other;
   other.matte = SmoothShading(points, observed, neighbours);
   other.gloss = out->shading.gloss;
-  AlbedoFitOptions options;
-  options.edge = options.chroma_edge = kAnyStep;
-  options.edge_by_turn = 0.0;
+  AlbedoFitOptions options = OfPaintThatFades();
+  options.reach = AlbedoFitOptions().reach;
   std::vector<double> paint =
       PaintOf(points, {{&other, &observed}}, neighbours, options);
   if (ColourEntropy(points, observed, paint) + kFewerColours >
@@ -229,12 +226,12 @@ SharedPaint FindSharedPaint(const std::vector<ShadingPoint>& points,
 
 std::vector<double> FirstPaintUnder(
     const std::vector<ShadingPoint>& points, const Observations& observed,
-    const std::vector<NeighbourPair>& neighbours, std::vector<double> shading) {
+    const std::vector<NeighbourPair>& neighbours,
+    const AlbedoFitOptions& options, std::vector<double> shading) {
   UnpaintedRadiance unpainted;
   unpainted.matte = std::move(shading);
   unpainted.gloss.assign(3 * points.size(), 0.0);
-  return PaintOf(points, {{&unpainted, &observed}}, neighbours,
-                 AlbedoFitOptions());
+  return PaintOf(points, {{&unpainted, &observed}}, neighbours, options);
 }
 
 }  // namespace ibrdf

@@ -55,6 +55,7 @@ SharedPaint FindSharedPaint(const std::vector<ShadingPoint>& points,
 // the radiance [points * 3] of a white matte object.
 std::vector<double> FirstPaintUnder(
     const std::vector<ShadingPoint>& points, const Observations& observed,
-    const std::vector<NeighbourPair>& neighbours, std::vector<double> shading);
+    const std::vector<NeighbourPair>& neighbours,
+    const AlbedoFitOptions& options, std::vector<double> shading);
 
 }  // namespace ibrdf

@@ -24,8 +24,9 @@ constexpr double kF0[] = {0.04, 0.6};
 constexpr int kReweightings = 5;
 constexpr double kSmallResidual = 0.05;
 constexpr int kSweeps = 60;
-// The best of many turns is somewhat better by chance.
-constexpr double kFarBetter = 0.5;
+// The best of many turns is somewhat better by chance, and where paint fades
+// over the object, far better. But paint leaves much under any turn.
+constexpr double kFarBetter = 0.5, kExplained = 0.1;
 // Renders darker than this share of the image's mean count as that.
 constexpr double kDarkestRender = 1e-4;
 
@@ -149,7 +150,7 @@ Image Turned(const Image& map, bool mirrored, int columns) {
 }
 
 bool MapTurns::IsFarBetter() const {
-  return best.misfit < kFarBetter * as_given;
+  return best.misfit < std::min(kFarBetter * as_given, kExplained);
 }
 
 MapTurns FindMapTurns(const SolveSetup& setup) {

@@ -7,6 +7,7 @@
 #include "ibrdf/solvers/estimation/marginal_search.h"
 #include "ibrdf/solvers/solve/mirrored_light.h"
 #include "ibrdf/solvers/solve/residual_statistics.h"
+#include "ibrdf/solvers/solve/unpainted_object.h"
 
 namespace ibrdf {
 namespace {
@@ -19,6 +20,19 @@ constexpr double kUnexplained = 0.1;  // misfit
 // Paint scales what is matte as each pixel wants it. What it leaves of a
 // painted ball was a fifth of what one material left, or less.
 constexpr double kMostLeftByPaint = 0.5;
+
+// In the mean over pixels and channels.
+double MatteShare(const SolveSetup& setup, const std::vector<double>& lobes) {
+  const UnpaintedRadiance radiance =
+      RenderUnpainted(setup, UnpaintedOf(*setup.lobes, lobes.data()),
+                      setup.known_map, setup.map_size());
+  double sum = 0.0;
+  for (size_t i = 0; i < radiance.matte.size(); ++i) {
+    const double whole = radiance.matte[i] + radiance.gloss[i];
+    if (whole > 0.0) sum += radiance.matte[i] / whole;
+  }
+  return sum / static_cast<double>(radiance.matte.size());
+}
 
 }  // namespace
 
@@ -34,7 +48,8 @@ bool IsProbablyPainted(const SolveSetup& setup, SolveContext* context) {
 bool LeftByOneMaterial::IsMuch() const { return misfit > kUnexplained; }
 
 bool LeftByOneMaterial::MayBePaint() const {
-  return misfit * std::sqrt(1.0 - mirrored) > kUnexplained;
+  return misfit * std::sqrt(1.0 - mirrored) > kUnexplained &&
+         matte > PaintPrior().least_matte_share;
 }
 
 bool LeftByOneMaterial::IsExplainedBy(double painted_misfit) const {
@@ -54,8 +69,10 @@ LeftByOneMaterial LeftBy(const SolveSetup& setup, const Estimate& one_material,
                                                       : *problem.known_map,
                     setup.pixels.points, problem.image.width,
                     ResidualRowsOf(setup, one_material));
+  left.matte = MatteShare(setup, one_material.iterate.state.lobes);
   VLOG(1) << "one material leaves " << left.misfit << ", of which "
-          << left.mirrored << " is mirrored light";
+          << left.mirrored << " is mirrored light; " << left.matte
+          << " of it is matte";
   return left;
 }
 

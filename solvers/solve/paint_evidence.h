@@ -18,9 +18,11 @@ struct LeftByOneMaterial {
   // The share of it that mirrored light explains (MirroredShare); 0 where the
   // misfit is small.
   double mirrored = 0.0;
+  // The mean share of its radiance that paint would scale; likewise.
+  double matte = 0.0;
 
   bool IsMuch() const;
-  // Much is left that nothing but the object can be.
+  // Much is left that nothing but the object can be, and paint would be seen.
   bool MayBePaint() const;
   // Paint leaves much less than one material does.
   bool IsExplainedBy(double painted_misfit) const;

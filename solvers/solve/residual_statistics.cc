@@ -51,6 +51,31 @@ double CorrelationOf(const ResidualRows& rows,
   return squares > 0.0 ? products / squares : 0.0;
 }
 
+// L_o: of the rows' pixels [indices * 3].
+void SetResiduals(const SolveSetup& setup, const std::vector<double>& L_o,
+                  ResidualRows* rows) {
+  for (size_t k = 0; k < L_o.size(); ++k) {
+    const RadianceInterval seen =
+        setup.pixels.observed.Interval(3 * rows->indices[k / 3] + k % 3);
+    const double rendered = std::max(L_o[k], setup.epsilon);
+    rows->log_render.push_back(std::log(rendered));
+    rows->residuals.push_back(
+        std::log(std::clamp(rendered, seen.low, seen.high) / rendered));
+  }
+}
+
+ResidualStatistics StatisticsOf(const SolveSetup& setup,
+                                const ResidualRows& rows) {
+  ResidualStatistics out;
+  if (rows.indices.empty()) return out;
+  out.misfit = rows.Misfit();
+  out.correlation = CorrelationOf(rows, setup.pixels.points);
+  VLOG(1) << setup.problem->model_name << " leaves " << out.misfit
+          << " of the log radiance; neighbours correlate by "
+          << out.correlation;
+  return out;
+}
+
 }  // namespace
 
 double ResidualRows::Misfit() const {
@@ -89,29 +114,28 @@ ResidualRows ResidualRowsOf(const SolveSetup& setup, const Estimate& estimate) {
   ObservedPixels(setup, std::move(some))
       .TransportFrom(SizeOf(iterate.light, setup))
       .Render(ByMaterial(grids), map.data(), L_o.data());
-  for (size_t k = 0; k < L_o.size(); ++k) {
-    const RadianceInterval seen =
-        setup.pixels.observed.Interval(3 * rows.indices[k / 3] + k % 3);
-    const double rendered =
-        std::max(L_o[k] + iterate.ambient[k % 3], setup.epsilon);
-    rows.log_render.push_back(std::log(rendered));
-    rows.residuals.push_back(
-        std::log(std::clamp(rendered, seen.low, seen.high) / rendered));
-  }
+  for (size_t k = 0; k < L_o.size(); ++k) L_o[k] += iterate.ambient[k % 3];
+  SetResiduals(setup, L_o, &rows);
   return rows;
 }
 
 ResidualStatistics ResidualStatisticsOf(const SolveSetup& setup,
                                         const Estimate& estimate) {
-  const ResidualRows rows = ResidualRowsOf(setup, estimate);
-  ResidualStatistics out;
-  if (rows.indices.empty()) return out;
-  out.misfit = rows.Misfit();
-  out.correlation = CorrelationOf(rows, setup.pixels.points);
-  VLOG(1) << setup.problem->model_name << " leaves " << out.misfit
-          << " of the log radiance; neighbours correlate by "
-          << out.correlation;
-  return out;
+  return StatisticsOf(setup, ResidualRowsOf(setup, estimate));
+}
+
+ResidualStatistics ResidualStatisticsOf(const SolveSetup& setup,
+                                        const Image& render) {
+  ResidualRows rows;
+  rows.indices = SomeRows(setup.pixels, setup.problem->image.width);
+  std::vector<double> L_o;
+  for (const size_t i : rows.indices) {
+    const float* rgb =
+        render.rgb.data() + size_t{3} * setup.pixels.points[i].pixel;
+    L_o.insert(L_o.end(), rgb, rgb + 3);
+  }
+  SetResiduals(setup, L_o, &rows);
+  return StatisticsOf(setup, rows);
 }
 
 }  // namespace ibrdf

@@ -48,5 +48,8 @@ struct ResidualStatistics {
 // An image without pixels leaves 0.
 ResidualStatistics ResidualStatisticsOf(const SolveSetup& setup,
                                         const Estimate& estimate);
+// The same of a rendered image of the problem's size.
+ResidualStatistics ResidualStatisticsOf(const SolveSetup& setup,
+                                        const Image& render);
 
 }  // namespace ibrdf

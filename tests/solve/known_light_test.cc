@@ -144,5 +144,22 @@ TEST_F(KnownLightTest, StrayLightIsNoPaint) {
       LeftBy(found.SetupOr(*setup_), found.estimate, *context_).MayBePaint());
 }
 
+TEST(LeftByOneMaterial, MayBePaintWhereItWouldBeSeen) {
+  LeftByOneMaterial left;
+  left.misfit = 0.3;
+  left.matte = 0.8;
+  EXPECT_TRUE(left.IsMuch());
+  EXPECT_TRUE(left.MayBePaint());
+  left.matte = 0.3;  // a mirror's
+  EXPECT_FALSE(left.MayBePaint());
+  left.matte = 0.8;
+  left.mirrored = 0.95;
+  EXPECT_FALSE(left.MayBePaint());
+  left.mirrored = 0.0;
+  left.misfit = 0.05;
+  EXPECT_FALSE(left.MayBePaint());
+  EXPECT_FALSE(left.IsMuch());
+}
+
 }  // namespace
 }  // namespace ibrdf

@@ -5,71 +5,18 @@
 #include <cmath>
 #include <vector>
 
-#include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/solve/solve.h"
-#include "tests/solve/ball_problem.h"
+#include "tests/solve/plastic_ball.h"
 
 namespace ibrdf {
 namespace {
 using namespace testing;  // NOLINT
 
-// A room with a lamp, a window and a dark floor; no turn of it is like it.
-Image Room() {
-  Image map(32, 16);
-  for (int y = 0; y < 16; ++y) {
-    for (int x = 0; x < 32; ++x) {
-      const bool lamp = x >= 3 && x < 6 && y >= 3 && y < 6;
-      const bool window = x >= 12 && x < 18 && y >= 5 && y < 9;
-      float* rgb = map.At(x, y);
-      for (int c = 0; c < 3; ++c) {
-        rgb[c] = y >= 9 ? 0.1f : 0.3f;
-        if (lamp) rgb[c] = c == 2 ? 10.0f : 20.0f;
-        if (window) rgb[c] = c == 2 ? 4.0f : 2.5f;
-      }
-    }
-  }
-  return map;
-}
-
-CookTorrance Plastic() {
-  CookTorrance brdf;
-  brdf.diffuse = {0.4, 0.3, 0.2};
-  brdf.roughness = 0.2;
-  return brdf;
-}
-
-// Of plastic under Room(), whose paint has log albedo `paint`(normal).
-template <typename Paint>
-InverseProblem PlasticBall(const Paint& paint) {
-  InverseProblem problem = BallProblem(40);
-  const Image map = Room();
-  problem.map_width = map.width;
-  problem.map_height = map.height;
-  problem.known_map = map;
-  const Transport transport(problem.points, map.height, map.width,
-                            problem.transport);
-  std::vector<double> L_o(3 * problem.points.size());
-  transport.Render(
-      BrdfGrid::FromFunction(Plastic().Function(), problem.transport.grid),
-      map.rgb.data(), L_o.data());
-  for (size_t i = 0; i < L_o.size(); ++i) {
-    L_o[i] *= std::exp(paint(problem.points[i / 3].normal));
-  }
-  SetNoisyImage(L_o, 0.01, &problem);
-  return problem;
-}
-
 MapTurns TurnsOf(const InverseProblem& problem) {
   const StatusOr<SolveSetup> setup = SetUp(problem);
   EXPECT_TRUE(setup.ok()) << setup.status().message();
   return FindMapTurns(*setup);
-}
-
-double NoPaint(const Eigen::Vector3f&) { return 0.0; }
-// Stripes that darken the ball to two fifths, with no sharp edge.
-double Stripes(const Eigen::Vector3f& normal) {
-  return 0.6 * std::sin(7.0 * normal.x() + 4.0 * normal.y());
 }
 
 TEST(Turned, BringsDirectionsWhereItSays) {

@@ -52,6 +52,22 @@ TEST_F(ResidualStatisticsTest, OfNoise) {
   EXPECT_NEAR(0.0, left.correlation, 0.08);
 }
 
+TEST_F(ResidualStatisticsTest, OfARenderAreThoseOfItsEstimate) {
+  const auto wave = [](int pixel) {
+    return 0.1 * std::sin(0.2 * (pixel % 40));
+  };
+  const ResidualStatistics by_estimate = Of(wave);
+  Image render(problem_.image.width, problem_.image.height);
+  for (size_t k = 0; k < L_o_.size(); ++k) {
+    render.rgb[3 * problem_.points[k / 3].pixel + k % 3] =
+        static_cast<float>(L_o_[k]);
+  }
+  const ResidualStatistics by_render =
+      ResidualStatisticsOf(*ibrdf::SetUp(problem_), render);
+  EXPECT_NEAR(by_estimate.misfit, by_render.misfit, 1e-5);
+  EXPECT_NEAR(by_estimate.correlation, by_render.correlation, 1e-4);
+}
+
 TEST_F(ResidualStatisticsTest, OfWhatVariesSlowlyAndOfWhatAlternates) {
   const ResidualStatistics slow =
       Of([](int pixel) { return 0.1 * std::sin(0.2 * (pixel % 40)); });
