@@ -40,7 +40,9 @@ std::string TimeWarning(const SolvedProblem& solved) {
 std::string MisfitWarning(const SolvedProblem& solved) {
   const double misfit = solved.metrics.misfit;
   if (!std::isfinite(misfit)) return "The misfit is not a number.";
-  if (misfit <= kLargeMisfit) return "";
+  if (misfit <= kLargeMisfit || solved.solution.better_map_turn.has_value()) {
+    return "";
+  }
   const std::string found =
       "The estimate does not explain the image: its misfit, the mean absolute "
       "log error, is " +
@@ -52,15 +54,16 @@ std::string MisfitWarning(const SolvedProblem& solved) {
                 ? "The map is finer than it is taken: set illumination.width."
                 : "No lobe of the models is as sharp as this mirror.");
   }
-  if (solved.solution.better_map_turn.has_value()) {
-    return found +
-           "The known map may be in another frame: " + MapTurnAdvice(solved) +
-           ".";
-  }
   return found +
          (IsOutOfTime(solved) ? "If more time does not help, check" : "Check") +
          " the shape, the mask, the camera, and that the image is linear "
          "radiance.";
+}
+
+std::string MapFrameWarning(const SolvedProblem& solved) {
+  const std::string advice = MapTurnAdvice(solved);
+  if (advice.empty()) return "";
+  return "The known map may be in another frame: " + advice + ".";
 }
 
 // One view that the others contradict.
@@ -223,9 +226,10 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
                   solved.truth.warnings.end());
   for (std::string warning :
        {StatusWarning(solved.solution.status), TimeWarning(solved),
-        MisfitWarning(solved), ViewWarning(solved), PhotographWarning(solved),
-        PixelWarning(solved), UnlitWarning(solved), StrayLightWarning(solved),
-        PaintWarning(solved), FewPixelsWarning(solved), CurveWarning(solved),
+        MisfitWarning(solved), MapFrameWarning(solved), ViewWarning(solved),
+        PhotographWarning(solved), PixelWarning(solved), UnlitWarning(solved),
+        StrayLightWarning(solved), PaintWarning(solved),
+        FewPixelsWarning(solved), CurveWarning(solved),
         UncertainWarning(solved.solution,
                          !solved.inverse.known_map.has_value()),
         RivalWarning(solved.solution.alternatives)}) {

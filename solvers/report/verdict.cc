@@ -78,8 +78,10 @@ Trust Rate(double error, double good, double fair) {
                                        : Trust::kNotDetermined;
 }
 
-// What an image that is not explained takes from all that was found in it.
+// What an image that is not explained, or by a map in a wrong frame, takes from
+// all that was found in it.
 int LevelsLost(const VerdictNumbers& n) {
+  if (!n.map_advice.empty()) return 2;
   return n.misfit > kHugeMisfit ? 2 : n.misfit > kLargeMisfit ? 1 : 0;
 }
 
@@ -234,6 +236,9 @@ std::vector<std::string> ReasonsForNothing(const VerdictNumbers& n) {
 std::vector<std::string> Reasons(const VerdictNumbers& n) {
   if (TellsNothing(n)) return ReasonsForNothing(n);
   std::vector<std::string> reasons;
+  if (!n.map_advice.empty()) {
+    reasons.emplace_back("the known map may be in another frame");
+  }
   if (n.misfit > kLargeMisfit || (n.misfit > kMisfitWord && FloorExplains(n))) {
     reasons.push_back(MisfitReason(n));
   }
@@ -300,12 +305,12 @@ std::string NextSentence(const VerdictNumbers& n) {
   if (!n.normals_advice.empty()) {
     return "Next, check the frame of the normals: " + n.normals_advice + ".";
   }
+  if (!n.map_advice.empty()) return "Next, " + n.map_advice + ".";
   if (TellsNothing(n)) {
     return "Next, check in check.png that shape, mask and image belong "
            "together.";
   }
   const bool misfit = n.misfit > kLargeMisfit;
-  if (!n.map_advice.empty()) return "Next, " + n.map_advice + ".";
   if (n.mirror == MirrorCause::kMapTakenCoarser) {
     return "Next, take the known light as fine as it is: --set "
            "illumination.width=...";

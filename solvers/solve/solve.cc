@@ -32,6 +32,10 @@ StatusOr<Estimate> EstimateLightOfKnownReflectance(const SolveSetup& setup,
   return EstimateLight(setup, std::move(known), context);
 }
 
+// A misfit from which on other frames of the map are tried. Of 42 balls under a
+// map in a wrong frame the least was 0.052.
+constexpr double kWorthTurning = 0.04;
+
 StatusOr<Solution> SolveUnderKnownLight(const SolveSetup& setup,
                                         bool may_be_painted,
                                         SolveContext* context) {
@@ -40,7 +44,7 @@ StatusOr<Solution> SolveUnderKnownLight(const SolveSetup& setup,
   const SolveSetup& of_model = found->SetupOr(setup);
   const LeftByOneMaterial left = LeftBy(of_model, found->estimate, *context);
   MapTurns turns;
-  if (left.IsMuch()) turns = FindMapTurns(setup);
+  if (left.misfit > kWorthTurning) turns = FindMapTurns(setup);
   if (may_be_painted && left.MayBePaint() && !turns.IsFarBetter()) {
     StatusOr<Solution> painted = SolvePaintedUnderKnownLight(setup, context);
     if (!painted.ok() || left.IsExplainedBy(painted->misfit)) return painted;

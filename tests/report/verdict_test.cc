@@ -180,6 +180,15 @@ TEST(Verdict, AnotherFrameOfTheMapComesFirst) {
   n.mirror = MirrorCause::kMapTakenCoarser;
   n.map_advice = "try illumination.frame: mitsuba";
   EXPECT_EQ("Next, try illumination.frame: mitsuba.", MakeVerdict(n).next);
+  // A small misfit in a wrong frame, or none better than the first guess, is as
+  // wrong.
+  n.misfit = 0.05;
+  const Verdict v = MakeVerdict(n);
+  EXPECT_EQ(Trust::kPoor, v.ratings.gloss);
+  EXPECT_TRUE(Contains(v.doubt, "he known map may be in another frame"))
+      << v.doubt;
+  n.status = StatusCode::kNoImprovement;
+  EXPECT_EQ(v.next, MakeVerdict(n).next);
 }
 
 TEST(Verdict, PaintTakesFromWhatIsKnownOfGlossAlone) {
