@@ -38,6 +38,7 @@ std::optional<MapFrame> FrameAfter(MapFrame given, const MapTurn& turn,
   const double quarters = turn.degrees / 90.0;
   const double whole = std::round(quarters);
   if (90.0 * std::abs(quarters - whole) > tolerance) return std::nullopt;
+  if (!turn.mirrored && std::fmod(whole, 4.0) == 0.0) return std::nullopt;
   const int sign = turn.mirrored ? -from.sign : from.sign;
   const int after = (turn.mirrored ? -from.quarters : from.quarters) -
                     static_cast<int>(whole);
@@ -59,12 +60,14 @@ std::string MapTurnAdvice(const SolvedProblem& solved) {
   const MapTurn& turn = *solved.solution.better_map_turn;
   const std::optional<MapFrame> frame =
       FrameAfter(solved.inverse.known_map_frame, turn, kTolerance);
-  return (frame.has_value()
-              ? std::string("try illumination.frame: ") + MapFrameName(*frame) +
-                    ", as simple materials leave "
-              : "check illumination.frame, as simple materials leave ") +
-         Format("%.2g", turn.misfit) + " under the map " + InWords(turn) +
-         ", and " + Format("%.2g", solved.solution.misfit_of_given_map) +
+  const std::string advice =
+      solved.problem.illumination.sky.has_value() ? "check the sky's directions"
+      : frame.has_value()
+          ? std::string("try illumination.frame: ") + MapFrameName(*frame)
+          : "check illumination.frame";
+  return advice + ", as simple materials leave " + Format("%.2g", turn.misfit) +
+         " under the map " + InWords(turn) + ", and " +
+         Format("%.2g", solved.solution.misfit_of_given_map) +
          " under the map as it is given";
 }
 

@@ -8,8 +8,9 @@
 
 namespace ibrdf {
 
-// The frame in which a file that was read in `given` would show what it does
-// after the turn; none: no latlong frame but by more than `tolerance` degrees.
+// Another frame in which a file that was read in `given` would show what it
+// does after the turn; none: no latlong frame but by more than `tolerance`
+// degrees.
 std::optional<MapFrame> FrameAfter(MapFrame given, const MapTurn& turn,
                                    double tolerance);
 

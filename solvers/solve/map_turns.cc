@@ -84,13 +84,9 @@ SomePixels SomeOf(const Observation& pixels) {
 
 // At most kMostColumns wide.
 Image CoarseMap(const Image& map) {
-  int block = 1;
-  while (map.width / block > kMostColumns && map.width % (2 * block) == 0 &&
-         map.height % (2 * block) == 0) {
-    block *= 2;
-  }
-  return block == 1 ? map
-                    : ResizeMap(map, map.height / block, map.width / block);
+  return map.width <= kMostColumns
+             ? map
+             : ResizeMap(map, kMostColumns / 2, kMostColumns);
 }
 
 // All turns, the unmirrored first: columns [turn * 3 + channel].

@@ -51,6 +51,18 @@ TEST(FindMapTurns, FindsWhatUndoesATurn) {
   }
 }
 
+// Whatever the map's size divides by.
+TEST(FindMapTurns, TakesALargeMapCoarsely) {
+  InverseProblem problem = PlasticBall(NoPaint);
+  problem.known_map = ResizeMap(Turned(*problem.known_map, true, 0), 75, 150);
+  problem.map_width = 150;
+  problem.map_height = 75;
+  const MapTurns turns = TurnsOf(problem);
+  EXPECT_TRUE(turns.IsFarBetter());
+  EXPECT_TRUE(turns.best.mirrored);
+  EXPECT_NEAR(180.0, std::abs(turns.best.degrees - 180.0), 6.0);
+}
+
 TEST(FindMapTurns, PaintIsNoTurn) {
   const MapTurns turns = TurnsOf(PlasticBall(Stripes));
   EXPECT_GT(turns.as_given, 0.2);
