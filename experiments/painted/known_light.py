@@ -8,8 +8,7 @@ one also in three wrong frames. The models are the program's own. A row of OUT/k
 same command goes on where it was stopped. Needs Debian's python3-numpy.
 
 painted: whether albedo was sought. albedo, constant: log-RMSE of albedo, of the estimate and of an even one, after the
-best scale of each channel. brdf: of the unpainted ball's table, after the same. advice: the frame that the verdict asks
-for.
+best scale of each channel. advice: the frame that the verdict asks for.
 """
 import argparse
 import csv
@@ -23,7 +22,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from make_scenes import add_arguments, cases, make, write_meshes  # noqa: E402
 
-COLUMNS = ["case", "picture", "frame", "painted", "misfit", "albedo", "constant", "brdf", "advice", "seconds"]
+COLUMNS = ["case", "picture", "frame", "painted", "misfit", "albedo", "constant", "advice", "seconds"]
 PROBLEM = """problem: reflectance
 image: {{file: {picture}.exr, mask: mask.png}}
 geometry: {{sphere: {{}}}}
@@ -57,12 +56,6 @@ class KnownLight:
             return ""
         return self.metric("albedo_log_rmse_aligned", "albedo", estimate, self.scene / "albedo.pfm", "--mask", mask)
 
-    def brdf_error(self, folder):
-        table = self.arguments.tables / f"{self.case.material}.binary"
-        if not table.exists():
-            return ""
-        return self.metric("brdf_log_rmse_aligned", "brdf", folder / "brdf.binary", table)
-
     def row(self, picture, frame):
         folder = self.scene / f"known_{picture}_{frame}"
         problem = self.scene / f"{folder.name}.yaml"
@@ -80,7 +73,6 @@ class KnownLight:
             "misfit": re.search(r"^  misfit (\S+)", said, re.MULTILINE)[1],
             "albedo": self.albedo_error(folder / "albedo.exr") if of_paint else "",
             "constant": self.albedo_error(self.scene / "mask.png") if of_paint else "",
-            "brdf": "" if of_paint or painted else self.brdf_error(folder),
             "advice": (advice[1] or advice[2]) if advice else "", "seconds": f"{seconds:.1f}"}
 
 
