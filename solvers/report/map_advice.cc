@@ -29,26 +29,24 @@ std::optional<MapFrame> FrameAfter(MapFrame given, const MapTurn& turn,
                                    double tolerance) {
   constexpr MapSize kAnySize = {4, 2};
   const auto latlong = [&](MapFrame frame) {
-    return MapGrid(frame, kAnySize).latlong();
+    return CheckMapSize("", frame, kAnySize).ok()
+               ? MapGrid(frame, kAnySize).latlong()
+               : std::nullopt;
   };
-  if (given == MapFrame::kDebevecProbe || given == MapFrame::kCubeCross) {
-    return std::nullopt;
-  }
-  const MapGrid::LatLong from = *latlong(given);
+  const std::optional<MapGrid::LatLong> from = latlong(given);
+  if (!from.has_value()) return std::nullopt;
   const double quarters = turn.degrees / 90.0;
   const double whole = std::round(quarters);
   if (90.0 * std::abs(quarters - whole) > tolerance) return std::nullopt;
   if (!turn.mirrored && std::fmod(whole, 4.0) == 0.0) return std::nullopt;
-  const int sign = turn.mirrored ? -from.sign : from.sign;
-  const int after = (turn.mirrored ? -from.quarters : from.quarters) -
+  const int sign = turn.mirrored ? -from->sign : from->sign;
+  const int after = (turn.mirrored ? -from->quarters : from->quarters) -
                     static_cast<int>(whole);
   for (const MapFrame frame : kMapFrames) {
-    if (frame == MapFrame::kDebevecProbe || frame == MapFrame::kCubeCross) {
-      continue;
-    }
-    const MapGrid::LatLong to = *latlong(frame);
+    const std::optional<MapGrid::LatLong> to = latlong(frame);
     // A header says openexr by itself.
-    if (!to.nodes && to.sign == sign && (to.quarters - after) % 4 == 0) {
+    if (to.has_value() && !to->nodes && to->sign == sign &&
+        (to->quarters - after) % 4 == 0) {
       return frame;
     }
   }

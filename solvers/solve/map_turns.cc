@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
@@ -168,12 +169,16 @@ MapTurns FindMapTurns(const SolveSetup& setup) {
   const Transport transport(pixels.points, map.height, map.width, options);
   const std::vector<BrdfGrid> lobes = SimpleLobes(options.grid);
   const FloatMatrix maps = AllTurns(map);
-  std::vector<FloatMatrix> shading;
-  FloatMatrix of_lobe(pixels.radiance.rows(), maps.rows());
-  for (const BrdfGrid& lobe : lobes) {
-    transport.LightMatrices({lobe.Channel(0)}, {of_lobe.data()});
-    shading.push_back(of_lobe * maps);
+  std::vector<FloatMatrix> shading(
+      lobes.size(), FloatMatrix(pixels.radiance.rows(), maps.rows()));
+  std::vector<const float*> fields;
+  std::vector<float*> matrices;
+  for (size_t k = 0; k < lobes.size(); ++k) {
+    fields.push_back(lobes[k].Channel(0));
+    matrices.push_back(shading[k].data());
   }
+  transport.LightMatrices(fields, matrices);
+  for (FloatMatrix& of_lobe : shading) of_lobe = of_lobe * maps;
   Eigen::MatrixXd under(pixels.radiance.rows(),
                         static_cast<Eigen::Index>(lobes.size()));
   for (int turn = 0; turn < 2 * map.width; ++turn) {

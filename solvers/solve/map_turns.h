@@ -1,9 +1,6 @@
 // Whether a known map is read in the wrong frame.
 #pragma once
-#include <vector>
-
 #include "ibrdf/image/image.h"
-#include "ibrdf/solvers/costs/observations.h"
 #include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 

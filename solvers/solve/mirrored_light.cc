@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
+#include "ibrdf/base/median.h"
 #include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
@@ -76,9 +78,7 @@ double MedianTurn(const MirroredDirections& directions,
   if (indices.empty()) return 0.0;
   std::vector<double> turns;
   for (const size_t i : indices) turns.push_back(directions.Across(i).norm());
-  const auto middle = turns.begin() + static_cast<int64_t>(turns.size()) / 2;
-  std::nth_element(turns.begin(), middle, turns.end());
-  return *middle;
+  return UpperMedian(std::move(turns));
 }
 
 // Sums of products of differences of neighbours.
