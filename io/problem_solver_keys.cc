@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "ibrdf/io/problem.h"
 #include "ibrdf/io/problem_schema_rows.h"
 #include "ibrdf/io/problem_section_keys.h"
 

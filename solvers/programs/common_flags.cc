@@ -8,6 +8,7 @@
 #include <new>
 #include <string>
 
+#include "ibrdf/base/freed_memory.h"
 #include "ibrdf/base/version.h"
 
 namespace ibrdf {
@@ -51,6 +52,7 @@ void AddCommonFlags(CLI::App* app, CommonFlags* flags) {
 
 int RunProgram(CLI::App* app, int argc, char** argv,
                const std::function<Status()>& run) {
+  KeepFreedMemory();
   try {
     app->parse(argc, argv);
   } catch (const CLI::Success& e) {
