@@ -147,25 +147,27 @@ Eigen::VectorXd MarginalLikelihood::ApplyBandDerivative(
   return out;
 }
 
-void MarginalLikelihood::AddGradient(const Given& given, const LightMode& mode,
-                                     const Point& point, const DataTerm& data,
-                                     const Linearisation& linear,
-                                     MarginalGradient* gradient) const {
-  DeterminantGradient determinant = GradientOfDeterminant(given, data, linear);
-  const Eigen::VectorXd w = SolveHessian(given, point, data, linear,
+MarginalGradient MarginalLikelihood::Gradient(const Expansion& at) const {
+  const Given& given = at.given;
+  const LightMode& mode = at.mode;
+  const Linearisation& linear = *at.linear;
+  MarginalGradient gradient;
+  DeterminantGradient determinant =
+      GradientOfDeterminant(given, at.data, linear);
+  const Eigen::VectorXd w = SolveHessian(given, at.point, at.data, linear,
                                          kMotionTolerance, determinant.by_l);
   const Eigen::VectorXd v = ApplyCovariance(given.light, w);
   const Eigen::VectorXd Jv = ApplyJacobian(linear, v);
-  GradientByMatrices(point, data, v, Jv,
-                     has_paint() ? LightJacobianTimes(given, point, v) : Jv,
-                     &determinant, &gradient->matrices);
+  GradientByMatrices(at.point, at.data, v, Jv,
+                     has_paint() ? LightJacobianTimes(given, at.point, v) : Jv,
+                     &determinant, &gradient.matrices);
 
   // K_a is what the covariance's derivative by a hyperparameter makes of the
   // representers; `trace` is tr(A^-1 J K_a J^T).
   const auto by_hyperparameter = [&](const Eigen::VectorXd& K_a, double trace) {
     return -0.5 * mode.representers.dot(K_a) + w.dot(K_a) + 0.5 * trace;
   };
-  gradient->hyperparameters[0] =
+  gradient.hyperparameters[0] =
       by_hyperparameter(ApplyLocal(given.light, mode.representers) -
                             ApplyHorizon(mode.representers),
                         TraceByAmplitude(linear, determinant));
@@ -176,10 +178,11 @@ void MarginalLikelihood::AddGradient(const Given& given, const LightMode& mode,
       &rough);
   for (int b = 0; b < LightHyperparameters::kBands; ++b) {
     const Eigen::VectorXd h = BandWeights(b);
-    gradient->hyperparameters[1 + b] = by_hyperparameter(
+    gradient.hyperparameters[1 + b] = by_hyperparameter(
         ApplyBandDerivative(given.light, h, mode.representers, rough),
         2.0 * h.dot(determinant.rough_share));
   }
+  return gradient;
 }
 
 }  // namespace ibrdf

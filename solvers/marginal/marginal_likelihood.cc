@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/base/parallel_for.h"
@@ -172,7 +173,10 @@ DataErrors MarginalLikelihood::FindErrors(
     constant.l = Eigen::VectorXd::Zero(3 * num_sources());
     SetPaint(matrices, matte, constant, &errors);
   }
-  Evaluate(matrices, errors, hyperparameters, tolerance, mode, nullptr);
+  Point point;
+  DataTerm data;
+  FindLight(GivenBy(matrices, errors, hyperparameters), hyperparameters,
+            tolerance, &point, &data, mode);
   errors.noise = NoiseVariance(matrices, sigma, *mode);
   if (has_paint()) SetPaint(matrices, matte, *mode, &errors);
   return errors;
@@ -569,35 +573,57 @@ bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
   return true;
 }
 
+bool MarginalLikelihood::FindLight(const Given& given,
+                                   const LightHyperparameters& hyperparameters,
+                                   double tolerance, Point* point,
+                                   DataTerm* data, LightMode* mode) const {
+  if (!given.weight.allFinite() || !std::isfinite(given.light.amplitude) ||
+      !Roughness(map_height_, hyperparameters).cwiseAbs2().allFinite()) {
+    return false;
+  }
+  *point = FirstPoint(given, mode);
+  // Nothing but black: no light explains an image of it.
+  if (!point->residual.allFinite() ||
+      !(point->unpainted.minCoeff() > kSmallestRadiance)) {
+    return false;
+  }
+  *data = DataAt(given, *point);
+  return FindMode(given, tolerance, point, data, mode);
+}
+
+MarginalValue MarginalLikelihood::Expand(
+    std::array<RowMatrix, 3> matrices, DataErrors errors,
+    const LightHyperparameters& hyperparameters, double tolerance,
+    LightMode* mode, std::unique_ptr<const Expansion>* expansion) const {
+  MarginalValue value;
+  expansion->reset();
+  auto at = std::make_unique<Expansion>(*this, std::move(matrices),
+                                        std::move(errors), hyperparameters);
+  if (!FindLight(at->given, hyperparameters, tolerance, &at->point, &at->data,
+                 mode)) {
+    return value;
+  }
+  at->mode = *mode;
+  at->linear = Linearise(at->given, at->point, at->data);
+  if (at->linear == nullptr) return value;
+  const double log_determinant =
+      2.0 * at->linear->factor.diagonal().array().log().sum();
+  value.cost = at->data.cost + 0.5 * mode->representers.dot(mode->l) +
+               0.5 * log_determinant;
+  value.misfit = Misfit(at->point);
+  value.ok = std::isfinite(value.cost);
+  if (value.ok) *expansion = std::move(at);
+  return value;
+}
+
 MarginalValue MarginalLikelihood::Evaluate(
     const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, double tolerance,
     LightMode* mode, MarginalGradient* gradient) const {
-  MarginalValue value;
-  const Given given = GivenBy(matrices, errors, hyperparameters);
-  if (!given.weight.allFinite() || !std::isfinite(given.light.amplitude) ||
-      !Roughness(map_height_, hyperparameters).cwiseAbs2().allFinite()) {
-    return value;
-  }
-  Point point = FirstPoint(given, mode);
-  // Nothing but black: no light explains an image of it.
-  if (!point.residual.allFinite() ||
-      !(point.unpainted.minCoeff() > kSmallestRadiance)) {
-    return value;
-  }
-  DataTerm data = DataAt(given, point);
-  if (!FindMode(given, tolerance, &point, &data, mode)) return value;
-  const auto linear = Linearise(given, point, data);
-  if (linear == nullptr) return value;
-  const double log_determinant =
-      2.0 * linear->factor.diagonal().array().log().sum();
-  value.cost =
-      data.cost + 0.5 * mode->representers.dot(mode->l) + 0.5 * log_determinant;
-  value.misfit = Misfit(point);
-  value.ok = std::isfinite(value.cost);
-  if (gradient != nullptr && value.ok) {
-    AddGradient(given, *mode, point, data, *linear, gradient);
-  }
+  std::unique_ptr<const Expansion> at;
+  const MarginalValue value =
+      Expand(matrices, errors, hyperparameters, tolerance, mode, &at);
+  if (gradient != nullptr && value.ok) *gradient = Gradient(*at);
   return value;
 }
 

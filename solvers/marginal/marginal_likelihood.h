@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "ibrdf/solvers/optim/dense_algebra.h"
@@ -124,6 +125,18 @@ class MarginalLikelihood {
                          double tolerance, LightMode* mode,
                          MarginalGradient* gradient) const;
 
+  // The likelihood around a mode: its derivatives follow from this without
+  // another search for the mode. The likelihood must outlive it.
+  struct Expansion;
+
+  // As Evaluate without a gradient. `expansion` receives the one around the
+  // mode, null where the value is not ok.
+  MarginalValue Expand(std::array<RowMatrix, 3> matrices, DataErrors errors,
+                       const LightHyperparameters& hyperparameters,
+                       double tolerance, LightMode* mode,
+                       std::unique_ptr<const Expansion>* expansion) const;
+  MarginalGradient Gradient(const Expansion& at) const;
+
   // Gauss-Newton Hessian [n + hyperparameters]^2 of the cost by n parameters
   // and, last, by the hyperparameters, the light profiled out:
   //   G^T A^-1 G,  A = D + J K J^T,  G = d log L_o / d parameters [3 *
@@ -138,6 +151,9 @@ class MarginalLikelihood {
       const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
       const LightHyperparameters& hyperparameters, const LightMode& mode,
       const RowMatrix& G, Eigen::MatrixXd* of_hyperparameters = nullptr) const;
+  Eigen::MatrixXd Information(
+      const Expansion& at, const RowMatrix& G,
+      Eigen::MatrixXd* of_hyperparameters = nullptr) const;
 
   // The same and the light's part, without hyperparameters; G: as
   // Information's. Its matrices are empty where A is not positive definite.
@@ -341,6 +357,11 @@ class MarginalLikelihood {
   // needs. If not, a step of which rounding hides the gain is taken as well.
   double TakeStep(const Given& given, const NewtonStep& step, bool near_enough,
                   Point* point, DataTerm* data, LightMode* mode) const;
+  // Completes `mode` and moves it to the mode, with point and data. False where
+  // there is none, or something is not finite.
+  bool FindLight(const Given& given,
+                 const LightHyperparameters& hyperparameters, double tolerance,
+                 Point* point, DataTerm* data, LightMode* mode) const;
   // Newton's method from `point`. Where steps fail, or do not end, they are
   // damped (Levenberg and Marquardt): `damping` times K^-1 joins the Hessian.
   // False: the equations are not positive definite, or not finite.
@@ -348,6 +369,9 @@ class MarginalLikelihood {
                 DataTerm* data, LightMode* mode) const;
 
   // Information's blocks: marginal_posterior.cc.
+  Eigen::MatrixXd InformationBy(const Light& light, const Linearisation& linear,
+                                const RowMatrix& G,
+                                Eigen::MatrixXd* of_hyperparameters) const;
   Eigen::MatrixXd HyperparameterInformation(const Light& light,
                                             const Linearisation& linear) const;
   // J K_b J^T, rows and columns scaled, K_b the derivative of K by the log
@@ -381,11 +405,6 @@ class MarginalLikelihood {
                                       const Eigen::VectorXd& h,
                                       const Eigen::VectorXd& g,
                                       const RowMatrix& rough) const;
-  void AddGradient(const Given& given, const LightMode& mode,
-                   const Point& point, const DataTerm& data,
-                   const Linearisation& linear,
-                   MarginalGradient* gradient) const;
-
   int num_points_;
   Eigen::VectorXd y_;           // [3 * points]
   Eigen::VectorXd low_, high_;  // likewise; empty: y_ is known
@@ -400,6 +419,25 @@ class MarginalLikelihood {
   Eigen::MatrixXd paint_;       // K_a [3 * points]^2 or empty
   Eigen::VectorXd mean_paint_;  // a0 [3 * points] or empty
   int num_threads_;
+};
+
+struct MarginalLikelihood::Expansion {
+  Expansion(const MarginalLikelihood& likelihood,
+            std::array<RowMatrix, 3> matrices_of, DataErrors errors_of,
+            const LightHyperparameters& hyperparameters)
+      : matrices(std::move(matrices_of)),
+        errors(std::move(errors_of)),
+        given(likelihood.GivenBy(matrices, errors, hyperparameters)) {}
+  Expansion(const Expansion&) = delete;
+  Expansion& operator=(const Expansion&) = delete;
+
+  const std::array<RowMatrix, 3> matrices;
+  const DataErrors errors;
+  const Given given;  // refers to those
+  LightMode mode;
+  Point point;
+  DataTerm data;
+  std::unique_ptr<const Linearisation> linear;
 };
 
 }  // namespace ibrdf

@@ -58,31 +58,33 @@ std::vector<double> MarginalObjective::Whitened(
   return out;
 }
 
+bool MarginalObjective::IsAt(const double* y) const {
+  return !y_.empty() && std::equal(y_.begin(), y_.end(), y);
+}
+
+void MarginalObjective::Expand(const double* y) const {
+  y_.assign(y, y + NumParameters());
+  // A trial that a line search turns down must not move the mode's start.
+  LightMode mode = *mode_;
+  value_ =
+      reflectance_->Expand(ParametersOf(y).data(), errors_,
+                           HyperparametersOf(y), mode_tolerance_, &mode, &at_);
+}
+
 bool MarginalObjective::Evaluate(const double* y, double* cost,
                                  double* gradient) const {
   const Eigen::Index n = prior_->num_parameters(), all = NumParameters();
   const Eigen::Index first_scale = reflectance_->num_parameters();
-  const Eigen::VectorXd parameters = ParametersOf(y);
-  const Eigen::VectorXd lobes = parameters.head(n);
-  std::vector<double> by_parameter;
-  // A trial that a line search turns down must not move the mode's start.
-  const bool tried =
-      !trial_.empty() && std::equal(trial_.begin(), trial_.end(), y);
-  LightMode mode = tried ? trial_mode_ : *mode_;
-  const MarginalValue value = reflectance_->Evaluate(
-      parameters.data(), errors_, HyperparametersOf(y), mode_tolerance_, &mode,
-      gradient != nullptr ? &by_parameter : nullptr);
-  if (!value.ok) return false;
+  if (!IsAt(y)) Expand(y);
+  if (!value_.ok) return false;
   const Eigen::Map<const Eigen::VectorXd> whitened(y, all);
   Eigen::VectorXd wall = Eigen::VectorXd::Zero(n);
-  *cost = value.cost + 0.5 * whitened.squaredNorm() +
-          prior_->WallCost(lobes, &wall);
-  if (gradient == nullptr) {
-    trial_.assign(y, y + all);
-    trial_mode_ = std::move(mode);
-  } else {
-    *mode_ = std::move(mode);
-    last_value_ = value;
+  *cost = value_.cost + 0.5 * whitened.squaredNorm() +
+          prior_->WallCost(LobesOf(y), &wall);
+  if (gradient != nullptr) {
+    *mode_ = at_.likelihood->mode;
+    last_value_ = value_;
+    const std::vector<double> by_parameter = reflectance_->Gradient(&at_);
     wall += Eigen::Map<const Eigen::VectorXd>(by_parameter.data(), n);
     Eigen::Map<Eigen::VectorXd> out(gradient, all);
     out = whitened;
@@ -107,9 +109,12 @@ Eigen::MatrixXd MarginalObjective::Information(const double* y) const {
   if (information_calls_++ % steps == 0) {
     of_hyperparameters_.resize(0, 0);
   }
-  Eigen::MatrixXd information = reflectance_->Information(
-      parameters.data(), errors_, HyperparametersOf(y), *mode_,
-      &of_hyperparameters_);
+  Eigen::MatrixXd information =
+      IsAt(y) && value_.ok
+          ? reflectance_->Information(&at_, &of_hyperparameters_)
+          : reflectance_->Information(parameters.data(), errors_,
+                                      HyperparametersOf(y), *mode_,
+                                      &of_hyperparameters_);
   if (information.size() == 0 || !information.allFinite()) return {};
   prior_->AddWallInformation(parameters.head(n), &information);
   // Both sides by the whitening.

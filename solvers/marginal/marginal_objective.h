@@ -13,8 +13,8 @@ namespace ibrdf {
 // -log posterior of a reflectance, in coordinates in which the prior is
 // N(0, I): y [num_parameters + hyperparameters], lobes = mean + factor y, then
 // the directional lights' offsets, then LightHyperparameters::Whitened. The
-// light's mode of the last point with a gradient is kept as the next one's
-// start, and that of the last point without one for a gradient there.
+// light's mode of the last point with a gradient is the next one's start. What
+// was found at the last point is kept: its derivatives need no other search.
 class MarginalObjective final : public ceres::FirstOrderFunction {
  public:
   // The light's mode is taken as found where a step gains less, nats:
@@ -52,13 +52,18 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   const MarginalValue& last_value() const { return last_value_; }
 
  private:
+  bool IsAt(const double* y) const;
+  void Expand(const double* y) const;
+
   const MarginalReflectance* reflectance_;
   const MaterialPrior* prior_;
   const DataErrors errors_;
   LightMode* mode_;
   const double mode_tolerance_;
-  mutable std::vector<double> trial_;  // of the last evaluation, no gradient
-  mutable LightMode trial_mode_;
+  // The last point, and what was found there.
+  mutable std::vector<double> y_;
+  mutable MarginalValue value_;
+  mutable MarginalReflectance::Expansion at_;
   mutable MarginalValue last_value_;
   mutable Eigen::MatrixXd of_hyperparameters_;  // of Information
   mutable int information_calls_ = 0;

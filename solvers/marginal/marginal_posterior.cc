@@ -7,29 +7,40 @@
 
 namespace ibrdf {
 
-Eigen::MatrixXd MarginalLikelihood::Information(
-    const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
-    const LightHyperparameters& hyperparameters, const LightMode& mode,
-    const RowMatrix& G, Eigen::MatrixXd* of_hyperparameters) const {
+Eigen::MatrixXd MarginalLikelihood::InformationBy(
+    const Light& light, const Linearisation& linear, const RowMatrix& G,
+    Eigen::MatrixXd* of_hyperparameters) const {
   const Eigen::Index n = G.cols();
   constexpr int kCount = LightHyperparameters::kCount;
   CHECK_EQ(G.rows(), Eigen::Index{3} * num_points_);
-  const Given given = GivenBy(matrices, errors, hyperparameters);
-  const Point point = At(given, mode.level, mode.l);
-  const auto linear = Linearise(given, point, DataAt(given, point));
-  if (linear == nullptr) return {};
-  const RowMatrix whitened =
-      linear->factor.triangularView<Eigen::Lower>().solve(
-          RowMatrix(linear->row_scale.asDiagonal() * G));
+  const RowMatrix whitened = linear.factor.triangularView<Eigen::Lower>().solve(
+      RowMatrix(linear.row_scale.asDiagonal() * G));
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n + kCount, n + kCount);
   information.topLeftCorner(n, n).noalias() = whitened.transpose() * whitened;
   Eigen::MatrixXd block;
   if (of_hyperparameters == nullptr) of_hyperparameters = &block;
   if (of_hyperparameters->size() == 0) {
-    *of_hyperparameters = HyperparameterInformation(given.light, *linear);
+    *of_hyperparameters = HyperparameterInformation(light, linear);
   }
   information.bottomRightCorner(kCount, kCount) = *of_hyperparameters;
   return information;
+}
+
+Eigen::MatrixXd MarginalLikelihood::Information(
+    const std::array<RowMatrix, 3>& matrices, const DataErrors& errors,
+    const LightHyperparameters& hyperparameters, const LightMode& mode,
+    const RowMatrix& G, Eigen::MatrixXd* of_hyperparameters) const {
+  const Given given = GivenBy(matrices, errors, hyperparameters);
+  const Point point = At(given, mode.level, mode.l);
+  const auto linear = Linearise(given, point, DataAt(given, point));
+  if (linear == nullptr) return {};
+  return InformationBy(given.light, *linear, G, of_hyperparameters);
+}
+
+Eigen::MatrixXd MarginalLikelihood::Information(
+    const Expansion& at, const RowMatrix& G,
+    Eigen::MatrixXd* of_hyperparameters) const {
+  return InformationBy(at.given.light, *at.linear, G, of_hyperparameters);
 }
 
 LinearPosterior MarginalLikelihood::Linearised(

@@ -397,30 +397,50 @@ std::array<RowMatrix, 3> MarginalReflectance::MatteMatrices(
                                 {MatteShapes(*lobes_, parameters)}, 1));
 }
 
+MarginalValue MarginalReflectance::Expand(
+    const double* parameters, const DataErrors& errors,
+    const LightHyperparameters& hyperparameters, double tolerance,
+    LightMode* mode, Expansion* expansion) const {
+  *expansion = Expansion();
+  expansion->parameters.assign(parameters, parameters + num_parameters());
+  expansion->shapes = ShapeMatrices(DirectionalLights(parameters),
+                                    Tabulate(parameters, false), 1);
+  return likelihood_->Expand(Coloured(parameters, expansion->shapes), errors,
+                             hyperparameters, tolerance, mode,
+                             &expansion->likelihood);
+}
+
+void MarginalReflectance::TabulateDerivatives(Expansion* at) const {
+  CHECK(at->likelihood != nullptr);
+  if (at->fields.empty()) at->fields = Tabulate(at->parameters.data(), true);
+}
+
+std::vector<double> MarginalReflectance::Gradient(Expansion* at) const {
+  TabulateDerivatives(at);
+  const double* const parameters = at->parameters.data();
+  const MarginalGradient by_matrix = likelihood_->Gradient(*at->likelihood);
+  const DirectionalLightResponses directional_lights =
+      DirectionalLights(parameters);
+  const std::vector<RowMatrix> slopes =
+      DirectionalLightSlopes(parameters, at->fields, 1 + lobes_->code_size());
+  std::vector<double> gradient(num_parameters() + LightHyperparameters::kCount);
+  for (int m = 0; m < num_materials(); ++m) {
+    AddGradient(m, parameters, at->fields[m], directional_lights, at->shapes,
+                slopes, by_matrix, gradient.data());
+  }
+  std::copy(by_matrix.hyperparameters.begin(), by_matrix.hyperparameters.end(),
+            gradient.end() - LightHyperparameters::kCount);
+  return gradient;
+}
+
 MarginalValue MarginalReflectance::Evaluate(
     const double* parameters, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, double tolerance,
     LightMode* mode, std::vector<double>* gradient) const {
-  const int stride = gradient != nullptr ? 1 + lobes_->code_size() : 1;
-  const Fields fields = Tabulate(parameters, gradient != nullptr);
-  const DirectionalLightResponses directional_lights =
-      DirectionalLights(parameters);
-  const std::vector<FloatMatrix> shapes =
-      ShapeMatrices(directional_lights, fields, stride);
-  MarginalGradient by_matrix;
-  const MarginalValue value = likelihood_->Evaluate(
-      Coloured(parameters, shapes), errors, hyperparameters, tolerance, mode,
-      gradient != nullptr ? &by_matrix : nullptr);
-  if (gradient == nullptr || !value.ok) return value;
-  gradient->assign(num_parameters() + LightHyperparameters::kCount, 0.0);
-  const std::vector<RowMatrix> slopes =
-      DirectionalLightSlopes(parameters, fields, stride);
-  for (int m = 0; m < num_materials(); ++m) {
-    AddGradient(m, parameters, fields[m], directional_lights, shapes, slopes,
-                by_matrix, gradient->data());
-  }
-  std::copy(by_matrix.hyperparameters.begin(), by_matrix.hyperparameters.end(),
-            gradient->end() - LightHyperparameters::kCount);
+  Expansion at;
+  const MarginalValue value =
+      Expand(parameters, errors, hyperparameters, tolerance, mode, &at);
+  if (gradient != nullptr && value.ok) *gradient = Gradient(&at);
   return value;
 }
 
@@ -559,6 +579,17 @@ void MarginalReflectance::AddLogRadianceJacobian(
       }
     }
   }
+}
+
+Eigen::MatrixXd MarginalReflectance::Information(
+    Expansion* at, Eigen::MatrixXd* of_hyperparameters) const {
+  TabulateDerivatives(at);
+  const double* const parameters = at->parameters.data();
+  const RowMatrix G =
+      LogRadianceJacobian(parameters, at->fields, DirectionalLights(parameters),
+                          at->likelihood->mode);
+  if (!G.allFinite()) return {};
+  return likelihood_->Information(*at->likelihood, G, of_hyperparameters);
 }
 
 Eigen::MatrixXd MarginalReflectance::Information(

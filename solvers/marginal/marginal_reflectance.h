@@ -35,6 +35,10 @@ struct LogRadianceSlopes {
 // it is (MovedDirectionalLight's offsets). Immutable but for what its callers
 // keep; may be used from several threads.
 class MarginalReflectance {
+  using FloatMatrix = DirectionalLightResponses::Matrix;
+  // Fields of each material's lobes (LobeModel::Tabulate).
+  using Fields = std::vector<std::vector<float>>;
+
  public:
   // CHECKs that at least one point can be used. num_materials: of the points
   // (ShadingPoint::material); the lobes are as many for each, one material's
@@ -77,6 +81,26 @@ class MarginalReflectance {
                          double tolerance, LightMode* mode,
                          std::vector<double>* gradient) const;
 
+  // What its derivatives at some parameters need.
+  struct Expansion {
+    std::vector<double> parameters;
+    std::vector<FloatMatrix> shapes;
+    std::unique_ptr<const MarginalLikelihood::Expansion> likelihood;
+    // Of the lobes' with derivatives; empty before one of the two below makes
+    // them.
+    Fields fields;
+  };
+  // As Evaluate without a gradient. `expansion` receives the one around the
+  // mode where the value is ok.
+  MarginalValue Expand(const double* parameters, const DataErrors& errors,
+                       const LightHyperparameters& hyperparameters,
+                       double tolerance, LightMode* mode,
+                       Expansion* expansion) const;
+  // [num_parameters + hyperparameters].
+  std::vector<double> Gradient(Expansion* at) const;
+  Eigen::MatrixXd Information(
+      Expansion* at, Eigen::MatrixXd* of_hyperparameters = nullptr) const;
+
   // As MarginalLikelihood::Information at the mode of these parameters.
   Eigen::MatrixXd Information(
       const double* parameters, const DataErrors& errors,
@@ -98,7 +122,6 @@ class MarginalReflectance {
                                   const LightMode& mode) const;
 
  private:
-  using FloatMatrix = DirectionalLightResponses::Matrix;
   // The bins of a material and their points, in a row.
   struct Block {
     int first_bin = 0, num_bins = 0;
@@ -107,9 +130,8 @@ class MarginalReflectance {
     FloatMatrix uniform;  // of a shape that is 1, [bins][texels]
   };
   std::vector<Block> MakeBlocks(int num_materials, int num_threads) const;
-  // Fields of each material's lobes (LobeModel::Tabulate).
-  using Fields = std::vector<std::vector<float>>;
   Fields Tabulate(const double* parameters, bool derivatives) const;
+  void TabulateDerivatives(Expansion* at) const;
   // A material's lobes, in parameters or a gradient.
   template <typename Number>
   auto MixtureOf(int material, Number* parameters) const {
