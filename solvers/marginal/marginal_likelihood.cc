@@ -33,6 +33,10 @@ constexpr double kSmallestRadiance = 1e-200;
 // relative, in the Hessian's norm, for Newton's steps.
 constexpr int kMaxHessianSteps = 30;
 constexpr double kNewtonTolerance = 1e-3;
+// A linearisation is made anew where log radiance has moved so far since, or
+// less and conjugate gradients take more than so many steps.
+constexpr double kFar = 1.0, kFarIfSlow = 0.1;
+constexpr int kSlow = 15;
 // Deviations that FindNoise begins with, log radiance.
 constexpr double kFirstSigma = 0.15;
 
@@ -176,7 +180,7 @@ DataErrors MarginalLikelihood::FindErrors(
   Point point;
   DataTerm data;
   FindLight(GivenBy(matrices, errors, hyperparameters), hyperparameters,
-            tolerance, &point, &data, mode);
+            tolerance, nullptr, &point, &data, mode);
   errors.noise = NoiseVariance(matrices, sigma, *mode);
   if (has_paint()) SetPaint(matrices, matte, *mode, &errors);
   return errors;
@@ -450,14 +454,15 @@ Eigen::VectorXd MarginalLikelihood::HessianTimes(
 // Vectors come in pairs: x and, where x = K x', its representers x'.
 Eigen::VectorXd MarginalLikelihood::SolveHessian(
     const Given& given, const Point& point, const DataTerm& data,
-    const Linearisation& linear, double tolerance,
-    const Eigen::VectorXd& x) const {
+    const Linearisation& linear, double tolerance, const Eigen::VectorXd& x,
+    int* iterations) const {
   const Eigen::VectorXd curvature =
       LightJacobianTransposedTimes(given, point, data.slope);
   Eigen::VectorXd w = Eigen::VectorXd::Zero(x.size()), rest = x, p_representers,
                   p;
   double rho = 0.0, first_rho = 0.0;
   for (int k = 0; k < kMaxHessianSteps; ++k) {
+    if (iterations != nullptr) *iterations = k + 1;
     const Eigen::VectorXd z_representers =
         SolveRepresenters(linear, given.light, rest);
     const Eigen::VectorXd z = ApplyCovariance(given.light, z_representers);
@@ -508,7 +513,8 @@ MarginalLikelihood::NewtonStep MarginalLikelihood::FindNewtonStep(
   }
   NewtonStep step;
   step.representers =
-      -SolveHessian(given, point, data, linear, kNewtonTolerance, slope);
+      -SolveHessian(given, point, data, linear, kNewtonTolerance, slope,
+                    &step.iterations);
   step.l = ApplyCovariance(given.light, step.representers);
   step.promise = -slope.dot(step.l);
   return step;
@@ -550,7 +556,7 @@ bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
                                   Point* point, DataTerm* data,
                                   LightMode* mode) const {
   std::unique_ptr<const Linearisation> linear;
-  double damping = 0.0;
+  double damping = 0.0, moved = 0.0;
   for (int k = 0; k < kMaxIterations; ++k) {
     if (linear == nullptr) {
       linear = Linearise(given, *point, *data, damping);
@@ -567,16 +573,52 @@ bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
       damping = NextDamping(damping, taken, longest);
       if (damping > kMostDamping) break;
     }
-    // Far from where it was made a linearisation is a poor preconditioner.
-    if (taken * longest > 1.0 || damping != linear->damping) linear = nullptr;
+    // Far from where it was made a linearisation is a poor preconditioner. To
+    // make one takes as long as some 30 steps of conjugate gradients.
+    moved += taken * longest;
+    if (damping != linear->damping || moved > kFar ||
+        (moved > kFarIfSlow && step.iterations > kSlow)) {
+      linear = nullptr;
+      moved = 0.0;
+    }
   }
   return true;
 }
 
+double MarginalLikelihood::CostOf(const DataTerm& data, const LightMode& mode) {
+  return data.cost + 0.5 * mode.representers.dot(mode.l);
+}
+
+// With the representers held log L_o moves by d, and where A is the same they
+// move by -J^T A^-1 d.
+void MarginalLikelihood::Predict(const Given& given, const Expansion& near,
+                                 Point* point, DataTerm* data,
+                                 LightMode* mode) const {
+  const Linearisation& linear = *near.linear;
+  Eigen::VectorXd a =
+      linear.row_scale.cwiseProduct(point->log_L_o - near.point.log_L_o);
+  SolveFactored(linear.factor, a.data());
+  LightMode moved = *mode;
+  moved.representers -=
+      ApplyJacobianTransposed(linear, linear.row_scale.cwiseProduct(a));
+  moved.l = ApplyCovariance(given.light, moved.representers);
+  Point at = At(given, moved.level, moved.l);
+  if (!at.residual.allFinite() ||
+      !(at.unpainted.minCoeff() > kSmallestRadiance)) {
+    return;
+  }
+  DataTerm data_there = DataAt(given, at);
+  if (!(CostOf(data_there, moved) < CostOf(*data, *mode))) return;
+  *mode = std::move(moved);
+  *point = std::move(at);
+  *data = std::move(data_there);
+}
+
 bool MarginalLikelihood::FindLight(const Given& given,
                                    const LightHyperparameters& hyperparameters,
-                                   double tolerance, Point* point,
-                                   DataTerm* data, LightMode* mode) const {
+                                   double tolerance, const Expansion* near,
+                                   Point* point, DataTerm* data,
+                                   LightMode* mode) const {
   if (!given.weight.allFinite() || !std::isfinite(given.light.amplitude) ||
       !Roughness(map_height_, hyperparameters).cwiseAbs2().allFinite()) {
     return false;
@@ -588,19 +630,21 @@ bool MarginalLikelihood::FindLight(const Given& given,
     return false;
   }
   *data = DataAt(given, *point);
+  if (near != nullptr) Predict(given, *near, point, data, mode);
   return FindMode(given, tolerance, point, data, mode);
 }
 
 MarginalValue MarginalLikelihood::Expand(
     std::array<RowMatrix, 3> matrices, DataErrors errors,
     const LightHyperparameters& hyperparameters, double tolerance,
-    LightMode* mode, std::unique_ptr<const Expansion>* expansion) const {
+    const Expansion* near, LightMode* mode,
+    std::unique_ptr<const Expansion>* expansion) const {
   MarginalValue value;
   expansion->reset();
   auto at = std::make_unique<Expansion>(*this, std::move(matrices),
                                         std::move(errors), hyperparameters);
-  if (!FindLight(at->given, hyperparameters, tolerance, &at->point, &at->data,
-                 mode)) {
+  if (!FindLight(at->given, hyperparameters, tolerance, near, &at->point,
+                 &at->data, mode)) {
     return value;
   }
   at->mode = *mode;
@@ -608,8 +652,7 @@ MarginalValue MarginalLikelihood::Expand(
   if (at->linear == nullptr) return value;
   const double log_determinant =
       2.0 * at->linear->factor.diagonal().array().log().sum();
-  value.cost = at->data.cost + 0.5 * mode->representers.dot(mode->l) +
-               0.5 * log_determinant;
+  value.cost = CostOf(at->data, *mode) + 0.5 * log_determinant;
   value.misfit = Misfit(at->point);
   value.ok = std::isfinite(value.cost);
   if (value.ok) *expansion = std::move(at);
@@ -622,7 +665,7 @@ MarginalValue MarginalLikelihood::Evaluate(
     LightMode* mode, MarginalGradient* gradient) const {
   std::unique_ptr<const Expansion> at;
   const MarginalValue value =
-      Expand(matrices, errors, hyperparameters, tolerance, mode, &at);
+      Expand(matrices, errors, hyperparameters, tolerance, nullptr, mode, &at);
   if (gradient != nullptr && value.ok) *gradient = Gradient(*at);
   return value;
 }

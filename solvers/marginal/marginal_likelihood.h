@@ -130,10 +130,12 @@ class MarginalLikelihood {
   struct Expansion;
 
   // As Evaluate without a gradient. `expansion` receives the one around the
-  // mode, null where the value is not ok.
+  // mode, null where the value is not ok. near: of another reflectance, at
+  // `mode`; it tells how the mode moves from there, to first order; may be
+  // null.
   MarginalValue Expand(std::array<RowMatrix, 3> matrices, DataErrors errors,
                        const LightHyperparameters& hyperparameters,
-                       double tolerance, LightMode* mode,
+                       double tolerance, const Expansion* near, LightMode* mode,
                        std::unique_ptr<const Expansion>* expansion) const;
   MarginalGradient Gradient(const Expansion& at) const;
 
@@ -261,6 +263,7 @@ class MarginalLikelihood {
   struct NewtonStep {
     Eigen::VectorXd representers, l;  // [3 * sources]
     double promise = 0.0;
+    int iterations = 0;  // of conjugate gradients
   };
   // The log determinant's part of the gradient.
   struct DeterminantGradient {
@@ -342,7 +345,8 @@ class MarginalLikelihood {
   Eigen::VectorXd SolveHessian(const Given& given, const Point& point,
                                const DataTerm& data,
                                const Linearisation& linear, double tolerance,
-                               const Eigen::VectorXd& x) const;
+                               const Eigen::VectorXd& x,
+                               int* iterations = nullptr) const;
   // w = x - J^T A^-1 J K x: K w = (K^-1 + J^T D^-1 J)^-1 x.
   Eigen::VectorXd SolveRepresenters(const Linearisation& linear,
                                     const Light& light,
@@ -361,7 +365,14 @@ class MarginalLikelihood {
   // there is none, or something is not finite.
   bool FindLight(const Given& given,
                  const LightHyperparameters& hyperparameters, double tolerance,
-                 Point* point, DataTerm* data, LightMode* mode) const;
+                 const Expansion* near, Point* point, DataTerm* data,
+                 LightMode* mode) const;
+  // The first two terms of the cost.
+  static double CostOf(const DataTerm& data, const LightMode& mode);
+  // Moves `mode`, of `near`, by one step of Gauss-Newton with that one's
+  // linearisation; not where it gains nothing.
+  void Predict(const Given& given, const Expansion& near, Point* point,
+               DataTerm* data, LightMode* mode) const;
   // Newton's method from `point`. Where steps fail, or do not end, they are
   // damped (Levenberg and Marquardt): `damping` times K^-1 joins the Hessian.
   // False: the equations are not positive definite, or not finite.

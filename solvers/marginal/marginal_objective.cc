@@ -64,11 +64,13 @@ bool MarginalObjective::IsAt(const double* y) const {
 
 void MarginalObjective::Expand(const double* y) const {
   y_.assign(y, y + NumParameters());
+  if (at_mode_) near_ = std::move(at_);
+  at_mode_ = false;
   // A trial that a line search turns down must not move the mode's start.
   LightMode mode = *mode_;
-  value_ =
-      reflectance_->Expand(ParametersOf(y).data(), errors_,
-                           HyperparametersOf(y), mode_tolerance_, &mode, &at_);
+  value_ = reflectance_->Expand(ParametersOf(y).data(), errors_,
+                                HyperparametersOf(y), mode_tolerance_, &near_,
+                                &mode, &at_);
 }
 
 bool MarginalObjective::Evaluate(const double* y, double* cost,
@@ -83,6 +85,7 @@ bool MarginalObjective::Evaluate(const double* y, double* cost,
           prior_->WallCost(LobesOf(y), &wall);
   if (gradient != nullptr) {
     *mode_ = at_.likelihood->mode;
+    at_mode_ = true;
     last_value_ = value_;
     const std::vector<double> by_parameter = reflectance_->Gradient(&at_);
     wall += Eigen::Map<const Eigen::VectorXd>(by_parameter.data(), n);

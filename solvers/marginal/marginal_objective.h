@@ -60,10 +60,12 @@ class MarginalObjective final : public ceres::FirstOrderFunction {
   const DataErrors errors_;
   LightMode* mode_;
   const double mode_tolerance_;
-  // The last point, and what was found there.
+  // The last point, what was found there, and that of the last one with a
+  // gradient before it, of which *mode_ is.
   mutable std::vector<double> y_;
   mutable MarginalValue value_;
-  mutable MarginalReflectance::Expansion at_;
+  mutable MarginalReflectance::Expansion at_, near_;
+  mutable bool at_mode_ = false;  // *mode_ is of at_
   mutable MarginalValue last_value_;
   mutable Eigen::MatrixXd of_hyperparameters_;  // of Information
   mutable int information_calls_ = 0;

@@ -400,14 +400,15 @@ std::array<RowMatrix, 3> MarginalReflectance::MatteMatrices(
 MarginalValue MarginalReflectance::Expand(
     const double* parameters, const DataErrors& errors,
     const LightHyperparameters& hyperparameters, double tolerance,
-    LightMode* mode, Expansion* expansion) const {
+    const Expansion* near, LightMode* mode, Expansion* expansion) const {
   *expansion = Expansion();
   expansion->parameters.assign(parameters, parameters + num_parameters());
   expansion->shapes = ShapeMatrices(DirectionalLights(parameters),
                                     Tabulate(parameters, false), 1);
   return likelihood_->Expand(Coloured(parameters, expansion->shapes), errors,
-                             hyperparameters, tolerance, mode,
-                             &expansion->likelihood);
+                             hyperparameters, tolerance,
+                             near != nullptr ? near->likelihood.get() : nullptr,
+                             mode, &expansion->likelihood);
 }
 
 void MarginalReflectance::TabulateDerivatives(Expansion* at) const {
@@ -438,8 +439,8 @@ MarginalValue MarginalReflectance::Evaluate(
     const LightHyperparameters& hyperparameters, double tolerance,
     LightMode* mode, std::vector<double>* gradient) const {
   Expansion at;
-  const MarginalValue value =
-      Expand(parameters, errors, hyperparameters, tolerance, mode, &at);
+  const MarginalValue value = Expand(parameters, errors, hyperparameters,
+                                     tolerance, nullptr, mode, &at);
   if (gradient != nullptr && value.ok) *gradient = Gradient(&at);
   return value;
 }

@@ -91,10 +91,10 @@ class MarginalReflectance {
     Fields fields;
   };
   // As Evaluate without a gradient. `expansion` receives the one around the
-  // mode where the value is ok.
+  // mode where the value is ok. near: as MarginalLikelihood::Expand's.
   MarginalValue Expand(const double* parameters, const DataErrors& errors,
                        const LightHyperparameters& hyperparameters,
-                       double tolerance, LightMode* mode,
+                       double tolerance, const Expansion* near, LightMode* mode,
                        Expansion* expansion) const;
   // [num_parameters + hyperparameters].
   std::vector<double> Gradient(Expansion* at) const;
