@@ -289,17 +289,22 @@ MarginalLikelihood::DataTerm MarginalLikelihood::DataAt(
   return data;
 }
 
+template <typename Matrix>
 std::unique_ptr<const MarginalLikelihood::Linearisation>
-MarginalLikelihood::Linearise(const Given& given, const Point& point,
-                              const DataTerm& data, double damping) const {
+MarginalLikelihood::LineariseIn(const Given& given, const Point& point,
+                                const DataTerm& data, double damping) const {
+  using Number = typename Matrix::Scalar;
   const Light& light = given.light;
   const Eigen::Index t = num_texels(), n = num_sources(), P = num_points_;
   auto linear = std::make_unique<Linearisation>();
+  std::array<Matrix, 3> of_texels, correlated;
   ParallelFor(3, num_threads_, [&](int64_t c, int) {
     linear->jacobian[c] =
         point.unpainted.segment(c * P, P).cwiseInverse().asDiagonal() *
         given.matrices[c] * point.L.segment(c * n, n).asDiagonal();
+    of_texels[c] = linear->jacobian[c].leftCols(t).template cast<Number>();
     light.correlation.Multiply(linear->jacobian[c].leftCols(t), &linear->JC[c]);
+    correlated[c] = linear->JC[c].template cast<Number>();
   });
   linear->matte_share = given.matte_share;
   linear->damping = damping;
@@ -315,13 +320,14 @@ MarginalLikelihood::Linearise(const Given& given, const Point& point,
   constexpr int kPairs[6][2] = {{0, 0}, {1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}};
   ParallelFor(6, num_threads_, [&](int64_t pair, int) {
     const int c = kPairs[pair][0], d = kPairs[pair][1];
-    RowMatrix block;
-    MultiplyTransposed(linear->JC[c], linear->jacobian[d].leftCols(t), &block);
+    Matrix product;
+    MultiplyTransposed(correlated[c], of_texels[d], &product);
     // The rows of a Jacobian sum to 1: a level moves log radiance as it is.
-    block = (light.amplitude * local_(c, d) * block +
-             DirectionalLightBlock(*linear, c, d))
-                .array() +
-            level_(c, d);
+    RowMatrix block =
+        (light.amplitude * local_(c, d) * product.template cast<double>() +
+         DirectionalLightBlock(*linear, c, d))
+            .array() +
+        level_(c, d);
     AddPaintBlock(linear->matte_share, c, d, &block);
     ScaleBlock(*linear, c, d, &block);
     A.block(c * P, d * P, P, P) = block;
@@ -329,6 +335,23 @@ MarginalLikelihood::Linearise(const Given& given, const Point& point,
   A.diagonal() += (1.0 + damping) * linear->diagonal;
   if (!A.allFinite() || !Factorise(&A)) return nullptr;
   return linear;
+}
+
+std::unique_ptr<const MarginalLikelihood::Linearisation>
+MarginalLikelihood::Linearise(const Given& given, const Point& point,
+                              const DataTerm& data) const {
+  return LineariseIn<RowMatrix>(given, point, data, 0.0);
+}
+
+// Where rounding takes the equations' definiteness they are made again.
+std::unique_ptr<const MarginalLikelihood::Linearisation>
+MarginalLikelihood::LineariseRoughly(const Given& given, const Point& point,
+                                     const DataTerm& data,
+                                     double damping) const {
+  auto linear = LineariseIn<FloatRowMatrix>(given, point, data, damping);
+  return linear != nullptr
+             ? std::move(linear)
+             : LineariseIn<RowMatrix>(given, point, data, damping);
 }
 
 void MarginalLikelihood::AddPaintBlock(const Eigen::VectorXd& matte_share,
@@ -512,9 +535,8 @@ MarginalLikelihood::NewtonStep MarginalLikelihood::FindNewtonStep(
     slope.tail(y_.size()) -= given.matte_share.cwiseProduct(data.slope);
   }
   NewtonStep step;
-  step.representers =
-      -SolveHessian(given, point, data, linear, kNewtonTolerance, slope,
-                    &step.iterations);
+  step.representers = -SolveHessian(given, point, data, linear,
+                                    kNewtonTolerance, slope, &step.iterations);
   step.l = ApplyCovariance(given.light, step.representers);
   step.promise = -slope.dot(step.l);
   return step;
@@ -559,7 +581,7 @@ bool MarginalLikelihood::FindMode(const Given& given, double tolerance,
   double damping = 0.0, moved = 0.0;
   for (int k = 0; k < kMaxIterations; ++k) {
     if (linear == nullptr) {
-      linear = Linearise(given, *point, *data, damping);
+      linear = LineariseRoughly(given, *point, *data, damping);
       if (linear == nullptr) return false;
     }
     const NewtonStep step =

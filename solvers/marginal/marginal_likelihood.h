@@ -298,8 +298,17 @@ class MarginalLikelihood {
   // damping: see FindMode.
   std::unique_ptr<const Linearisation> Linearise(const Given& given,
                                                  const Point& point,
-                                                 const DataTerm& data,
-                                                 double damping = 0.0) const;
+                                                 const DataTerm& data) const;
+  // The same with J K J^T in single precision, for a preconditioner.
+  std::unique_ptr<const Linearisation> LineariseRoughly(const Given& given,
+                                                        const Point& point,
+                                                        const DataTerm& data,
+                                                        double damping) const;
+  template <typename Matrix>
+  std::unique_ptr<const Linearisation> LineariseIn(const Given& given,
+                                                   const Point& point,
+                                                   const DataTerm& data,
+                                                   double damping) const;
   // K g.
   Eigen::VectorXd ApplyCovariance(const Light& light,
                                   const Eigen::VectorXd& g) const;

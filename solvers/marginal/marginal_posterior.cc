@@ -125,11 +125,12 @@ Eigen::MatrixXd MarginalLikelihood::HyperparameterInformation(
     const Light& light, const Linearisation& linear) const {
   const Eigen::Index P = num_points_;
   constexpr int kCount = LightHyperparameters::kCount;
-  RowMatrix inverse = linear.factor;
-  InvertFactored(&inverse);
+  RowMatrix exact_inverse = linear.factor;
+  InvertFactored(&exact_inverse);
+  const FloatRowMatrix inverse = exact_inverse.cast<float>();
   // A^-1 J K_a J^T of each scale. The amplitude's: I - A^-1 (D + what it does
   // not scale).
-  std::array<RowMatrix, kCount> by;
+  std::array<FloatRowMatrix, kCount> by;
   RowMatrix unscaled(3 * P, 3 * P);
   for (int c = 0; c < 3; ++c) {
     for (int d = 0; d < 3; ++d) {
@@ -139,21 +140,27 @@ Eigen::MatrixXd MarginalLikelihood::HyperparameterInformation(
     }
   }
   unscaled.diagonal() += linear.diagonal;
-  MultiplyInTiles(inverse, -unscaled, num_threads_, &by[0]);
-  by[0].diagonal().array() += 1.0;
+  MultiplyInTiles(inverse, FloatRowMatrix(-unscaled.cast<float>()),
+                  num_threads_, &by[0]);
+  by[0].diagonal().array() += 1.0f;
   std::array<RowMatrix, 3> rough;
   for (int c = 0; c < 3; ++c) {
     light.rough.Multiply(linear.jacobian[c].leftCols(num_texels()), &rough[c]);
   }
   for (int b = 0; b < LightHyperparameters::kBands; ++b) {
-    MultiplyInTiles(inverse, CovarianceByBand(light, linear, rough, b),
-                    num_threads_, &by[1 + b]);
+    MultiplyInTiles(
+        inverse,
+        FloatRowMatrix(CovarianceByBand(light, linear, rough, b).cast<float>()),
+        num_threads_, &by[1 + b]);
   }
   Eigen::MatrixXd information(kCount, kCount);
   for (int a = 0; a < kCount; ++a) {
     for (int b = 0; b <= a; ++b) {
       information(a, b) = information(b, a) =
-          0.5 * by[a].cwiseProduct(by[b].transpose()).sum();
+          0.5 * by[a]
+                    .cast<double>()
+                    .cwiseProduct(by[b].transpose().cast<double>())
+                    .sum();
     }
   }
   return information;

@@ -31,17 +31,37 @@ void OneThread() {
   std::call_once(once, [] { openblas_set_num_threads(1); });
 }
 
+// BLAS's product by the type of its numbers.
+constexpr auto& Product(double) { return cblas_dgemm; }
+constexpr auto& Product(float) { return cblas_sgemm; }
+
 // C = A op(B), [rows of A][columns].
-void Gemm(const Eigen::Ref<const RowMatrix>& A,
-          const Eigen::Ref<const RowMatrix>& B, CBLAS_TRANSPOSE op,
-          Eigen::Index columns, RowMatrix* C) {
+template <typename Matrix>
+void Gemm(const Eigen::Ref<const Matrix>& A, const Eigen::Ref<const Matrix>& B,
+          CBLAS_TRANSPOSE op, Eigen::Index columns, Matrix* C) {
+  using Number = typename Matrix::Scalar;
   OneThread();
   C->resize(A.rows(), columns);
-  cblas_dgemm(CblasRowMajor, CblasNoTrans, op, static_cast<int>(A.rows()),
-              static_cast<int>(columns), static_cast<int>(A.cols()), 1.0,
-              A.data(), static_cast<int>(A.outerStride()), B.data(),
-              static_cast<int>(B.outerStride()), 0.0, C->data(),
-              static_cast<int>(columns));
+  Product(Number())(CblasRowMajor, CblasNoTrans, op, static_cast<int>(A.rows()),
+                    static_cast<int>(columns), static_cast<int>(A.cols()),
+                    Number(1), A.data(), static_cast<int>(A.outerStride()),
+                    B.data(), static_cast<int>(B.outerStride()), Number(0),
+                    C->data(), static_cast<int>(columns));
+}
+
+template <typename Matrix>
+void GemmInTiles(const Eigen::Ref<const Matrix>& A, const Matrix& B,
+                 int num_threads, Matrix* C) {
+  CHECK_EQ(A.cols(), B.rows());
+  C->resize(A.rows(), B.cols());
+  const Eigen::Index tiles = (A.rows() + kTileRows - 1) / kTileRows;
+  ParallelFor(tiles, num_threads, [&](int64_t tile, int) {
+    const Eigen::Index begin = tile * kTileRows;
+    const Eigen::Index rows = std::min(kTileRows, A.rows() - begin);
+    Matrix out;
+    Gemm<Matrix>(A.middleRows(begin, rows), B, CblasNoTrans, B.cols(), &out);
+    C->middleRows(begin, rows) = out;
+  });
 }
 
 // op(A) x, [rows].
@@ -61,26 +81,31 @@ Eigen::VectorXd Gemv(const RowMatrix& A, CBLAS_TRANSPOSE op,
 void Multiply(const Eigen::Ref<const RowMatrix>& A,
               const Eigen::Ref<const RowMatrix>& B, RowMatrix* C) {
   CHECK_EQ(A.cols(), B.rows());
-  Gemm(A, B, CblasNoTrans, B.cols(), C);
+  Gemm<RowMatrix>(A, B, CblasNoTrans, B.cols(), C);
 }
 
 void MultiplyTransposed(const Eigen::Ref<const RowMatrix>& A,
                         const Eigen::Ref<const RowMatrix>& B, RowMatrix* C) {
   CHECK_EQ(A.cols(), B.cols());
-  Gemm(A, B, CblasTrans, B.rows(), C);
+  Gemm<RowMatrix>(A, B, CblasTrans, B.rows(), C);
+}
+
+void MultiplyTransposed(const Eigen::Ref<const FloatRowMatrix>& A,
+                        const Eigen::Ref<const FloatRowMatrix>& B,
+                        FloatRowMatrix* C) {
+  CHECK_EQ(A.cols(), B.cols());
+  Gemm<FloatRowMatrix>(A, B, CblasTrans, B.rows(), C);
 }
 
 void MultiplyInTiles(const Eigen::Ref<const RowMatrix>& A, const RowMatrix& B,
                      int num_threads, RowMatrix* C) {
-  C->resize(A.rows(), B.cols());
-  const Eigen::Index tiles = (A.rows() + kTileRows - 1) / kTileRows;
-  ParallelFor(tiles, num_threads, [&](int64_t tile, int) {
-    const Eigen::Index begin = tile * kTileRows;
-    const Eigen::Index rows = std::min(kTileRows, A.rows() - begin);
-    RowMatrix out;
-    Multiply(A.middleRows(begin, rows), B, &out);
-    C->middleRows(begin, rows) = out;
-  });
+  GemmInTiles<RowMatrix>(A, B, num_threads, C);
+}
+
+void MultiplyInTiles(const Eigen::Ref<const FloatRowMatrix>& A,
+                     const FloatRowMatrix& B, int num_threads,
+                     FloatRowMatrix* C) {
+  GemmInTiles<FloatRowMatrix>(A, B, num_threads, C);
 }
 
 Eigen::VectorXd MultiplyVector(const RowMatrix& A,

@@ -43,6 +43,24 @@ RowMatrix PositiveDefinite(int n) {
   return SlowProduct(B, B.transpose()) / n + RowMatrix::Identity(n, n);
 }
 
+TEST(DenseAlgebra, ProductsInSinglePrecision) {
+  // 40 products of numbers of size 1 to 4, each rounded to 6e-8 of itself.
+  constexpr double kRoundingOfFloats = 4e-5;
+  const FloatRowMatrix A = Random(100, 40, 1).cast<float>();
+  const FloatRowMatrix B = Random(40, 7, 2).cast<float>();
+  const RowMatrix expected = SlowProduct(A.cast<double>(), B.cast<double>());
+  FloatRowMatrix C;
+  MultiplyTransposed(A, FloatRowMatrix(B.transpose()), &C);
+  EXPECT_LT((expected - C.cast<double>()).cwiseAbs().maxCoeff(),
+            kRoundingOfFloats);
+  for (const int threads : {1, 3}) {
+    FloatRowMatrix tiled;
+    MultiplyInTiles(A, B, threads, &tiled);
+    EXPECT_LT((expected - tiled.cast<double>()).cwiseAbs().maxCoeff(),
+              kRoundingOfFloats);
+  }
+}
+
 TEST(DenseAlgebra, ProductsOverwriteWhatWasThere) {
   const int sizes[][3] = {
       {1, 1, 1}, {3, 5, 2}, {1, 40, 7}, {17, 1, 9}, {33, 8, 1}};
