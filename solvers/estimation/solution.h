@@ -56,7 +56,7 @@ struct CurveEstimate {
 struct MapTurn {
   bool mirrored = false;
   double degrees = 0.0;  // [0, 360); what was at +z is at +x after 90
-  double misfit = 0.0;   // that simple materials leave under it
+  double misfit = 0.0;   // that it leaves; of what, its finder says
 };
 
 // What a solution says of another photograph (OtherPhotograph).
@@ -101,10 +101,13 @@ struct Solution : MaterialSolution {
   // One material under a known light that leaves a large misfit: the share of
   // it that mirrored light explains, in [0, 1]. Else 0.
   double mirrored_share = 0.0;
-  // The same where the known map in another frame would explain the image far
-  // better, and the misfit of simple materials under the map as it is given.
+  // Under a known map that another frame would suit far better: that frame, and
+  // the misfit of the map as it is given.
   std::optional<MapTurn> better_map_turn;
   double misfit_of_given_map = 0.0;
+  // Whether the misfits of these two are of like paint (FindPaintTurns), not of
+  // simple materials (FindMapTurns).
+  bool map_turn_of_paint = false;
   // Where the curve was unknown: the best of each family, the best first.
   std::vector<CurveEstimate> curves;
   // Labelled materials, by ShadingPoint::material. Empty: no labels.

@@ -63,9 +63,12 @@ std::string MapTurnAdvice(const SolvedProblem& solved) {
       : frame.has_value()
           ? std::string("try illumination.frame: ") + MapFrameName(*frame)
           : "check illumination.frame";
-  return advice + ", as simple materials leave " + Format("%.2g", turn.misfit) +
-         " under the map " + InWords(turn) + ", and " +
-         Format("%.2g", solved.solution.misfit_of_given_map) +
+  const bool paint = solved.solution.map_turn_of_paint;
+  const std::string by = paint ? "by " : "";
+  return advice + ", as " +
+         (paint ? "places of like paint differ " : "simple materials leave ") +
+         by + Format("%.2g", turn.misfit) + " under the map " + InWords(turn) +
+         ", and " + by + Format("%.2g", solved.solution.misfit_of_given_map) +
          " under the map as it is given";
 }
 

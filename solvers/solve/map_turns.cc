@@ -9,15 +9,10 @@
 
 #include "ibrdf/brdf/cook_torrance.h"
 #include "ibrdf/brdf/lambertian.h"
-#include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
 namespace {
 
-using FloatMatrix =
-    Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-constexpr int kMostColumns = 64;
 constexpr size_t kMostPixels = 500;
 // Of the microfacet lobes: from near a mirror at this map's size to dull, of
 // plastic and of metal.
@@ -83,25 +78,6 @@ SomePixels SomeOf(const Observation& pixels) {
   return some;
 }
 
-// At most kMostColumns wide.
-Image CoarseMap(const Image& map) {
-  return map.width <= kMostColumns
-             ? map
-             : ResizeMap(map, kMostColumns / 2, kMostColumns);
-}
-
-// All turns, the unmirrored first: columns [turn * 3 + channel].
-FloatMatrix AllTurns(const Image& map) {
-  const int turns = 2 * map.width;
-  FloatMatrix out(static_cast<Eigen::Index>(map.num_pixels()), 3 * turns);
-  for (int turn = 0; turn < turns; ++turn) {
-    const Image turned = Turned(map, turn >= map.width, turn % map.width);
-    out.middleCols(3 * turn, 3) =
-        Eigen::Map<const FloatMatrix>(turned.rgb.data(), out.rows(), 3);
-  }
-  return out;
-}
-
 // argmin x' A x / 2 - b' x over x >= 0, from x, coordinate by coordinate.
 void MinimiseOverPositive(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                           Eigen::VectorXd* x) {
@@ -139,64 +115,31 @@ double LeftByMixture(const Eigen::MatrixXd& shading,
 
 }  // namespace
 
-Image Turned(const Image& map, bool mirrored, int columns) {
-  Image out(map.width, map.height);
-  for (int y = 0; y < map.height; ++y) {
-    for (int x = 0; x < map.width; ++x) {
-      const int before = ((x - columns) % map.width + map.width) % map.width;
-      const float* from = map.At(mirrored ? map.width - 1 - before : before, y);
-      std::copy(from, from + 3, out.At(x, y));
-    }
-  }
-  return out;
-}
-
-bool MapTurns::IsFarBetter() const {
-  return best.misfit < std::min(kFarBetter * as_given, kExplained) ||
-         best.misfit < kBetterByFar * as_given;
+bool IsFarBetter(const MapTurns& turns) {
+  return turns.best.misfit <
+             std::min(kFarBetter * turns.as_given, kExplained) ||
+         turns.best.misfit < kBetterByFar * turns.as_given;
 }
 
 MapTurns FindMapTurns(const SolveSetup& setup) {
-  MapTurns found;
   const SomePixels pixels = SomeOf(setup.pixels);
-  if (pixels.points.empty()) return found;
-  const Image map = CoarseMap(*setup.problem->known_map);
-  TransportOptions options = setup.transport;
-  options.patches = nullptr;
-  options.bright.clear();
-  options.quadrature.far_width =
-      std::max(options.quadrature.far_width, map.width);
-  const Transport transport(pixels.points, map.height, map.width, options);
-  const std::vector<BrdfGrid> lobes = SimpleLobes(options.grid);
-  const FloatMatrix maps = AllTurns(map);
-  std::vector<FloatMatrix> shading(
-      lobes.size(), FloatMatrix(pixels.radiance.rows(), maps.rows()));
-  std::vector<const float*> fields;
-  std::vector<float*> matrices;
-  for (size_t k = 0; k < lobes.size(); ++k) {
-    fields.push_back(lobes[k].Channel(0));
-    matrices.push_back(shading[k].data());
-  }
-  transport.LightMatrices(fields, matrices);
-  for (FloatMatrix& of_lobe : shading) of_lobe = of_lobe * maps;
+  if (pixels.points.empty()) return {};
+  const std::vector<BrdfGrid> lobes = SimpleLobes(setup.transport.grid);
+  const TurnedMaps maps(setup, pixels.points, lobes);
   Eigen::MatrixXd under(pixels.radiance.rows(),
                         static_cast<Eigen::Index>(lobes.size()));
-  for (int turn = 0; turn < 2 * map.width; ++turn) {
+  std::vector<double> misfits;
+  for (int turn = 0; turn < maps.num_turns(); ++turn) {
     double left = 0.0;
     for (int c = 0; c < 3; ++c) {
-      for (Eigen::Index k = 0; k < under.cols(); ++k) {
-        under.col(k) =
-            shading[static_cast<size_t>(k)].col(3 * turn + c).cast<double>();
+      for (size_t k = 0; k < lobes.size(); ++k) {
+        under.col(static_cast<Eigen::Index>(k)) = maps.Radiance(turn, k, c);
       }
       left += LeftByMixture(under, pixels.radiance.col(c));
     }
-    const double misfit = left / static_cast<double>(pixels.radiance.size());
-    if (turn == 0) found.as_given = misfit;
-    if (turn == 0 || misfit < found.best.misfit) {
-      found.best = {turn >= map.width, 360.0 * (turn % map.width) / map.width,
-                    misfit};
-    }
+    misfits.push_back(left / static_cast<double>(pixels.radiance.size()));
   }
+  const MapTurns found = maps.Best(misfits);
   VLOG(1) << "simple materials leave " << found.as_given
           << " under the map as it is given, " << found.best.misfit
           << " under the map " << (found.best.mirrored ? "mirrored and " : "")

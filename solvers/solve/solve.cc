@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "ibrdf/solvers/solve/labelled.h"
 #include "ibrdf/solvers/solve/map_turns.h"
 #include "ibrdf/solvers/solve/paint_evidence.h"
+#include "ibrdf/solvers/solve/paint_turns.h"
 #include "ibrdf/solvers/solve/painted.h"
 #include "ibrdf/solvers/solve/painted_known_light.h"
 #include "ibrdf/solvers/solve/summary.h"
@@ -36,6 +38,25 @@ StatusOr<Estimate> EstimateLightOfKnownReflectance(const SolveSetup& setup,
 // map in a wrong frame the least was 0.052.
 constexpr double kWorthTurning = 0.04;
 
+void SetBetterTurn(const MapTurns& turns, bool of_paint, Solution* solution) {
+  solution->better_map_turn = turns.best;
+  solution->misfit_of_given_map = turns.as_given;
+  solution->map_turn_of_paint = of_paint;
+}
+
+// Paint explains much of what a map in a wrong frame leaves: whether it does is
+// asked of the image.
+StatusOr<Solution> SolvePaintedUnderAnyFrame(const SolveSetup& setup,
+                                             SolveContext* context) {
+  StatusOr<Solution> solution = SolvePaintedUnderKnownLight(setup, context);
+  if (!solution.ok()) return solution;
+  const std::optional<MapTurns> turns = FindPaintTurns(setup);
+  if (turns.has_value() && IsBetterOfPaint(*turns)) {
+    SetBetterTurn(*turns, true, &*solution);
+  }
+  return solution;
+}
+
 StatusOr<Solution> SolveUnderKnownLight(const SolveSetup& setup,
                                         bool may_be_painted,
                                         SolveContext* context) {
@@ -45,18 +66,15 @@ StatusOr<Solution> SolveUnderKnownLight(const SolveSetup& setup,
   const LeftByOneMaterial left = LeftBy(of_model, found->estimate, *context);
   MapTurns turns;
   if (left.misfit > kWorthTurning) turns = FindMapTurns(setup);
-  if (may_be_painted && left.MayBePaint() && !turns.IsFarBetter()) {
-    StatusOr<Solution> painted = SolvePaintedUnderKnownLight(setup, context);
+  if (may_be_painted && left.MayBePaint() && !IsFarBetter(turns)) {
+    StatusOr<Solution> painted = SolvePaintedUnderAnyFrame(setup, context);
     if (!painted.ok() || left.IsExplainedBy(painted->misfit)) return painted;
   }
   Solution solution = Summarise(of_model, std::move(found->estimate), context);
   solution.models = std::move(found->models);
   solution.model_weights = std::move(found->model_weights);
   solution.mirrored_share = left.mirrored;
-  if (turns.IsFarBetter()) {
-    solution.better_map_turn = turns.best;
-    solution.misfit_of_given_map = turns.as_given;
-  }
+  if (IsFarBetter(turns)) SetBetterTurn(turns, false, &solution);
   return solution;
 }
 
@@ -93,7 +111,7 @@ StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
   if (problem.variation == ReflectanceVariation::kAlbedo ||
       (may_be_painted && light_unknown && IsProbablyPainted(*setup, context))) {
     return light_unknown ? SolvePainted(*setup, context)
-                         : SolvePaintedUnderKnownLight(*setup, context);
+                         : SolvePaintedUnderAnyFrame(*setup, context);
   }
   if (problem.materials.size() > 1) return SolveLabelled(*setup, context);
   StatusOr<Solution> solution =

@@ -75,6 +75,13 @@ TEST(MapTurnAdvice, NamesAFrameOrSaysTheTurn) {
       "the map turned by 180 degrees to the left, and 0.3 under the map as it "
       "is given",
       MapTurnAdvice(solved));
+  solution.map_turn_of_paint = true;
+  EXPECT_EQ(
+      "try illumination.frame: mitsuba, as places of like paint differ by 0.05 "
+      "under the map turned by 180 degrees to the left, and by 0.3 under the "
+      "map as it is given",
+      MapTurnAdvice(solved));
+  solution.map_turn_of_paint = false;
   solution.better_map_turn = {true, 315.0, 0.05};
   EXPECT_TRUE(Contains(MapTurnAdvice(solved),
                        "check illumination.frame, as simple materials leave "

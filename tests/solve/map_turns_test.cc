@@ -37,13 +37,13 @@ TEST(FindMapTurns, FindsWhatUndoesATurn) {
   InverseProblem problem = PlasticBall(NoPaint);
   const MapTurns right = TurnsOf(problem);
   EXPECT_LT(right.as_given, 0.06);
-  EXPECT_FALSE(right.IsFarBetter());
+  EXPECT_FALSE(IsFarBetter(right));
   const Image map = *problem.known_map;
   for (const bool mirrored : {false, true}) {
     problem.known_map = Turned(map, mirrored, 12);
     const MapTurns turns = TurnsOf(problem);
     EXPECT_GT(turns.as_given, 0.2);
-    EXPECT_TRUE(turns.IsFarBetter());
+    EXPECT_TRUE(IsFarBetter(turns));
     EXPECT_NEAR(right.as_given, turns.best.misfit, 0.01);
     EXPECT_EQ(mirrored, turns.best.mirrored);
     // A mirrored turn undoes itself.
@@ -58,7 +58,7 @@ TEST(FindMapTurns, TakesALargeMapCoarsely) {
   problem.map_width = 150;
   problem.map_height = 75;
   const MapTurns turns = TurnsOf(problem);
-  EXPECT_TRUE(turns.IsFarBetter());
+  EXPECT_TRUE(IsFarBetter(turns));
   EXPECT_TRUE(turns.best.mirrored);
   EXPECT_NEAR(180.0, std::abs(turns.best.degrees - 180.0), 6.0);
 }
@@ -66,14 +66,14 @@ TEST(FindMapTurns, TakesALargeMapCoarsely) {
 TEST(FindMapTurns, PaintIsNoTurn) {
   const MapTurns turns = TurnsOf(PlasticBall(Stripes));
   EXPECT_GT(turns.as_given, 0.2);
-  EXPECT_FALSE(turns.IsFarBetter());
+  EXPECT_FALSE(IsFarBetter(turns));
 }
 
 TEST(FindMapTurns, EvenLightHasNone) {
   InverseProblem problem = PlasticBall(Stripes);
   std::fill(problem.known_map->rgb.begin(), problem.known_map->rgb.end(), 1.0f);
   const MapTurns turns = TurnsOf(problem);
-  EXPECT_FALSE(turns.IsFarBetter());
+  EXPECT_FALSE(IsFarBetter(turns));
   EXPECT_FALSE(turns.best.mirrored);
   EXPECT_EQ(0.0, turns.best.degrees);
 }

@@ -34,10 +34,12 @@ inline CookTorrance Plastic() {
   return brdf;
 }
 
-// Under Room(), with radiance e^paint(normal) times that of the BRDF.
+// Under Room(), with radiance e^paint(normal) times that of the BRDF, paint of
+// all channels or an array of them.
 template <typename Paint>
-InverseProblem BallInRoom(const BrdfFunction& brdf, const Paint& paint) {
-  InverseProblem problem = BallProblem(40);
+InverseProblem BallInRoom(const BrdfFunction& brdf, const Paint& paint,
+                          int size = 40) {
+  InverseProblem problem = BallProblem(size);
   const Image map = Room();
   problem.map_width = map.width;
   problem.map_height = map.height;
@@ -47,8 +49,9 @@ InverseProblem BallInRoom(const BrdfFunction& brdf, const Paint& paint) {
   std::vector<double> L_o(3 * problem.points.size());
   transport.Render(BrdfGrid::FromFunction(brdf, problem.transport.grid),
                    map.rgb.data(), L_o.data());
-  for (size_t i = 0; i < L_o.size(); ++i) {
-    L_o[i] *= std::exp(paint(problem.points[i / 3].normal));
+  for (size_t p = 0; p < problem.points.size(); ++p) {
+    Eigen::Map<Eigen::Array3d>(&L_o[3 * p]) *=
+        (Eigen::Array3d::Zero() + paint(problem.points[p].normal)).exp();
   }
   SetNoisyImage(L_o, 0.01, &problem);
   return problem;
@@ -57,6 +60,14 @@ InverseProblem BallInRoom(const BrdfFunction& brdf, const Paint& paint) {
 template <typename Paint>
 InverseProblem PlasticBall(const Paint& paint) {
   return BallInRoom(Plastic().Function(), paint);
+}
+
+// Matte, large enough for places beside each other.
+template <typename Paint>
+InverseProblem PaintedBall(const Paint& paint) {
+  CookTorrance brdf = Plastic();
+  brdf.f0 = 0.02;
+  return BallInRoom(brdf.Function(), paint, 72);
 }
 
 inline double NoPaint(const Eigen::Vector3f&) { return 0.0; }

@@ -1,0 +1,87 @@
+#include "ibrdf/solvers/solve/paint_turns.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ibrdf/light/environment_map.h"
+#include "ibrdf/solvers/solve/solve.h"
+#include "tests/solve/plastic_ball.h"
+
+namespace ibrdf {
+namespace {
+using namespace testing;  // NOLINT
+
+// Sectors of red, white and blue paint.
+Eigen::Array3d Patches(const Eigen::Vector3f& normal) {
+  const double angle = std::atan2(normal.y() - 0.1, normal.x() + 0.15);
+  const int sector = static_cast<int>(std::floor((angle + 3.2) / 1.1)) % 3;
+  if (sector == 0) return {0.3, -0.8, -1.0};
+  return sector == 1 ? Eigen::Array3d(-1.1, -0.7, 0.2)
+                     : Eigen::Array3d(0.4, 0.3, 0.2);
+}
+
+std::optional<MapTurns> PaintTurnsOf(const InverseProblem& problem) {
+  const StatusOr<SolveSetup> setup = SetUp(problem);
+  EXPECT_TRUE(setup.ok()) << setup.status().message();
+  return FindPaintTurns(*setup);
+}
+
+TEST(FindPaintTurns, FindsWhatUndoesATurn) {
+  InverseProblem problem = PaintedBall(Patches);
+  const std::optional<MapTurns> right = PaintTurnsOf(problem);
+  ASSERT_TRUE(right.has_value());
+  EXPECT_FALSE(IsBetterOfPaint(*right));
+  const Image map = *problem.known_map;
+  for (const bool mirrored : {false, true}) {
+    problem.known_map = Turned(map, mirrored, 12);
+    const std::optional<MapTurns> turns = PaintTurnsOf(problem);
+    ASSERT_TRUE(turns.has_value());
+    EXPECT_TRUE(IsBetterOfPaint(*turns));
+    EXPECT_EQ(mirrored, turns->best.mirrored);
+    EXPECT_EQ((mirrored ? 12 : 20) * 360.0 / 32, turns->best.degrees);
+    EXPECT_NEAR(right->best.misfit, turns->best.misfit, 0.002);
+  }
+}
+
+// Its shading could be another map's.
+TEST(FindPaintTurns, PaintThatFadesSaysNothing) {
+  EXPECT_FALSE(PaintTurnsOf(PlasticBall(Stripes)).has_value());
+}
+
+// Rims of coloured highlights are sharp as well.
+TEST(FindPaintTurns, WithoutPaintTheRightFrameIsRight) {
+  const std::optional<MapTurns> turns = PaintTurnsOf(PlasticBall(NoPaint));
+  EXPECT_FALSE(turns.has_value() && IsBetterOfPaint(*turns));
+}
+
+TEST(FindPaintTurns, EvenLightHasNone) {
+  InverseProblem problem = PaintedBall(Patches);
+  std::fill(problem.known_map->rgb.begin(), problem.known_map->rgb.end(), 1.0f);
+  const std::optional<MapTurns> turns = PaintTurnsOf(problem);
+  ASSERT_TRUE(turns.has_value());
+  EXPECT_FALSE(IsBetterOfPaint(*turns));
+}
+
+TEST(SolveInverseRendering, DoubtsAPaintedObjectsMapInAnotherFrame) {
+  InverseProblem problem = PaintedBall(Patches);
+  problem.variation = ReflectanceVariation::kAuto;
+  problem.solver.max_iterations = 20;
+  StatusOr<Solution> solution =
+      SolveInverseRendering(problem, nullptr, nullptr);
+  ASSERT_TRUE(solution.ok()) << solution.status().message();
+  EXPECT_TRUE(solution->has_paint());
+  EXPECT_FALSE(solution->better_map_turn.has_value());
+
+  problem.known_map = Turned(*problem.known_map, true, 0);
+  solution = SolveInverseRendering(problem, nullptr, nullptr);
+  ASSERT_TRUE(solution.ok()) << solution.status().message();
+  EXPECT_TRUE(solution->has_paint());
+  ASSERT_TRUE(solution->better_map_turn.has_value());
+  EXPECT_TRUE(solution->map_turn_of_paint);
+  EXPECT_TRUE(solution->better_map_turn->mirrored);
+  EXPECT_EQ(0.0, solution->better_map_turn->degrees);
+}
+
+}  // namespace
+}  // namespace ibrdf
