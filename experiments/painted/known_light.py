@@ -3,8 +3,8 @@
 
     experiments/painted/known_light.py TABLES MAPS MESHES OUT [--only 1/3] [--bin DIR]
 
-Each picture is solved by `problem: reflectance` with the map in the frame that it was made with, camera; the unpainted
-one also in three wrong frames. The models are the program's own. A row of OUT/known_light.csv as each solve finishes; the
+Each picture is solved by `problem: reflectance` with the map in the frame that it was made with, camera, and in three
+wrong frames. The models are the program's own. A row of OUT/known_light.csv as each solve finishes; the
 same command goes on where it was stopped. Needs Debian's python3-numpy.
 
 painted: whether albedo was sought. albedo, constant: log-RMSE of albedo, of the estimate and of an even one, after the
@@ -28,8 +28,8 @@ image: {{file: {picture}.exr, mask: mask.png}}
 geometry: {{sphere: {{}}}}
 illumination: {{known: {map}, frame: {frame}}}
 """
-RUNS = [("painted", "camera"), ("unpainted", "camera")] + [
-    ("unpainted", frame) for frame in ("mitsuba", "blender", "ibrdf_0_1")]
+RUNS = [(picture, frame) for picture in ("painted", "unpainted")
+        for frame in ("camera", "mitsuba", "blender", "ibrdf_0_1")]
 NO_IMPROVEMENT = 3  # exit status
 
 

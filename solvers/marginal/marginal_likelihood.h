@@ -137,6 +137,7 @@ class MarginalLikelihood {
                        const LightHyperparameters& hyperparameters,
                        double tolerance, const Expansion* near, LightMode* mode,
                        std::unique_ptr<const Expansion>* expansion) const;
+  // The gradient of Evaluate.
   MarginalGradient Gradient(const Expansion& at) const;
 
   // Gauss-Newton Hessian [n + hyperparameters]^2 of the cost by n parameters

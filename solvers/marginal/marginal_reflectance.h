@@ -96,7 +96,7 @@ class MarginalReflectance {
                        const LightHyperparameters& hyperparameters,
                        double tolerance, const Expansion* near, LightMode* mode,
                        Expansion* expansion) const;
-  // [num_parameters + hyperparameters].
+  // The gradient of Evaluate, and the Information below, at an expansion.
   std::vector<double> Gradient(Expansion* at) const;
   Eigen::MatrixXd Information(
       Expansion* at, Eigen::MatrixXd* of_hyperparameters = nullptr) const;

@@ -15,6 +15,7 @@
 namespace ibrdf {
 namespace {
 
+constexpr double kMisfitOfRounding = 1e-6;  // of radiance in floats
 constexpr int kSpreadSamples = 64;
 constexpr int kBandSamples = 200;
 // The level of a band's sample needs no more nodes.
@@ -213,9 +214,13 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
     std::vector<PixelRender> again;
     AddRenders(beside, last.map.data(), &again);
     RenderPixels(setup, SizeOf(estimate.iterate.light, setup), again);
-    solution.status =
-        Status(StatusCode::kNoImprovement,
-               "the solver could not improve on its initial guess");
+    // A guess that leaves nothing but rounding is an answer: a constant map
+    // explains one pixel.
+    if (!(start.misfit < kMisfitOfRounding)) {
+      solution.status =
+          Status(StatusCode::kNoImprovement,
+                 "the solver could not improve on its initial guess");
+    }
   }
   if (context->Interrupted()) {
     solution.status = Status(StatusCode::kInterrupted,

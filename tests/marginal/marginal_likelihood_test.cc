@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <utility>
 
@@ -153,6 +154,55 @@ TEST(MarginalLikelihood, StartOfTheModeDoesNotMatter) {
   EXPECT_NEAR(
       cost, likelihood.Evaluate(T, Noise(0.05), {}, 1e-9, &warm, nullptr).cost,
       1e-4);
+}
+
+// What another reflectance's expansion predicts is where the search begins, and
+// has no part in what it finds.
+TEST(MarginalLikelihood, ExpansionsSayWhatEvaluationsDo) {
+  const std::array<RowMatrix, 3> T = Lobes(0.5);
+  const MarginalLikelihood likelihood = Likelihood(
+      {LogRadiance(T, DrawLight(Proper(), 4.0, 3)), {}, {}}, Proper());
+  LightMode cold;
+  MarginalGradient gradient;
+  const MarginalValue value =
+      likelihood.Evaluate(T, Noise(0.05), {}, 1e-9, &cold, &gradient);
+  for (const double width : {0.52, 0.9}) {
+    LightMode mode;
+    std::unique_ptr<const MarginalLikelihood::Expansion> near, at;
+    ASSERT_TRUE(likelihood
+                    .Expand(Lobes(width), Noise(0.05), {0.5}, 1e-9, nullptr,
+                            &mode, &near)
+                    .ok);
+    mode.level = cold.level;
+    EXPECT_NEAR(
+        value.cost,
+        likelihood.Expand(T, Noise(0.05), {}, 1e-9, near.get(), &mode, &at)
+            .cost,
+        1e-4);
+    const MarginalGradient found = likelihood.Gradient(*at);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_LT((found.matrices[c] - gradient.matrices[c]).norm(),
+                1e-3 * gradient.matrices[c].norm());
+    }
+    for (size_t k = 0; k < gradient.hyperparameters.size(); ++k) {
+      EXPECT_NEAR(gradient.hyperparameters[k], found.hyperparameters[k], 1e-3);
+    }
+    const RowMatrix G = RowMatrix::Random(T[0].rows() * 3, 2);
+    EXPECT_TRUE(likelihood.Information(*at, G).isApprox(
+        likelihood.Information(T, Noise(0.05), {}, mode, G), 1e-9));
+  }
+}
+
+TEST(MarginalLikelihood, WithoutAModeThereIsNoExpansion) {
+  std::array<RowMatrix, 3> T = Lobes(0.5);
+  const MarginalLikelihood likelihood = Likelihood(
+      {LogRadiance(T, DrawLight(Proper(), 4.0, 3)), {}, {}}, Proper());
+  for (RowMatrix& matrix : T) matrix.setZero();
+  LightMode mode;
+  std::unique_ptr<const MarginalLikelihood::Expansion> at;
+  EXPECT_FALSE(
+      likelihood.Expand(T, Noise(0.05), {}, 1e-9, nullptr, &mode, &at).ok);
+  EXPECT_EQ(nullptr, at);
 }
 
 TEST(MarginalLikelihood, ExtremesAreFiniteOrRefused) {
