@@ -56,12 +56,7 @@ SomePixels SomeOf(const Observation& pixels) {
   const Observations& observed = pixels.observed;
   std::vector<size_t> known;
   for (size_t i = 0; i < pixels.points.size(); ++i) {
-    bool all = observed.valid[i] != 0;
-    for (size_t v = 3 * i; v < 3 * i + 3; ++v) {
-      const RadianceInterval seen = observed.Interval(v);
-      all = all && seen.low > 0.0 && std::isfinite(seen.high);
-    }
-    if (all) known.push_back(i);
+    if (HasKnownRadiance(observed, i)) known.push_back(i);
   }
   const size_t stride = (known.size() + kMostPixels - 1) / kMostPixels;
   SomePixels some;

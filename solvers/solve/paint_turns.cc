@@ -51,7 +51,7 @@ class PixelGrid {
     }
     point_.assign((static_cast<size_t>(last) / width + 1) * width, -1);
     for (size_t i = 0; i < pixels.points.size(); ++i) {
-      if (pixels.points[i].view == 0 && IsKnown(i)) {
+      if (pixels.points[i].view == 0 && HasKnownRadiance(pixels.observed, i)) {
         point_[pixels.points[i].pixel] = static_cast<int>(i);
       }
     }
@@ -81,17 +81,6 @@ class PixelGrid {
   }
 
  private:
-  // Not bounded alone.
-  bool IsKnown(size_t i) const {
-    const Observations& observed = pixels_.observed;
-    bool known = observed.valid[i] != 0;
-    for (size_t v = 3 * i; v < 3 * i + 3; ++v) {
-      const RadianceInterval seen = observed.Interval(v);
-      known = known && seen.low > 0.0 && std::isfinite(seen.high);
-    }
-    return known;
-  }
-
   const Observation& pixels_;
   const int width_;
   std::vector<int> point_;

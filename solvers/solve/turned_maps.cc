@@ -1,6 +1,7 @@
 #include "ibrdf/solvers/solve/turned_maps.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/transport/transport.h"
@@ -43,6 +44,15 @@ Image Turned(const Image& map, bool mirrored, int columns) {
     }
   }
   return out;
+}
+
+bool HasKnownRadiance(const Observations& observed, size_t pixel) {
+  bool known = observed.valid[pixel] != 0;
+  for (size_t v = 3 * pixel; v < 3 * pixel + 3; ++v) {
+    const RadianceInterval seen = observed.Interval(v);
+    known = known && seen.low > 0.0 && std::isfinite(seen.high);
+  }
+  return known;
 }
 
 TurnedMaps::TurnedMaps(const SolveSetup& setup,

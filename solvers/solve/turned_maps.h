@@ -6,6 +6,7 @@
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/image/image.h"
 #include "ibrdf/scene/scene.h"
+#include "ibrdf/solvers/costs/observations.h"
 #include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 
@@ -15,6 +16,9 @@ namespace ibrdf {
 // turned about +y by `columns` of its width: what was at +z comes to +x after a
 // quarter of them.
 Image Turned(const Image& map, bool mirrored, int columns);
+
+// Whether all channels of a pixel are known, not bounded.
+bool HasKnownRadiance(const Observations& observed, size_t pixel);
 
 // Of the turns of a known map the one with the least misfit, whatever that is
 // of, and the misfit of the map as it is given.

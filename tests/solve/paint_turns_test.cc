@@ -64,16 +64,13 @@ TEST(FindPaintTurns, EvenLightHasNone) {
 
 TEST(SolveInverseRendering, DoubtsAPaintedObjectsMapInAnotherFrame) {
   InverseProblem problem = PaintedBall(Patches);
-  problem.variation = ReflectanceVariation::kAuto;
-  problem.solver.max_iterations = 20;
-  StatusOr<Solution> solution =
-      SolveInverseRendering(problem, nullptr, nullptr);
+  StatusOr<Solution> solution = SolvedWithAutoPaint(problem);
   ASSERT_TRUE(solution.ok()) << solution.status().message();
   EXPECT_TRUE(solution->has_paint());
   EXPECT_FALSE(solution->better_map_turn.has_value());
 
   problem.known_map = Turned(*problem.known_map, true, 0);
-  solution = SolveInverseRendering(problem, nullptr, nullptr);
+  solution = SolvedWithAutoPaint(problem);
   ASSERT_TRUE(solution.ok()) << solution.status().message();
   EXPECT_TRUE(solution->has_paint());
   ASSERT_TRUE(solution->better_map_turn.has_value());

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ibrdf/brdf/cook_torrance.h"
+#include "ibrdf/solvers/solve/solve.h"
 #include "tests/solve/ball_problem.h"
 
 namespace ibrdf {
@@ -74,6 +75,13 @@ inline double NoPaint(const Eigen::Vector3f&) { return 0.0; }
 // Stripes with no sharp edge, the dark ones 0.3 times as bright.
 inline double Stripes(const Eigen::Vector3f& normal) {
   return 0.6 * std::sin(7.0 * normal.x() + 4.0 * normal.y());
+}
+
+// What a solve that chooses whether there is paint makes of it.
+inline StatusOr<Solution> SolvedWithAutoPaint(InverseProblem problem) {
+  problem.variation = ReflectanceVariation::kAuto;
+  problem.solver.max_iterations = 20;
+  return SolveInverseRendering(problem, nullptr, nullptr);
 }
 
 }  // namespace testing
