@@ -20,7 +20,8 @@ Keys UnknownReflectanceKeys() {
           "`known`."),
       Row("reflectance.model",
           "Trained model of unknown BRDFs, from `ibrdf_train`. `default` and "
-          "`broad` come with the programs.")
+          "`broad` come with the programs. A folder is taken as `auto`, with "
+          "its `default.ibrdf` and `broad.ibrdf`.")
           .Path(".ibrdf", "auto",
                 {{"auto",
                   "`default`, or, of one unknown material, the mean of "

@@ -21,7 +21,7 @@ import shutil
 import subprocess
 import sys
 
-CLOCKS = ("seconds", "seconds_predicted", "peak_mb", "ibrdf_version")
+CLOCKS = ("seconds", "seconds_predicted", "cpu_seconds", "peak_mb", "ibrdf_version")
 
 
 def torus(path, around=24, along=12):

@@ -95,6 +95,14 @@ long PeakOf(const EndOfChild& end, const rusage& own) {
              : end.sampled;
 }
 
+double ProcessorSeconds(const rusage& usage) {
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) +
+           1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 }  // namespace
 
 StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
@@ -119,6 +127,7 @@ StatusOr<ChildResult> RunChild(const std::vector<std::string>& argv,
   }
   ChildResult result;
   result.seconds = watch.Seconds();
+  result.cpu_seconds = ProcessorSeconds(end.usage);
   result.peak_mb = static_cast<double>(PeakOf(end, own)) / 1024.0;
   if (WIFSIGNALED(end.status)) {
     result.signal = WTERMSIG(end.status);

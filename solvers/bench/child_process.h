@@ -9,10 +9,11 @@
 namespace ibrdf {
 
 struct ChildResult {
-  int exit_code = 0;     // where signal is 0
-  int signal = 0;        // that ended it
-  double seconds = 0.0;  // wall clock
-  double peak_mb = 0.0;  // largest resident memory, 2^20 bytes
+  int exit_code = 0;         // where signal is 0
+  int signal = 0;            // that ended it
+  double seconds = 0.0;      // wall clock
+  double cpu_seconds = 0.0;  // of all its threads
+  double peak_mb = 0.0;      // largest resident memory, 2^20 bytes
 };
 
 // Runs argv[0] with the arguments argv and both outputs in the file `log`, and

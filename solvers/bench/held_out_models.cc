@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "ibrdf/io/model_file.h"
@@ -14,6 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr char kDefaultModel[] = "default";
 constexpr char kExtension[] = ".ibrdf";
+constexpr const char* kPairNames[] = {"default.ibrdf", "broad.ibrdf"};
 // Deep enough for FOLDER/fold0/NAME.ibrdf.
 constexpr int kDepth = 1;
 
@@ -35,6 +37,15 @@ StatusOr<std::vector<fs::path>> FindModels(const std::string& folder) {
   }
   std::sort(paths.begin(), paths.end());
   return paths;
+}
+
+// Whether a model is one of the two that `reflectance.model` takes of a folder.
+bool InPair(const fs::path& model) {
+  const fs::path folder = model.parent_path();
+  const std::string name = model.filename().string();
+  return (name == kPairNames[0] || name == kPairNames[1]) &&
+         fs::is_regular_file(folder / kPairNames[0]) &&
+         fs::is_regular_file(folder / kPairNames[1]);
 }
 
 }  // namespace
@@ -80,16 +91,21 @@ StatusOr<HeldOutModels> HeldOutModels::Open(const ModelOptions& options) {
   }
   const StatusOr<std::vector<fs::path>> paths = FindModels(options.models);
   if (!paths.ok()) return paths.status();
+  std::map<fs::path, std::vector<std::string>> seen;  // of a file or a pair
   for (const fs::path& path : *paths) {
     StatusOr<NeuralBrdfModel> model = ReadModel(path.string());
     if (!model.ok()) return model.status();
     if (model->names.empty()) {
       return InvalidInput(path.string() + ": names", "expected an embedding");
     }
-    IBRDF_RETURN_IF_ERROR(
-        add(fs::absolute(path).string(),
-            fs::relative(path, options.models).generic_string(),
-            std::move(model->names)));
+    std::vector<std::string>& names =
+        seen[InPair(path) ? path.parent_path() : path];
+    names.insert(names.end(), model->names.begin(), model->names.end());
+  }
+  for (auto& [path, names] : seen) {
+    IBRDF_RETURN_IF_ERROR(add(
+        fs::absolute(path).string(),
+        fs::relative(path, options.models).generic_string(), std::move(names)));
   }
   return out;
 }

@@ -11,13 +11,15 @@ struct ModelOptions {
   std::string model = "default";  // or a model file; for every material
   // A folder of models, each trained without some materials (its .ibrdf files
   // and those of its subfolders, as experiments/reflectance_model/held_out.sh
-  // makes them), in place of `model`; empty: none.
+  // makes them), in place of `model`; empty: none. A subfolder with
+  // default.ibrdf and broad.ibrdf is a pair, which solves use together.
   std::string models;
 };
 
 struct ChosenModel {
-  std::string path;  // absolute, or "default"
-  // For tables: "default", the file's name, or its path below `models`.
+  // "default", or the absolute path of a file or of a pair's folder.
+  std::string path;
+  // For tables: "default", the name of the file, or the path below `models`.
   std::string label;
   // For names of folders: empty for the default model, else "_" and the label
   // without slashes.

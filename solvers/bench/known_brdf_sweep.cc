@@ -49,6 +49,7 @@ const std::vector<std::string>& KnownBrdfColumns() {
       "prior",
       "method",
       "seconds",
+      "cpu_seconds",
       "peak_mb",
       "misfit",
       "illumination_relative_log_rmse",

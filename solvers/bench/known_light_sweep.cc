@@ -6,9 +6,10 @@ namespace ibrdf {
 
 const std::vector<std::string>& KnownLightColumns() {
   static const std::vector<std::string> columns = ModelSweepColumns(
-      {"seconds", "peak_mb", "misfit", "brdf_log_rmse", "brdf_log_rmse_aligned",
-       "brdf_log_rmse_below80", "status", "relit_log_rmse", "relit_rmse",
-       "relit_dssim"});
+      {"seconds", "cpu_seconds", "peak_mb", "misfit", "brdf_log_rmse",
+       "brdf_log_rmse_aligned", "brdf_log_rmse_below80",
+       "brdf_log_rmse_expected", "brdf_log_rmse_90", "status", "relit_log_rmse",
+       "relit_rmse", "relit_dssim"});
   return columns;
 }
 

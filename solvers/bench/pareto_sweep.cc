@@ -204,6 +204,7 @@ const std::vector<std::string>& ParetoColumns() {
       "unet_channels",
       "quadrature",
       "seconds",
+      "cpu_seconds",
       "peak_mb",
       "misfit",
       "brdf_log_rmse",

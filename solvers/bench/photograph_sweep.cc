@@ -64,8 +64,8 @@ std::string PhotographSettingNames() {
 
 const std::vector<std::string>& PhotographColumns() {
   static const std::vector<std::string> columns = ModelSweepColumns(
-      {"setting", "seconds", "peak_mb", "misfit", "brdf_log_rmse",
-       "brdf_log_rmse_aligned", "brdf_log_rmse_below80",
+      {"setting", "seconds", "cpu_seconds", "peak_mb", "misfit",
+       "brdf_log_rmse", "brdf_log_rmse_aligned", "brdf_log_rmse_below80",
        "illumination_relative_log_rmse",
        "illumination_relative_log_rmse_aligned", "status"});
   return columns;

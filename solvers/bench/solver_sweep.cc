@@ -43,6 +43,20 @@ std::string DescribeEnd(const ChildResult& child) {
   }
 }
 
+// Sets the columns that an object of result.json names.
+void SetNumbers(const nlohmann::json& values,
+                const std::vector<std::string>& names,
+                const std::vector<std::string>& columns, NamedRow* row) {
+  for (const std::string& name : names) {
+    const bool wanted =
+        std::find(columns.begin(), columns.end(), name) != columns.end();
+    const auto value = values.find(name);
+    if (wanted && value != values.end() && value->is_number()) {
+      row->Set(name, NumberCell(value->get<double>()));
+    }
+  }
+}
+
 // False where result.json has no metrics.
 bool ReadMetrics(const std::string& path,
                  const std::vector<std::string>& columns, NamedRow* row) {
@@ -53,16 +67,15 @@ bool ReadMetrics(const std::string& path,
       !json["metrics"].is_object()) {
     return false;
   }
-  for (const char* name :
-       {"misfit", "brdf_log_rmse", "brdf_log_rmse_aligned",
-        "brdf_log_rmse_below80", "illumination_relative_log_rmse",
-        "illumination_relative_log_rmse_aligned"}) {
-    const bool wanted =
-        std::find(columns.begin(), columns.end(), name) != columns.end();
-    const auto value = json["metrics"].find(name);
-    if (wanted && value != json["metrics"].end() && value->is_number()) {
-      row->Set(name, NumberCell(value->get<double>()));
-    }
+  SetNumbers(json["metrics"],
+             {"misfit", "brdf_log_rmse", "brdf_log_rmse_aligned",
+              "brdf_log_rmse_below80", "illumination_relative_log_rmse",
+              "illumination_relative_log_rmse_aligned"},
+             columns, row);
+  const auto posterior = json.find("posterior");
+  if (posterior != json.end() && posterior->is_object()) {
+    SetNumbers(*posterior, {"brdf_log_rmse_expected", "brdf_log_rmse_90"},
+               columns, row);
   }
   return true;
 }
@@ -195,6 +208,7 @@ StatusOr<ChildResult> RunSolver(const SolverSweepOptions& options,
 bool SetOutcome(const SolverSweep& sweep, const ChildResult& child,
                 const RunFiles& files, NamedRow* row) {
   row->Set("seconds", NumberCell(child.seconds));
+  row->Set("cpu_seconds", NumberCell(child.cpu_seconds));
   row->Set("peak_mb", NumberCell(child.peak_mb));
   const bool ended =
       child.signal == 0 && (child.exit_code == 0 || child.exit_code == 3);

@@ -67,13 +67,13 @@ Status SetConstantMap(const Image& truth, NamedRow* row);
 
 // Runs what out/results.csv does not hold yet: makes the inputs that are
 // missing, runs the solver on each problem, and appends the row: seconds,
-// peak_mb, status and those metrics of result.json that are columns. Then
-// writes out/results.md. A solver that fails gets a row whose `status` says
-// how; one that was interrupted gets none and ends the sweep (kInterrupted).
-// So does one that misses a file which has gone since the sweep began, or that
-// cannot write its results (kInvalidInput): the next call runs it again. A
-// sweep begun with another size, noise, seed, budget or method, as
-// out/settings.json says, is refused (kInvalidInput).
+// cpu_seconds, peak_mb, status and those metrics of result.json, and errors
+// that it expects, that are columns. Then writes out/results.md. A solver that
+// fails gets a row whose `status` says how; one that was interrupted gets none
+// and ends the sweep (kInterrupted). So does one that misses a file which has
+// gone since the sweep began, or that cannot write its results (kInvalidInput):
+// the next call runs it again. A sweep begun with another size, noise, seed,
+// budget or method, as out/settings.json says, is refused (kInvalidInput).
 Status RunSolverSweep(const SolverSweepOptions& options,
                       const SolverSweep& sweep);
 

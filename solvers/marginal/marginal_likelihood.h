@@ -227,6 +227,7 @@ class MarginalLikelihood {
     Eigen::VectorXd unpainted;  // T L [3 * points]
     Eigen::VectorXd log_L_o;    // [3 * points]
     Eigen::VectorXd residual;   // y - log L_o, y the nearest of an interval
+    bool Valid() const;         // finite, and not black
   };
   // What the data say at a point [3 * points].
   struct DataTerm {

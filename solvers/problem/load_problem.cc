@@ -1,9 +1,11 @@
 #include "ibrdf/solvers/problem/load_problem.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -32,6 +34,19 @@ StatusOr<NamedModel> LoadModel(const std::string& name) {
       name, std::make_shared<const NeuralBrdfModel>(std::move(opened->model))};
 }
 
+struct ModelNames {
+  std::string first;
+  std::string second;  // empty: one model
+};
+
+// `model` is empty (auto), a name, a file or a folder of two models.
+ModelNames NamesOfModels(const std::string& model) {
+  if (model.empty()) return {"default", "broad"};
+  std::error_code error;
+  if (!std::filesystem::is_directory(model, error)) return {model, ""};
+  return {model + "/default.ibrdf", model + "/broad.ibrdf"};
+}
+
 // Sets the models, or the grid of a known reflectance.
 Status LoadReflectance(const Problem& problem, InverseProblem* inverse) {
   const ReflectanceSpec& reflectance = problem.reflectance;
@@ -41,14 +56,13 @@ Status LoadReflectance(const Problem& problem, InverseProblem* inverse) {
     inverse->known_brdf = BrdfGrid::FromMerl(*table, inverse->transport.grid);
     return OkStatus();
   }
-  const bool automatic = reflectance.model.empty();
-  StatusOr<NamedModel> model =
-      LoadModel(automatic ? "default" : reflectance.model);
+  const ModelNames names = NamesOfModels(reflectance.model);
+  StatusOr<NamedModel> model = LoadModel(names.first);
   if (!model.ok()) return model.status();
   inverse->model = std::move(model->model);
   inverse->model_name = std::move(model->name);
-  if (!automatic) return OkStatus();
-  StatusOr<NamedModel> broad = LoadModel("broad");
+  if (names.second.empty()) return OkStatus();
+  StatusOr<NamedModel> broad = LoadModel(names.second);
   if (!broad.ok()) return broad.status();
   inverse->other_models.push_back(*std::move(broad));
   return OkStatus();

@@ -46,6 +46,20 @@ TEST(HeldOutModels, GivesTheModelThatHasNotSeenTheMaterial) {
   EXPECT_NE(std::string::npos, seen.message().find("other"));
 }
 
+TEST(HeldOutModels, AFolderOfTwoIsAPairThatHasSeenWhatEitherHas) {
+  const TempDir dir;
+  WriteFold(dir, "pair/default.ibrdf", 3, 0);
+  WriteFold(dir, "pair/broad.ibrdf", 3, 1);
+  WriteFold(dir, "alone/default.ibrdf", 2, 1);
+  const HeldOutModels models =
+      HeldOutModels::Open({"default", dir.path()}).value();
+  EXPECT_EQ("pair", models.For("gold")->label);
+  EXPECT_EQ(dir.File("pair"), models.For("gold")->path);
+  EXPECT_EQ("_pair", models.For("gold")->folder_suffix());
+  EXPECT_EQ("alone/default.ibrdf", models.For("m1")->label);
+  EXPECT_FALSE(models.For("m0").ok());
+}
+
 TEST(HeldOutModels, OneModelServesAll) {
   const TempDir dir;
   EXPECT_EQ("default", HeldOutModels::Open({}).value().For("m0")->label);

@@ -48,8 +48,11 @@ TEST_F(JointSweepTest, WritesRowsAndResumes) {
   EXPECT_EQ("default", Cell(row, "model"));
   EXPECT_EQ("0.25", Cell(row, "misfit"));
   EXPECT_EQ("", Cell(row, "brdf_log_rmse"));
+  EXPECT_EQ("0.375", Cell(row, "brdf_log_rmse_expected"));
+  EXPECT_EQ("", Cell(row, "brdf_log_rmse_90"));
   EXPECT_EQ("ok", Cell(row, "status"));
   EXPECT_LT(0.0, std::stod(Cell(row, "peak_mb")));
+  EXPECT_LT(0.0, std::stod(Cell(row, "cpu_seconds")));
   EXPECT_LT(0.0, std::stod(Cell(row, "constant_map_relative_log_rmse")));
   EXPECT_LT(std::stod(Cell(row, "cook_torrance_misfit")), 1.0);
   // The true map and table but for the scale.

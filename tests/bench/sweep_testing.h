@@ -34,7 +34,8 @@ class SweepTest : public ::testing::Test {
                 .ok());
     }
     WriteSolver(R"({"metrics": {"misfit": 0.25, "brdf_log_rmse": null,
-        "illumination_relative_log_rmse": 0.125, "seconds": 9}})",
+        "illumination_relative_log_rmse": 0.125, "seconds": 9},
+        "posterior": {"brdf_log_rmse_expected": 0.375}})",
                 0);
   }
 

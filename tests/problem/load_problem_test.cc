@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "ibrdf/image/rgb8_image.h"
 #include "ibrdf/io/exr.h"
+#include "ibrdf/io/model_file.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/io/problem_file.h"
 #include "tests/support/temp_dir.h"
+#include "tests/support/tiny_model.h"
 
 namespace ibrdf {
 namespace {
@@ -71,6 +74,36 @@ TEST_F(SilhouetteTest, ThatIsNearlyAllBesideTheObjectIsRefused) {
   EXPECT_EQ(StatusCode::kInvalidInput, status.code());
   EXPECT_NE(std::string::npos, status.message().find("m.png"))
       << status.message();
+}
+
+StatusOr<InverseProblem> LoadWithModel(const TempDir& dir) {
+  Image image(8, 8);
+  image.rgb.assign(image.rgb.size(), 0.5f);
+  EXPECT_TRUE(WriteExr(image, dir.File("i.exr")).ok());
+  const StatusOr<Problem> problem =
+      ParseProblem(dir.File("p.yaml"),
+                   "problem: joint\nimage: {file: i.exr}\n"
+                   "geometry: {sphere: {centre: [4, 4], radius: 4}}\n"
+                   "reflectance: {model: pair}\n",
+                   {});
+  EXPECT_TRUE(problem.ok()) << problem.status().message();
+  return LoadInverseProblem(*problem, 1, 1);
+}
+
+TEST(LoadProblem, TakesTwoModelsOfAFolder) {
+  const TempDir dir;
+  std::filesystem::create_directory(dir.File("pair"));
+  ASSERT_TRUE(WriteModel(TinyModel(2), dir.File("pair/default.ibrdf")).ok());
+  const Status half = LoadWithModel(dir).status();
+  EXPECT_EQ(StatusCode::kInvalidInput, half.code());
+  EXPECT_NE(std::string::npos, half.message().find("pair/broad.ibrdf"))
+      << half.message();
+  ASSERT_TRUE(WriteModel(TinyModel(3), dir.File("pair/broad.ibrdf")).ok());
+  const StatusOr<InverseProblem> both = LoadWithModel(dir);
+  ASSERT_TRUE(both.ok()) << both.status().message();
+  EXPECT_EQ(size_t{6}, both->model->names.size());
+  ASSERT_EQ(size_t{1}, both->other_models.size());
+  EXPECT_EQ(size_t{9}, both->other_models[0].model->names.size());
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ import checks
 from solves import SCENE
 from study import Study
 
-TIMINGS = ("seconds", "peak_mb")
+TIMINGS = ("seconds", "cpu_seconds", "peak_mb")
 MATERIALS = {"clay": 1.0, "paint": 0.4, "plastic": 0.2}  # roughness
 ITERATIONS = {"known-light": 1, "joint": 0}
 # As the solver, ended by its iterations; `exec`: it is the process that the sweep started.
