@@ -10,6 +10,8 @@
 
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/lambertian.h"
+#include "ibrdf/solvers/paint/albedo_fit.h"
+#include "ibrdf/solvers/solve/unpainted_object.h"
 
 namespace ibrdf {
 namespace {
@@ -33,6 +35,7 @@ constexpr double kExplainedOfPairs = 0.05;
 constexpr double kBetter = 1.11;
 // Frames differ by quarter turns: one that is as good as this is preferred.
 constexpr double kAsGood = 1.05;
+constexpr double kLeastShading = 1e-9;
 
 struct Places {
   std::vector<ShadingPoint> points;
@@ -159,6 +162,22 @@ bool HasSharpEdges(const Eigen::ArrayX3d& left) {
   return share > kSharpPairs;
 }
 
+// How the log albedo's luminance differs under two maps [points], less its
+// mean.
+Eigen::ArrayXd ChangeOfAlbedo(const std::vector<double>& shading,
+                              const std::vector<double>& other_shading) {
+  const auto log_of = [](const std::vector<double>& values) {
+    return Eigen::Map<const Eigen::Array3Xd>(
+               values.data(), 3, static_cast<Eigen::Index>(values.size()) / 3)
+        .max(kLeastShading)
+        .log()
+        .eval();
+  };
+  const Eigen::ArrayXd change =
+      (log_of(shading) - log_of(other_shading)).colwise().mean().transpose();
+  return change - change.mean();
+}
+
 }  // namespace
 
 std::optional<MapTurns> FindPaintTurns(const SolveSetup& setup) {
@@ -190,6 +209,27 @@ std::optional<MapTurns> FindPaintTurns(const SolveSetup& setup) {
 
 bool IsBetterOfPaint(const MapTurns& turns) {
   return turns.as_given > kBetter * turns.best.misfit;
+}
+
+void DoubtAlbedo(const SolveSetup& setup, const MapTurn& turn,
+                 Solution* solution) {
+  InverseProblem problem = *setup.problem;
+  const Image& map = *setup.problem->known_map;
+  problem.known_map =
+      Turned(map, turn.mirrored,
+             static_cast<int>(std::lround(turn.degrees / 360.0 * map.width)));
+  const StatusOr<SolveSetup> turned = SetUp(problem);
+  if (!turned.ok()) return;
+  const Eigen::ArrayXd change =
+      ChangeOfAlbedo(MatteShading(setup), MatteShading(*turned));
+  for (Eigen::Index i = 0; i < change.size(); ++i) {
+    float* std =
+        &solution->albedo_log_std
+             .rgb[3 * static_cast<size_t>(setup.pixels.points[i].pixel)];
+    std::fill_n(std, 3,
+                static_cast<float>(
+                    std::min(kMostOfPaint, std::hypot(*std, change[i]))));
+  }
 }
 
 }  // namespace ibrdf

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 
+#include "ibrdf/solvers/estimation/solution.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 #include "ibrdf/solvers/solve/turned_maps.h"
 
@@ -17,5 +18,10 @@ std::optional<MapTurns> FindPaintTurns(const SolveSetup& setup);
 
 // Whether these say that the frame is wrong.
 bool IsBetterOfPaint(const MapTurns& turns);
+
+// Adds to the deviation of the albedo what it would be under the turned map,
+// its scale left out.
+void DoubtAlbedo(const SolveSetup& setup, const MapTurn& turn,
+                 Solution* solution);
 
 }  // namespace ibrdf

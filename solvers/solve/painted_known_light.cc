@@ -3,8 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "ibrdf/base/pi.h"
-#include "ibrdf/solvers/estimation/pixel_renders.h"
 #include "ibrdf/solvers/estimation/reflectance_given_light.h"
 #include "ibrdf/solvers/paint/albedo_deviation.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
@@ -25,16 +23,6 @@ constexpr double kUnexplainedByEdges = 0.02;
 // Relative error of the gloss. Its energy was off by 3 % on one ball
 // (docs/notes/paint.md); where it lies is known less well.
 constexpr double kGlossError = 0.1;
-
-// What a white matte object shows at each pixel under the known map.
-std::vector<double> MatteShading(const SolveSetup& setup) {
-  BrdfGrid white(setup.lobes->grid_shape());
-  for (float& f : white.values) f = static_cast<float>(1.0 / kPi);
-  std::vector<double> shading;
-  RenderPixels(setup, setup.map_size(),
-               {{{&white}, setup.known_map.data(), &shading}});
-  return shading;
-}
 
 // What the turns leave of the paint apart from light: its edges alone, or all.
 struct PaintCues {

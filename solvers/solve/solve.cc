@@ -53,6 +53,7 @@ StatusOr<Solution> SolvePaintedUnderAnyFrame(const SolveSetup& setup,
   const std::optional<MapTurns> turns = FindPaintTurns(setup);
   if (turns.has_value() && IsBetterOfPaint(*turns)) {
     SetBetterTurn(*turns, true, &*solution);
+    DoubtAlbedo(setup, turns->best, &*solution);
   }
   return solution;
 }

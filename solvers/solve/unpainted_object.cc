@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/matte_split.h"
 #include "ibrdf/metrics/albedo.h"
 #include "ibrdf/solvers/estimation/pixel_renders.h"
@@ -41,6 +42,15 @@ void TakeMatteOff(UnpaintedRadiance* out) {
   for (size_t i = 0; i < out->gloss.size(); ++i) {
     out->gloss[i] = std::max(out->gloss[i] - out->matte[i], 0.0);
   }
+}
+
+std::vector<double> MatteShading(const SolveSetup& setup) {
+  BrdfGrid white(setup.lobes->grid_shape());
+  for (float& f : white.values) f = static_cast<float>(1.0 / kPi);
+  std::vector<double> shading;
+  RenderPixels(setup, setup.map_size(),
+               {{{&white}, setup.known_map.data(), &shading}});
+  return shading;
 }
 
 void ScalePixels(const std::vector<double>& factors,

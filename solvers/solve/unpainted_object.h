@@ -22,6 +22,10 @@ struct UnpaintedReflectance {
 UnpaintedReflectance UnpaintedOf(const LobeModel& lobes,
                                  const double* parameters);
 
+// What a white matte object shows at each pixel under the known map [points *
+// 3].
+std::vector<double> MatteShading(const SolveSetup& setup);
+
 // Radiance at all pixels under a map of this size [H, W, 3].
 UnpaintedRadiance RenderUnpainted(const SolveSetup& setup,
                                   const UnpaintedReflectance& reflectance,

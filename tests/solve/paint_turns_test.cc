@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
+#include "ibrdf/brdf/lambertian.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/solve/solve.h"
 #include "tests/solve/plastic_ball.h"
@@ -62,12 +66,55 @@ TEST(FindPaintTurns, EvenLightHasNone) {
   EXPECT_FALSE(turns.has_value() && IsBetterOfPaint(*turns));
 }
 
+// The error of a matte ball's log albedo is what the shading under the wrong
+// map lacks.
+TEST(DoubtAlbedo, StatesWhatTheTurnWouldChange) {
+  const BrdfFunction matte =
+      ibrdf::Lambertian{Eigen::Array3d::Constant(0.3)}.Function();
+  InverseProblem problem = BallInRoom(matte, Patches, 72);
+  problem.known_map = Turned(*problem.known_map, true, 12);
+  const Transport transport(problem.points, problem.map_height,
+                            problem.map_width, problem.transport);
+  std::vector<double> shading(3 * problem.points.size());
+  transport.Render(BrdfGrid::FromFunction(matte, problem.transport.grid),
+                   problem.known_map->rgb.data(), shading.data());
+  const StatusOr<SolveSetup> setup = ibrdf::SetUp(problem);
+  ASSERT_TRUE(setup.ok()) << setup.status().message();
+  constexpr float kBefore = 0.1f;
+  Solution solution;
+  solution.albedo_log_std = problem.image;
+  std::fill(solution.albedo_log_std.rgb.begin(),
+            solution.albedo_log_std.rgb.end(), kBefore);
+  DoubtAlbedo(*setup, {true, 12 * 360.0 / 32, 0.0}, &solution);
+
+  const auto points = static_cast<Eigen::Index>(problem.points.size());
+  Eigen::ArrayXd errors(points), stated(points);
+  for (Eigen::Index i = 0; i < points; ++i) {
+    const ShadingPoint& point = problem.points[i];
+    const size_t at = 3 * static_cast<size_t>(point.pixel);
+    const auto I = Eigen::Map<const Eigen::Array3f>(&problem.image.rgb[at]);
+    const auto S = Eigen::Map<const Eigen::Array3d>(&shading[3 * i]);
+    errors[i] =
+        (I.cast<double>().log() - S.log() - Patches(point.normal)).mean();
+    stated[i] = solution.albedo_log_std.rgb[at];
+  }
+  errors -= errors.mean();
+  EXPECT_GT(std::sqrt(errors.square().mean()), 0.3);
+  const Eigen::ArrayXd expected =
+      (errors.square() + std::pow(kBefore, 2)).sqrt();
+  EXPECT_LT((stated - expected).abs().mean(), 0.02);  // noise: 0.01
+}
+
 TEST(SolveInverseRendering, DoubtsAPaintedObjectsMapInAnotherFrame) {
   InverseProblem problem = PaintedBall(Patches);
   StatusOr<Solution> solution = SolvedWithAutoPaint(problem);
   ASSERT_TRUE(solution.ok()) << solution.status().message();
   EXPECT_TRUE(solution->has_paint());
   EXPECT_FALSE(solution->better_map_turn.has_value());
+  const auto sum_of = [](const Image& image) {
+    return std::accumulate(image.rgb.begin(), image.rgb.end(), 0.0);
+  };
+  const double right_deviations = sum_of(solution->albedo_log_std);
 
   problem.known_map = Turned(*problem.known_map, true, 0);
   solution = SolvedWithAutoPaint(problem);
@@ -77,6 +124,7 @@ TEST(SolveInverseRendering, DoubtsAPaintedObjectsMapInAnotherFrame) {
   EXPECT_TRUE(solution->map_turn_of_paint);
   EXPECT_TRUE(solution->better_map_turn->mirrored);
   EXPECT_EQ(0.0, solution->better_map_turn->degrees);
+  EXPECT_GT(sum_of(solution->albedo_log_std), 1.3 * right_deviations);
 }
 
 }  // namespace
