@@ -25,6 +25,10 @@ constexpr double kBlurredShare = 0.2;
 // Iterations of a map, at most, before the reflectance is revised, each time. A
 // map that is finished is as sharp as the wrong reflectance asks for.
 constexpr int kBeforeRevision = 4;
+// Iterations by Gauss-Newton under a known reflectance: their steps come near
+// their limits, and later ones changed no map's error (docs/notes/
+// preconditioned_maps.md).
+constexpr int kMapIterations = 2;
 // Maps are first found at this size or below, where their sides halve; in no
 // case at a larger one than a process's (ProcessSize).
 constexpr int kProcessWidth = 128;
@@ -53,8 +57,7 @@ bool BinsBlur(const SolveSetup& setup, const SolveContext& context,
               const Estimate& estimate) {
   // Points in shadow are not binned. And what pixels tell beyond bins of an
   // estimated reflectance is as much its errors as the map.
-  if (setup.transport.visibility != nullptr || setup.lobes_unknown() ||
-      !setup.problem->estimated_brdfs.empty()) {
+  if (setup.transport.visibility != nullptr || !setup.reflectance_known()) {
     return false;
   }
   if (context.StopAfter(1.0)()) return false;
@@ -169,6 +172,10 @@ Status EstimateProcessMap(const SolveSetup& setup, MapSize size,
   Report("constant map", setup, *estimate, context);
   const LogMap& mode = estimate->reflectance.light.mode;
   if (mode.num_texels() > 0) FitMap(mode.Resized(size), context, estimate);
+  if (setup.reflectance_known() &&
+      options.method == JointMethod::kGaussNewton) {
+    options.last = kMapIterations;
+  }
   // Adam's few first steps make no map.
   if (revise && options.method != JointMethod::kAdam) {
     const StatusOr<bool> unsettled =

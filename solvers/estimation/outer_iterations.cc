@@ -28,6 +28,7 @@ JointMethodOptions InnerOptions(const OuterIterationOptions& options,
     o.max_cg_iterations = 100;
     o.cg_forcing = 1e-4;
   }
+  o.precondition_light = setup.reflectance_known();
   o.tolerance = setup.problem->solver.tolerance;
   o.should_stop = std::move(stop);
   o.adam_rounds = 1;

@@ -48,6 +48,10 @@ struct SolveSetup {
   AmbientPrior ambient;  // stray light beside the known map's
 
   bool lobes_unknown() const { return lobes != nullptr; }
+  // Given, not estimated before.
+  bool reflectance_known() const {
+    return !lobes_unknown() && problem->estimated_brdfs.empty();
+  }
   bool light_unknown() const { return !problem->known_map.has_value(); }
   // Bins across the normals of each view, where one photograph has `of_one`.
   int MapBins(int of_one) const;

@@ -1,11 +1,13 @@
 // Parameterisations of the unknown map: the deep illumination prior's UNet, or
 // free log-radiance texels for the ablation.
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "ibrdf/light/illumination_unet.h"
 #include "ibrdf/light/log_map.h"
+#include "ibrdf/solvers/illumination/light_preconditioner.h"
 
 namespace ibrdf {
 
@@ -30,6 +32,13 @@ class IlluminationModel {
   virtual void Linearise(const float* parameters, LogMap* log_map) = 0;
   virtual void Jvp(const float* tangent, LogMap* d_log_map) = 0;
   virtual void Vjp(const LogMap& adjoint, float* gradient) = 0;
+  // For Gauss-Newton steps; `rows` are asked for only where there is one. Null:
+  // none is known.
+  virtual std::unique_ptr<LightPreconditioner> Preconditioner(
+      const std::function<InformationRows()>& rows) const {
+    (void)rows;
+    return nullptr;
+  }
   // Adds shift [3] to the log radiance of each channel, exactly.
   virtual void ShiftChannels(const double* shift, float* parameters) const = 0;
 

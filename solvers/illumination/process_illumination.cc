@@ -5,7 +5,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "ibrdf/solvers/illumination/azimuthal_preconditioner.h"
 #include "ibrdf/solvers/priors/directional_lights.h"
 #include "ibrdf/solvers/priors/light_spectrum.h"
 
@@ -111,6 +113,36 @@ class ProcessIllumination final : public IlluminationModel {
       }
     }
   }
+  // Of a row the sines and cosines of one frequency are two samples: a turned
+  // map has any mixture of them.
+  std::unique_ptr<LightPreconditioner> Preconditioner(
+      const std::function<InformationRows()>& rows) const override {
+    const InformationRows information = rows();
+    if (information.num_points == 0) return nullptr;
+    const int frequencies = spectrum_.num_frequencies();
+    std::vector<Eigen::MatrixXd> blocks(
+        3 * static_cast<size_t>(frequencies),
+        Eigen::MatrixXd::Zero(height(), height()));
+    for (int c = 0; c < 3; ++c) {
+      const std::vector<Eigen::MatrixXd> of_texels =
+          AzimuthalMean(information.of_channel[c], information.num_points);
+      for (int a = 0; a < 3; ++a) {
+        for (int k = 0; k < frequencies; ++k) {
+          blocks[a * frequencies + k] +=
+              axes_(a, c) * axes_(a, c) * of_texels[k];
+        }
+      }
+    }
+    for (int a = 0; a < 3; ++a) {
+      for (int k = 0; k < frequencies; ++k) {
+        const Eigen::MatrixXd factor = factors_[a == 0 ? 0 : 1][k];
+        Eigen::MatrixXd& block = blocks[a * frequencies + k];
+        block = (factor.transpose() * block * factor).eval();
+      }
+    }
+    return std::make_unique<AzimuthalPreconditioner>(
+        width(), std::move(blocks), DirectionalLightInformation(information));
+  }
   void ShiftChannels(const double* shift, float* parameters) const override {
     const int H = height();
     const Eigen::Vector3d by_axis =
@@ -136,6 +168,44 @@ class ProcessIllumination final : public IlluminationModel {
            parameter++);
       }
     }
+  }
+
+  // J^T W J of a channel's texels by frequency, the mean over all turns about
+  // the vertical, mirrored and not.
+  std::vector<Eigen::MatrixXd> AzimuthalMean(const Eigen::MatrixXf& rows,
+                                             int num_points) const {
+    std::vector<Eigen::MatrixXd> blocks(
+        spectrum_.num_frequencies(), Eigen::MatrixXd::Zero(height(), height()));
+    const Eigen::MatrixXf coefficients = rows * spectrum_.basis().cast<float>();
+    for (int j = 0; j < width(); ++j) {
+      const bool alone = j == 0 || j == width() - 1;
+      const Eigen::Map<const Eigen::MatrixXf> of_points(
+          coefficients.col(j).data(), height(), num_points);
+      blocks[LightSpectrum::FrequencyOf(j)] +=
+          ((alone ? 1.0f : 0.5f) * of_points * of_points.transpose())
+              .cast<double>();
+    }
+    return blocks;
+  }
+  // The diagonal of J^T W J of the directional lights' parameters.
+  Eigen::VectorXd DirectionalLightInformation(
+      const InformationRows& information) const {
+    Eigen::VectorXd diagonal =
+        Eigen::VectorXd::Zero(num_parameters() - num_outputs());
+    ForDirectionalLightTexels([&](int a, int texel, double std, int parameter) {
+      for (int c = 0; c < 3; ++c) {
+        double squares = 0.0;
+        for (int p = 0; p < information.num_points; ++p) {
+          squares +=
+              std::pow(information.of_channel[c](p * height() + texel / width(),
+                                                 texel % width()),
+                       2);
+        }
+        diagonal[parameter - num_outputs()] +=
+            std::pow(std * axes_(a, c), 2) * squares;
+      }
+    });
+    return diagonal;
   }
 
   // Parameters: [axis][coefficient][row], then the directional lights'

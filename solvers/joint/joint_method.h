@@ -43,6 +43,9 @@ struct JointMethodOptions {
   // block; on both, whose levels and colours make up for each other, the steps
   // that leaves stay along such directions short (experiments/pareto).
   double cg_forcing = 1e-2;
+  // Whether Gauss-Newton's steps take the light's preconditioner, where its
+  // model has one, and come near their limit.
+  bool precondition_light = false;
   double tolerance = 1e-4;  // relative decrease of the cost to stop at
   double seconds = 1e9;     // wall clock, checked between iterations
   std::function<bool()> should_stop;  // likewise; may be empty

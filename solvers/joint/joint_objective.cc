@@ -2,10 +2,14 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace ibrdf {
 namespace {
+
+// Points that a preconditioner is made from.
+constexpr int kSampledPoints = 200;
 
 Eigen::Map<const Eigen::ArrayXd> Array(const std::vector<double>& v) {
   return {v.data(), static_cast<Eigen::Index>(v.size())};
@@ -261,6 +265,45 @@ Eigen::MatrixXd JointObjective::LobeHessian() const {
              (Array(derivatives_.weight).matrix().asDiagonal() *
               lobe_jacobian_) +
          lobe_prior_hessian_;
+}
+
+std::unique_ptr<LightPreconditioner> JointObjective::PreconditionerOfLight()
+    const {
+  CheckPoint();
+  if (num_light_parameters() == 0) return nullptr;
+  return light_->model().Preconditioner(
+      [this] { return SampledInformation(); });
+}
+
+InformationRows JointObjective::SampledInformation() const {
+  const MapSize size = light_->model().size();
+  const int points = num_residuals() / 3;
+  const int step = std::max(1, points / kSampledPoints);
+  InformationRows out;
+  out.num_points = (points - step / 2 + step - 1) / step;
+  for (Eigen::MatrixXf& rows : out.of_channel) {
+    rows.resize(Eigen::Index{out.num_points} * size.height, size.width);
+  }
+  std::vector<float> row(3 * size.num_texels());
+  const std::vector<float>& slopes = light_->map_slopes();
+  for (int i = 0; i < out.num_points; ++i) {
+    const int point = step / 2 + i * step;
+    if (!Operator().Row(point, row.data())) return {};
+    for (size_t k = 0; k < row.size(); ++k) row[k] *= slopes[k];
+    for (int c = 0; c < 3; ++c) {
+      const double weight = derivatives_.weight[size_t{3} * point + c];
+      const auto scale = static_cast<float>(
+          std::sqrt(std::max(weight, 0.0) * points / out.num_points));
+      using Channel =
+          Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic,
+                                         Eigen::RowMajor>,
+                     0, Eigen::Stride<Eigen::Dynamic, 3>>;
+      out.of_channel[c].middleRows(Eigen::Index{i} * size.height, size.height) =
+          scale * Channel(row.data() + c, size.height, size.width,
+                          {Eigen::Index{3} * size.width, 3});
+    }
+  }
+  return out;
 }
 
 Eigen::VectorXd JointObjective::PriorGradient() {

@@ -2,6 +2,7 @@
 // solver may take.
 #pragma once
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -114,6 +115,8 @@ class JointObjective {
   Eigen::VectorXd Product(const Eigen::VectorXd& v);
   // The lobes' block of that matrix, [num_lobe_parameters]^2.
   Eigen::MatrixXd LobeHessian() const;
+  // Of the light's block; null where it is held or its model has none.
+  std::unique_ptr<LightPreconditioner> PreconditionerOfLight() const;
   // The priors' share of gradient() and Product().
   Eigen::VectorXd PriorGradient();
   Eigen::VectorXd PriorProduct(const Eigen::VectorXd& v);
@@ -128,6 +131,8 @@ class JointObjective {
     return *operator_;
   }
   void CheckPoint() const;
+  // Of some of the points, evenly taken; none where the transport has no rows.
+  InformationRows SampledInformation() const;
 
   JointTerms terms_;
   std::optional<LobeBlock> lobes_;

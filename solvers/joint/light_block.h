@@ -28,6 +28,10 @@ class LightBlock {
   // And the point of what follows.
   double Linearise(const float* parameters, std::vector<float>* map);
 
+  const IlluminationModel& model() const { return *model_; }
+  // Of the last Linearise: the map's derivatives by its logarithm [H, W, 3].
+  const std::vector<float>& map_slopes() const { return map_slopes_; }
+
   // d log map and d map [H, W, 3] along v [parameters].
   void Jvp(const double* v, LogMap* d_log, std::vector<float>* d_map);
   // gradient [parameters] of sum by_map . map.

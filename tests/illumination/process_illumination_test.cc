@@ -171,6 +171,80 @@ TEST_P(ProcessIlluminationTest, ShiftMovesEachChannelByItsOwnAmount) {
   }
 }
 
+// H v of the texels' information R^T R in every channel, with damping.
+Eigen::VectorXd HessianTimes(const Eigen::MatrixXd& jacobian,
+                             const Eigen::MatrixXd& rows, double damping,
+                             const Eigen::VectorXd& v) {
+  const Eigen::VectorXd map = jacobian * v;
+  Eigen::VectorXd by_map(map.size());
+  for (int c = 0; c < 3; ++c) {
+    by_map.segment(c * kProcessTexels, kProcessTexels) =
+        rows.transpose() *
+        (rows * map.segment(c * kProcessTexels, kProcessTexels));
+  }
+  return jacobian.transpose() * by_map + (1.0 + damping) * v;
+}
+
+// What a point says, mirrored and turned into all positions.
+InformationRows InAllTurns(const std::vector<float>& point,
+                           Eigen::MatrixXd* rows) {
+  InformationRows out;
+  out.num_points = 2 * kProcessWidth;
+  out.of_channel.fill(
+      Eigen::MatrixXf(out.num_points * kProcessHeight, kProcessWidth));
+  rows->resize(out.num_points, kProcessTexels);
+  for (int turn = 0; turn < out.num_points; ++turn) {
+    for (int t = 0; t < kProcessTexels; ++t) {
+      const int y = t / kProcessWidth;
+      const int turned = (t + turn) % kProcessWidth;
+      const int x = turn < kProcessWidth ? turned : kProcessWidth - 1 - turned;
+      for (Eigen::MatrixXf& of_channel : out.of_channel) {
+        of_channel(turn * kProcessHeight + y, x) = point[t];
+      }
+      (*rows)(turn, y * kProcessWidth + x) = point[t];
+    }
+  }
+  return out;
+}
+
+TEST_P(ProcessIlluminationTest, PreconditionerInvertsWhatIsAlikeAtAllTurns) {
+  std::vector<float> point = Random(kProcessTexels, 5);
+  for (float& v : point) v *= 3.0f;
+  Eigen::MatrixXd rows;
+  const InformationRows information = InAllTurns(point, &rows);
+  const std::unique_ptr<LightPreconditioner> preconditioner =
+      model_->Preconditioner([&] { return information; });
+  ASSERT_NE(nullptr, preconditioner);
+  for (const double damping : {0.0, 1e-3, 4.0}) {
+    preconditioner->Damp(damping);
+    const std::vector<float> v = Random(num_parameters_, 6);
+    Eigen::VectorXd x =
+        Eigen::Map<const Eigen::VectorXf>(v.data(), num_parameters_)
+            .cast<double>();
+    // Directional lights take no part in it.
+    x.tail(num_parameters_ - kSize).setZero();
+    Eigen::VectorXd r = HessianTimes(Jacobian(), rows, damping, x);
+    const double size = r.norm();
+    r.tail(num_parameters_ - kSize).setZero();
+    Eigen::VectorXd z(num_parameters_);
+    preconditioner->Apply(r.data(), z.data());
+    EXPECT_GT(size, 20.0 * x.norm());
+    EXPECT_LT((z - x).norm(), 1e-3 * x.norm()) << damping;
+    // Of which the diagonal alone counts.
+    for (int i = kSize; i < num_parameters_; ++i) {
+      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(num_parameters_, i);
+      preconditioner->Apply(unit.data(), z.data());
+      const double diagonal = HessianTimes(Jacobian(), rows, damping, unit)[i];
+      EXPECT_NEAR(1.0 / diagonal, z[i], 1e-4 / diagonal);
+      EXPECT_EQ(1, (z.array() != 0.0).count());
+    }
+  }
+}
+
+TEST_P(ProcessIlluminationTest, WithoutRowsThereIsNoPreconditioner) {
+  EXPECT_EQ(nullptr, model_->Preconditioner([] { return InformationRows(); }));
+}
+
 INSTANTIATE_TEST_SUITE_P(DirectionalLights, ProcessIlluminationTest,
                          ::testing::Bool());
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "ibrdf/solvers/illumination/process_illumination.h"
 #include "ibrdf/solvers/joint/joint_method.h"
 #include "tests/joint/joint_testing.h"
 
@@ -85,6 +86,37 @@ TEST_P(KnownBrdfTest, FirstStepHasTheGaussNewtonLength) {
   const double shortened = std::log(best) / std::log(2.5);
   EXPECT_NEAR(std::round(shortened), shortened, 1e-3) << best;
   EXPECT_GE(shortened, -1e-3);
+}
+
+// The cost after so many steps under a Gaussian process.
+double CostOfProcess(JointScene* scene, bool precondition, int iterations,
+                     int conjugate_gradients) {
+  const std::unique_ptr<IlluminationModel> light = MakeProcessIllumination(
+      16, 8, LightProcess(), LightHyperparameters::Average(), {});
+  JointTerms terms = scene->KnownBrdf();
+  terms.illumination = light.get();
+  const double zero[3] = {0, 0, 0};
+  terms.light_mean.assign(light->num_parameters(), 0.0f);
+  terms.light_priors.clear();
+  JointObjective objective(terms);
+  JointState state{{}, light->ConstantMap(zero)};
+  JointMethodOptions options;
+  options.max_iterations = iterations;
+  options.max_cg_iterations = conjugate_gradients;
+  options.cg_forcing = 1e-6;
+  options.tolerance = 1e-7;
+  options.precondition_light = precondition;
+  return MinimiseJoint(JointMethod::kGaussNewton, &objective, &state, options)
+      .end.total();
+}
+
+TEST(PreconditionedLight, GetsSoonerToTheSameOptimum) {
+  JointScene scene(false);
+  const double optimum = CostOfProcess(&scene, false, 100, 300);
+  EXPECT_NEAR(optimum, CostOfProcess(&scene, true, 100, 300), 1e-3 * optimum);
+  const double without = CostOfProcess(&scene, false, 6, 6) - optimum;
+  EXPECT_GT(without, 1e-3 * optimum);
+  EXPECT_LT(CostOfProcess(&scene, true, 6, 6) - optimum, 0.5 * without);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, KnownBrdfTest, ::testing::Bool(),

@@ -132,6 +132,23 @@ TEST_F(TransportTest, LightOperatorIsRenderAndItsTransposeIsAdjoint) {
   }
 }
 
+TEST_F(TransportTest, RowsAreTransposesOfUnitAdjoints) {
+  const LightOperator op = transport_.ByLight(glossy_);
+  const size_t size = size_t{3} * 64 * 128;
+  std::vector<float> row(size, -1.0f), transposed(size);
+  for (const size_t point :
+       {size_t{0}, points_.size() / 2, points_.size() - 1}) {
+    std::vector<double> adjoint(3 * points_.size(), 0.0);
+    std::fill_n(&adjoint[3 * point], 3, 1.0);
+    op.ApplyTranspose(adjoint.data(), transposed.data());
+    ASSERT_TRUE(op.Row(static_cast<int>(point), row.data()));
+    EXPECT_GT(*std::max_element(row.begin(), row.end()), 0.0f);
+    for (size_t k = 0; k < size; ++k) {
+      ASSERT_NEAR(transposed[k], row[k], 1e-6 * transposed[k]) << k;
+    }
+  }
+}
+
 TEST_F(TransportTest, TransposeMatchesFiniteDifferencesPerTexel) {
   const LightOperator op = transport_.ByLight(glossy_);
   std::vector<double> adjoint(3 * points_.size(), 0.0);

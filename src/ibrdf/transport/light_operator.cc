@@ -260,6 +260,41 @@ void LightOperator::ApplyTranspose(const double* adjoint,
   }
 }
 
+bool LightOperator::Row(int point, float* row) const {
+  const auto chunk =
+      std::find_if(chunks_.begin(), chunks_.end(),
+                   [point](const Chunk& c) { return point < c.end; });
+  const int i = point - chunk->begin;
+  std::fill_n(row, size_t{3} * map_height_ * map_width_, 0.0f);
+  for (size_t entry = i == 0 ? 0 : chunk->entry_end[i - 1];
+       entry < chunk->entry_end[i]; ++entry) {
+    AddEntry(chunk->source[entry], &chunk->value[3 * entry], row);
+  }
+  return true;
+}
+
+void LightOperator::AddEntry(size_t source, const float* value,
+                             float* row) const {
+  if (source >= num_map_sources()) return;  // a patch
+  const auto blocks = static_cast<size_t>(num_blocks_);
+  if (source >= blocks) {
+    for (int c = 0; c < 3; ++c) row[3 * (source - blocks) + c] += value[c];
+    return;
+  }
+  const int columns = map_width_ / block_;
+  const int top = static_cast<int>(source) / columns * block_;
+  const int left = static_cast<int>(source) % columns * block_;
+  for (int y = top; y < top + block_; ++y) {
+    const auto solid_angle =
+        static_cast<float>(TexelSolidAngle(y, map_height_, map_width_));
+    float* const texels =
+        row + 3 * (static_cast<size_t>(y) * map_width_ + left);
+    for (int k = 0; k < 3 * block_; ++k) {
+      texels[k] += solid_angle * value[k % 3];
+    }
+  }
+}
+
 void LightOperator::AddEmitted(const double* emitted, int columns,
                                double* out) const {
   const size_t first = num_map_sources();

@@ -28,6 +28,8 @@ class LightOperator final : public LinearTransport {
   void ApplyLinear(const float* map, double* L_o) const override;
   void ApplyTranspose(const double* adjoint, float* gradient) const override;
 
+  bool Row(int point, float* row) const override;
+
   // The operator of the patches without bounces; null without interreflection.
   const LightOperator* patches() const { return patches_.get(); }
   // out [points, 3, columns] += the radiance that emitted light, [patches, 3,
@@ -59,6 +61,8 @@ class LightOperator final : public LinearTransport {
   // Lights the patches in `sources` by all bounces; of the offset's light, too,
   // where asked for.
   void Bounce(bool with_offset, std::vector<float>* sources) const;
+  // Adds an entry's value [3] to the row of its point [H, W, 3].
+  void AddEntry(size_t source, const float* value, float* row) const;
   // Adds what bounces bring of the bright light to the offset.
   void AddBouncesToOffset();
   void ApplyTo(const std::vector<float>& sources, double* L_o) const;

@@ -32,6 +32,14 @@ class LinearTransport {
   // sum adjoint . L_o in the map.
   virtual void ApplyTranspose(const double* adjoint, float* gradient) const = 0;
 
+  // row [H, W, 3]: what a unit of radiance of each texel adds to the radiance
+  // of a point, bounces left out. False: the transport stores no such rows.
+  virtual bool Row(int point, float* row) const {
+    (void)point;
+    (void)row;
+    return false;
+  }
+
   // b [points, 3]; empty where it is 0.
   const std::vector<double>& offset() const { return offset_; }
 
