@@ -48,4 +48,12 @@ Observations SelectObservations(const Observations& from,
                           select(from.high));
 }
 
+double MeanRadiance(const Observations& observed) {
+  double sum = 0.0;
+  for (size_t i = 0; i < observed.radiance.size(); ++i) {
+    if (observed.valid[i / 3]) sum += observed.radiance[i];
+  }
+  return sum / (3.0 * observed.num_valid);
+}
+
 }  // namespace ibrdf

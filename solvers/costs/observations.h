@@ -36,4 +36,7 @@ Observations MakeObservations(std::vector<double> radiance,
 Observations SelectObservations(const Observations& from,
                                 const std::vector<size_t>& points);
 
+// Of the pixels that are valid, and of their channels; at least one is.
+double MeanRadiance(const Observations& observed);
+
 }  // namespace ibrdf

@@ -25,14 +25,6 @@ int BrightSamplesPerSide(int map_height) {
   return 2 * static_cast<int>(std::ceil(texel / kBrightSpacing));
 }
 
-double MeanRadiance(const Observations& observed) {
-  double sum = 0.0;
-  for (size_t i = 0; i < observed.radiance.size(); ++i) {
-    if (observed.valid[i / 3]) sum += observed.radiance[i];
-  }
-  return sum / (3.0 * observed.num_valid);
-}
-
 bool AnyHasTwoEnds(const Observations& observed) {
   for (size_t i = 0; i < observed.radiance.size(); ++i) {
     if (observed.valid[i / 3] && !observed.Interval(i).IsOneSided()) {

@@ -95,6 +95,13 @@ void TurnDown(Estimate* estimate) {
   estimate->reflectance.ranking = MaterialRanking();
 }
 
+// A guess that leaves nothing but rounding is an answer: a constant map explains
+// one pixel. An epsilon above the radiance hides whether it does.
+bool IsExplained(const SolveSetup& setup, double misfit) {
+  return misfit < kMisfitOfRounding &&
+         setup.epsilon < MeanRadiance(setup.pixels.observed);
+}
+
 Image RenderOf(const View& view, const SolveSetup& setup) {
   std::vector<double> radiance = view.radiance;
   for (size_t i = 0; i < radiance.size(); ++i) {
@@ -214,9 +221,7 @@ Solution Summarise(const SolveSetup& setup, Estimate estimate,
     std::vector<PixelRender> again;
     AddRenders(beside, last.map.data(), &again);
     RenderPixels(setup, SizeOf(estimate.iterate.light, setup), again);
-    // A guess that leaves nothing but rounding is an answer: a constant map
-    // explains one pixel.
-    if (!(start.misfit < kMisfitOfRounding)) {
+    if (!IsExplained(setup, start.misfit)) {
       solution.status =
           Status(StatusCode::kNoImprovement,
                  "the solver could not improve on its initial guess");
