@@ -1,5 +1,6 @@
 // What an image says of the radiance of an object's points.
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "ibrdf/image/radiance_interval.h"
