@@ -10,9 +10,7 @@ AzimuthalPreconditioner::AzimuthalPreconditioner(
     int width, std::vector<Eigen::MatrixXd> blocks, Eigen::VectorXd diagonal)
     : width_(width),
       blocks_(std::move(blocks)),
-      diagonal_(std::move(diagonal)) {
-  Damp(0.0);
-}
+      diagonal_(std::move(diagonal)) {}
 
 void AzimuthalPreconditioner::Damp(double damping) {
   factors_.clear();

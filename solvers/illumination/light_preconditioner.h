@@ -19,7 +19,7 @@ struct InformationRows {
 class LightPreconditioner {
  public:
   virtual ~LightPreconditioner() = default;
-  // What follows is of H + damping * D. At first damping is 0.
+  // What follows is of H + damping * D. To be called before Apply.
   virtual void Damp(double damping) = 0;
   // z [parameters], nearly H^-1 r: symmetric positive definite.
   virtual void Apply(const double* r, double* z) const = 0;
