@@ -241,4 +241,8 @@ StatusOr<std::string> FindModel(const std::string& name) {
                           name + ".ibrdf in $IBRDF_MODEL_DIR");
 }
 
+std::array<std::string, 2> ModelsOfFolder(const std::string& folder) {
+  return {folder + "/default.ibrdf", folder + "/broad.ibrdf"};
+}
+
 }  // namespace ibrdf

@@ -1,5 +1,6 @@
 // Trained models of the invertible BRDF on disk.
 #pragma once
+#include <array>
 #include <string>
 
 #include "ibrdf/base/status.h"
@@ -26,5 +27,9 @@ Status WriteModel(const NeuralBrdfModel& model, const std::string& path);
 // $IBRDF_MODEL_DIR, beside the installed library and in the source tree;
 // anything else is a path.
 StatusOr<std::string> FindModel(const std::string& name);
+
+// Paths of the models that take the places of "default" and "broad" where
+// `reflectance.model` is a folder.
+std::array<std::string, 2> ModelsOfFolder(const std::string& folder);
 
 }  // namespace ibrdf

@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr char kDefaultModel[] = "default";
 constexpr char kExtension[] = ".ibrdf";
-constexpr const char* kPairNames[] = {"default.ibrdf", "broad.ibrdf"};
 // Deep enough for FOLDER/fold0/NAME.ibrdf.
 constexpr int kDepth = 1;
 
@@ -41,11 +40,9 @@ StatusOr<std::vector<fs::path>> FindModels(const std::string& folder) {
 
 // Whether a model is one of the two that `reflectance.model` takes of a folder.
 bool InPair(const fs::path& model) {
-  const fs::path folder = model.parent_path();
-  const std::string name = model.filename().string();
-  return (name == kPairNames[0] || name == kPairNames[1]) &&
-         fs::is_regular_file(folder / kPairNames[0]) &&
-         fs::is_regular_file(folder / kPairNames[1]);
+  const auto [first, second] = ModelsOfFolder(model.parent_path().string());
+  return (model == first || model == second) && fs::is_regular_file(first) &&
+         fs::is_regular_file(second);
 }
 
 }  // namespace

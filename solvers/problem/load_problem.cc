@@ -1,6 +1,7 @@
 #include "ibrdf/solvers/problem/load_problem.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ibrdf/io/model_file.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/problem/load_photograph.h"
 #include "ibrdf/solvers/problem/load_scene.h"
@@ -34,17 +36,13 @@ StatusOr<NamedModel> LoadModel(const std::string& name) {
       name, std::make_shared<const NeuralBrdfModel>(std::move(opened->model))};
 }
 
-struct ModelNames {
-  std::string first;
-  std::string second;  // empty: one model
-};
-
-// `model` is empty (auto), a name, a file or a folder of two models.
-ModelNames NamesOfModels(const std::string& model) {
+// `model` is empty (auto), a name, a file or a folder of two models. The second
+// is empty where there is one.
+std::array<std::string, 2> NamesOfModels(const std::string& model) {
   if (model.empty()) return {"default", "broad"};
   std::error_code error;
   if (!std::filesystem::is_directory(model, error)) return {model, ""};
-  return {model + "/default.ibrdf", model + "/broad.ibrdf"};
+  return ModelsOfFolder(model);
 }
 
 // Sets the models, or the grid of a known reflectance.
@@ -56,13 +54,13 @@ Status LoadReflectance(const Problem& problem, InverseProblem* inverse) {
     inverse->known_brdf = BrdfGrid::FromMerl(*table, inverse->transport.grid);
     return OkStatus();
   }
-  const ModelNames names = NamesOfModels(reflectance.model);
-  StatusOr<NamedModel> model = LoadModel(names.first);
+  const auto [first, second] = NamesOfModels(reflectance.model);
+  StatusOr<NamedModel> model = LoadModel(first);
   if (!model.ok()) return model.status();
   inverse->model = std::move(model->model);
   inverse->model_name = std::move(model->name);
-  if (names.second.empty()) return OkStatus();
-  StatusOr<NamedModel> broad = LoadModel(names.second);
+  if (second.empty()) return OkStatus();
+  StatusOr<NamedModel> broad = LoadModel(second);
   if (!broad.ok()) return broad.status();
   inverse->other_models.push_back(*std::move(broad));
   return OkStatus();
