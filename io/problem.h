@@ -271,9 +271,10 @@ const char* SolverMethodName(SolverMethod method);
 enum class SolverEstimator { kMarginal, kMaximum };
 
 // How far a joint problem's reflectance is searched for. kThorough: twice, with
-// and without tolerance of materials that are unlike the object's.
-enum class SolverSearch { kStandard, kThorough };
-inline constexpr int kNumSolverSearches = 2;
+// and without tolerance of materials that are unlike the object's. kAuto: the
+// second time where the first leaves the reflectance wide open.
+enum class SolverSearch { kAuto, kStandard, kThorough };
+inline constexpr int kNumSolverSearches = 3;
 // Name in problem files, e.g. "thorough".
 const char* SolverSearchName(SolverSearch search);
 
@@ -296,7 +297,7 @@ inline constexpr int kMostSolverTurns = 20;
 
 struct SolverSpec {
   SolverEstimator estimator = SolverEstimator::kMarginal;
-  SolverSearch search = SolverSearch::kStandard;  // of joint problems
+  SolverSearch search = SolverSearch::kAuto;  // of joint problems
   int turns = 2;  // of joint problems, in [0, kMostSolverTurns]
   SolverMethod method = SolverMethod::kAuto;
   QuadratureLevel quadrature = QuadratureLevel::kStandard;

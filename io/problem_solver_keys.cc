@@ -38,8 +38,11 @@ Row SearchKey() {
   return Row("solver.search",
              "How far the reflectance is searched for. It serves objects of "
              "one material; paint and labels are searched for once.")
-      .Choice("standard",
-              {{"standard", "One search. Some images lead it astray."},
+      .Choice("auto",
+              {{"auto",
+                "`standard`, and `thorough` where that leaves the reflectance "
+                "wide open."},
+               {"standard", "One search. Some images lead it astray."},
                {"thorough",
                 "A second search begins with more tolerance of materials that "
                 "are unlike the object's. The optima of both compete."}})

@@ -136,11 +136,21 @@ ReflectanceSearchOptions SecondSearch(size_t views,
 
 using Results = std::vector<ReflectanceSearchResult>;
 
+std::vector<ModelOptima> OptimaOf(
+    const Results& found, const std::vector<const SolveSetup*>& setups) {
+  std::vector<ModelOptima> optima;
+  for (const ReflectanceSearchResult& result : found) {
+    optima.push_back(OptimaOf(result, *setups[result.model]));
+  }
+  return optima;
+}
+
 // What one search finds, or two together. The setups are of one problem, each
 // with a model of its own.
 StatusOr<Results> FindReflectances(const std::vector<const SolveSetup*>& setups,
                                    SolveContext* context,
-                                   const FirstPaint* paint) {
+                                   const FirstPaint* paint,
+                                   const SearchAgain& again) {
   const SolveSetup& setup = *setups.front();
   const InverseProblem& problem = *setup.problem;
   const size_t views = problem.sheet.views.size();
@@ -156,17 +166,17 @@ StatusOr<Results> FindReflectances(const std::vector<const SolveSetup*>& setups,
   for (const SolveSetup* s : setups) models.push_back(ModelOf(*s, o));
   StatusOr<Results> first =
       SearchReflectances(models, problem.points, observed, o);
-  if (problem.solver.search != SolverSearch::kThorough || paint != nullptr ||
-      problem.solver.max_iterations == 0 ||
-      first.status().code() == StatusCode::kInvalidInput) {
+  if (!again || problem.solver.max_iterations == 0 || context->Interrupted() ||
+      first.status().code() == StatusCode::kInvalidInput ||
+      (first.ok() && !again(OptimaOf(*first, setups)))) {
     return first;
   }
   o = SecondSearch(views, options(kSecondSearchShare));
   StatusOr<Results> second =
       SearchReflectances(models, problem.points, observed, o);
   if (o.Stopped() && !context->Interrupted()) {
-    LOG(WARNING) << "solver.search: the second search was ended by the time "
-                    "limit; a larger solver.seconds gives it more";
+    LOG(WARNING) << "the second search for the reflectance was ended by the "
+                    "time limit; a larger solver.seconds gives it more";
   }
   if (!second.ok()) return first;
   if (!first.ok()) return second;
@@ -175,16 +185,15 @@ StatusOr<Results> FindReflectances(const std::vector<const SolveSetup*>& setups,
 
 StatusOr<std::vector<ModelOptima>> Search(
     const std::vector<const SolveSetup*>& setups, SolveContext* context,
-    const FirstPaint* paint = nullptr) {
-  const StatusOr<Results> found = FindReflectances(setups, context, paint);
+    const FirstPaint* paint, const SearchAgain& again) {
+  const StatusOr<Results> found =
+      FindReflectances(setups, context, paint, again);
   if (!found.ok()) return found.status();
-  std::vector<ModelOptima> optima;
   for (const ReflectanceSearchResult& result : *found) {
     VLOG(1) << "found from " << result.initial_guess
             << ", -log evidence: " << result.cost << " nats";
-    optima.push_back(OptimaOf(result, *setups[result.model]));
   }
-  return optima;
+  return OptimaOf(*found, setups);
 }
 
 }  // namespace
@@ -192,14 +201,16 @@ StatusOr<std::vector<ModelOptima>> Search(
 StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
                                                   SolveContext* context,
                                                   const FirstPaint* paint) {
-  StatusOr<std::vector<ModelOptima>> found = Search({&setup}, context, paint);
+  StatusOr<std::vector<ModelOptima>> found =
+      Search({&setup}, context, paint, {});
   if (!found.ok()) return found.status();
   return std::move(found->front().estimate);
 }
 
 StatusOr<std::vector<ModelOptima>> EstimateReflectances(
-    const std::vector<const SolveSetup*>& setups, SolveContext* context) {
-  return Search(setups, context);
+    const std::vector<const SolveSetup*>& setups, SolveContext* context,
+    const SearchAgain& again) {
+  return Search(setups, context, nullptr, again);
 }
 
 LightPosterior EstimateLightPosterior(const SolveSetup& setup,

@@ -1,6 +1,7 @@
 // The reflectance with the light integrated out, and what that says of the
 // light.
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -29,12 +30,18 @@ struct ModelOptima {
   ReflectanceEstimate estimate;
 };
 
+// Whether what a search found calls for a second one.
+using SearchAgain = std::function<bool(const std::vector<ModelOptima>&)>;
+
 // The same among the materials of several models of one image, which compete.
 // One of each model that is left at the end, the covariance with the best one
 // alone. setups: the same problem with each model; they must outlive the
-// result.
+// result. A search that finds nothing, or of which `again` says so, is followed
+// by one that begins with more tolerance of materials that are unlike the
+// object's, and the optima of both compete; empty: there is one search.
 StatusOr<std::vector<ModelOptima>> EstimateReflectances(
-    const std::vector<const SolveSetup*>& setups, SolveContext* context);
+    const std::vector<const SolveSetup*>& setups, SolveContext* context,
+    const SearchAgain& again);
 
 // For a known reflectance: directional lights and hyperparameters of highest
 // posterior probability with the map integrated out; at the average where the

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -95,8 +96,8 @@ void TurnDown(Estimate* estimate) {
   estimate->reflectance.ranking = MaterialRanking();
 }
 
-// A guess that leaves nothing but rounding is an answer: a constant map explains
-// one pixel. An epsilon above the radiance hides whether it does.
+// A guess that leaves nothing but rounding is an answer: a constant map
+// explains one pixel. An epsilon above the radiance hides whether it does.
 bool IsExplained(const SolveSetup& setup, double misfit) {
   return misfit < kMisfitOfRounding &&
          setup.epsilon < MeanRadiance(setup.pixels.observed);
@@ -157,6 +158,22 @@ double PredictSummarySeconds(const SolveSetup& setup,
   return seconds;
 }
 
+double SpreadOf(const SolveSetup& setup, const std::vector<double>& lobes,
+                const ReflectanceEstimate& reflectance) {
+  const InverseProblem& problem = *setup.problem;
+  const Eigen::MatrixXd& covariance = reflectance.covariance;
+  if (covariance.size() == 0) return std::numeric_limits<double>::quiet_NaN();
+  const LobeDistance distance(FlowLobes::Factory(
+      *problem.model, setup.lobes->layout(), problem.num_threads));
+  const auto spread =
+      setup.light_unknown() ? ReflectanceSpread : KnownLightSpread;
+  return std::hypot(
+      spread(distance, lobes,
+             {covariance.data(), covariance.data() + covariance.size()},
+             kSpreadSamples, problem.seed),
+      reflectance.between_optima);
+}
+
 MaterialSolution SummariseReflectance(const SolveSetup& setup,
                                       const std::vector<double>& lobes,
                                       const ReflectanceEstimate& reflectance) {
@@ -182,14 +199,8 @@ MaterialSolution SummariseReflectance(const SolveSetup& setup,
   out.structured_misfit = reflectance.structured_misfit;
   // How spreads stand to errors was measured where the light is unknown, and of
   // one material under a known one.
-  const bool stated =
-      setup.light_unknown() || std::isfinite(out.structured_misfit);
-  if (covariance.size() > 0 && stated) {
-    const auto spread =
-        setup.light_unknown() ? ReflectanceSpread : KnownLightSpread;
-    out.spread = std::hypot(spread(distance, lobes, out.lobe_covariance,
-                                   kSpreadSamples, problem.seed),
-                            reflectance.between_optima);
+  if (setup.light_unknown() || std::isfinite(out.structured_misfit)) {
+    out.spread = SpreadOf(setup, lobes, reflectance);
   }
   out.alternatives = AlternativesOf(reflectance.candidates, distance, lobes);
   out.start = reflectance.initial_guess;

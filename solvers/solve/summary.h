@@ -16,6 +16,11 @@ namespace ibrdf {
 double PredictSummarySeconds(const SolveSetup& setup,
                              const SolveContext& context);
 
+// The spread of the posterior of a reflectance around `lobes`, between its
+// optima too (reflectance_spread.h); NaN without a covariance.
+double SpreadOf(const SolveSetup& setup, const std::vector<double>& lobes,
+                const ReflectanceEstimate& reflectance);
+
 // A reflectance's table, the spread of its posterior and the other candidates.
 // setup: of an unknown reflectance; lobes: as LobeModel's.
 MaterialSolution SummariseReflectance(const SolveSetup& setup,

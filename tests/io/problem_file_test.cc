@@ -28,7 +28,7 @@ TEST_F(ProblemFile, LeastFileHasTheDocumentedDefaults) {
   EXPECT_EQ(32, p.illumination.unet_channels);
   EXPECT_EQ(QuadratureLevel::kStandard, p.solver.quadrature);
   EXPECT_EQ(SolverGauge::kGreyLight, p.solver.gauge);
-  EXPECT_EQ(SolverSearch::kStandard, p.solver.search);
+  EXPECT_EQ(SolverSearch::kAuto, p.solver.search);
   EXPECT_FALSE(p.likelihood.scale.has_value());
   EXPECT_EQ(EffectsMode::kAuto, p.effects.mode);
   EXPECT_EQ(120.0, p.solver.seconds);

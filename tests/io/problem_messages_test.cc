@@ -185,7 +185,7 @@ Refusals SolverRefusals() {
       {least + "solver: {quadrature: finest}",
        "solver.quadrature: expected coarse, standard or fine, found 'finest'"},
       {least + "solver: {search: long}",
-       "solver.search: expected standard or thorough, found 'long'"},
+       "solver.search: expected auto, standard or thorough, found 'long'"},
       {least + "problem: reflectance\nsolver: {search: thorough}",
        "solver.search: expected with problem: joint only"},
       {least + "solver: {gauge: grey}",
