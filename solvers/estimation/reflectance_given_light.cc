@@ -20,12 +20,12 @@ constexpr double kWrongFactor = 2.0;
 // The pixels in which a bright texel of the known map would be seen if the
 // object were a mirror. One pixel per bin may leave the peak of a lobe that is
 // narrower than a bin without any.
-Observation HighlightsOf(const SolveSetup& setup) {
+Observation HighlightsOf(const SolveSetup& setup, const Observation& pixels) {
   std::vector<Eigen::Vector3d> lights;
   for (const BrightSample& sample : setup.transport.bright) {
     lights.push_back(sample.direction);
   }
-  return Highlights(setup.pixels, lights, 2.0 / kBins);
+  return Highlights(pixels, lights, 2.0 / kBins);
 }
 
 // The largest factor by which an estimate is brighter than the image at some
@@ -67,11 +67,12 @@ void SetCovariance(const SolveSetup& setup, const SolveContext& context,
 }
 
 Estimate EstimateLobesGivenLight(const SolveSetup& setup,
+                                 const Observation& pixels,
                                  SolveContext* context) {
   // Pixels as they are: under a known directional light the mean of a bin is
   // not the radiance of its mean normal.
-  const Observation bins = OnePixelPerBin(setup.pixels, kBins);
-  const Observation highlights = HighlightsOf(setup);
+  const Observation bins = OnePixelPerBin(pixels, kBins);
+  const Observation highlights = HighlightsOf(setup, pixels);
   const Observation both = Union(bins, highlights);
   // Under a lamp and nothing else every pixel shows one angle alone.
   const bool lamp = setup.problem->dark.num_unlit > 0;
@@ -87,7 +88,7 @@ Estimate EstimateLobesGivenLight(const SolveSetup& setup,
 
 Estimate EstimateReflectanceGivenLight(const SolveSetup& setup,
                                        SolveContext* context) {
-  Estimate estimate = EstimateLobesGivenLight(setup, context);
+  Estimate estimate = EstimateLobesGivenLight(setup, setup.pixels, context);
   estimate.reflectance.candidates.clear();
   SetCovariance(setup, *context, &estimate);
   return estimate;

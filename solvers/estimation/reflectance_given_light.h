@@ -19,7 +19,9 @@ void SetCovariance(const SolveSetup& setup, const SolveContext& context,
 
 // The estimate without a covariance; reflectance.candidates are those that took
 // more than their first steps, the best one first, their costs at its scale b.
+// pixels: the setup's, or means of those of like normals.
 Estimate EstimateLobesGivenLight(const SolveSetup& setup,
+                                 const Observation& pixels,
                                  SolveContext* context);
 
 }  // namespace ibrdf

@@ -1,5 +1,6 @@
 #include "ibrdf/solvers/solve/joint_turns.h"
 
+#include <optional>
 #include <utility>
 
 #include "ibrdf/light/log_map.h"
@@ -13,6 +14,14 @@ namespace {
 // Residuals of neighbouring pixels that correlate less are noise: no turn would
 // explain them.
 constexpr double kStructured = 0.35;
+// Where pixels leave so many times what means over bins leave, before the first
+// turn, they show detail that texels cannot: a turn would take it for a sharper
+// lobe.
+constexpr double kDetailed = 1.65;
+
+Observation BinsOf(const ObservedPixels& pixels) {
+  return {pixels.points(), pixels.observed()};
+}
 
 Image MapOf(const LogMap& log_map) {
   Image map(log_map.size().width, log_map.size().height);
@@ -40,7 +49,10 @@ StatusOr<std::optional<RevisedReflectance>> JointTurns::Take(
   // From the materials, each time: from the lobes at hand, to which the map has
   // been fitted, steps are short.
   ReflectanceEstimate anew =
-      EstimateLobesGivenLight(*known, context_).reflectance;
+      EstimateLobesGivenLight(
+          *known, *beyond_texels_ ? BinsOf(*estimate.pixels) : known->pixels,
+          context_)
+          .reflectance;
   // What is cut short may be worse than what was.
   if (context_->Interrupted() || context_->Remaining() < 0.0) return revised;
   // The map takes the level and hue that the mean loses.
@@ -59,7 +71,16 @@ bool JointTurns::Worthwhile(const Estimate& estimate) {
       !turns_.Another()) {
     return false;
   }
-  return ResidualStatisticsOf(setup_, estimate).correlation >= kStructured;
+  const ResidualStatistics left = ResidualStatisticsOf(setup_, estimate);
+  if (!beyond_texels_.has_value()) {
+    const double of_bins = Evaluate("map", setup_, *context_, estimate.iterate,
+                                    estimate.pixels.get())
+                               .misfit;
+    beyond_texels_ = left.misfit > kDetailed * of_bins;
+    VLOG(1) << "pixels leave " << left.misfit << ", bins " << of_bins
+            << "; neighbours correlate by " << left.correlation;
+  }
+  return left.correlation >= kStructured;
 }
 
 }  // namespace ibrdf

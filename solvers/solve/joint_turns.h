@@ -19,7 +19,9 @@ namespace ibrdf {
 // that light inside texels makes. A map of the problem's size tells them apart:
 // while it is being found, the reflectance is found anew under it, solver.turns
 // times at most, as long as the time allows and what is left of the image is
-// not noise. What the search says of the posterior stays.
+// not noise. Where pixels show detail that the map's texels cannot, the
+// reflectance is found from the bins that the map is found from. What the
+// search says of the posterior stays.
 class JointTurns {
  public:
   // found: what a search found with the model of its setup, which must outlive
@@ -37,6 +39,9 @@ class JointTurns {
   const std::shared_ptr<const LevelGauge> gauge_;
   SolveContext* const context_;
   Turns turns_;
+  // Whether pixels show detail that the map's texels cannot; unset before the
+  // first turn.
+  std::optional<bool> beyond_texels_;
 };
 
 }  // namespace ibrdf

@@ -37,7 +37,7 @@ Search SearchOwn(const SolveSetup& setup, SolveContext* context) {
   Search search;
   search.model = {setup.problem->model_name, setup.problem->model};
   search.setup = &setup;
-  search.estimate = EstimateLobesGivenLight(setup, context);
+  search.estimate = EstimateLobesGivenLight(setup, setup.pixels, context);
   return search;
 }
 
