@@ -1,6 +1,7 @@
 #include "ibrdf/solvers/solve/joint_turns.h"
 
-#include <optional>
+#include <glog/logging.h>
+
 #include <utility>
 
 #include "ibrdf/light/log_map.h"

@@ -1,5 +1,7 @@
 #include "ibrdf/solvers/solve/known_light.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
