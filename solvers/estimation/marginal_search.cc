@@ -140,6 +140,8 @@ std::vector<ModelOptima> OptimaOf(
     const Results& found, const std::vector<const SolveSetup*>& setups) {
   std::vector<ModelOptima> optima;
   for (const ReflectanceSearchResult& result : found) {
+    VLOG(1) << "found from " << result.initial_guess
+            << ", -log evidence: " << result.cost << " nats";
     optima.push_back(OptimaOf(result, *setups[result.model]));
   }
   return optima;
@@ -147,10 +149,9 @@ std::vector<ModelOptima> OptimaOf(
 
 // What one search finds, or two together. The setups are of one problem, each
 // with a model of its own.
-StatusOr<Results> FindReflectances(const std::vector<const SolveSetup*>& setups,
-                                   SolveContext* context,
-                                   const FirstPaint* paint,
-                                   const SearchAgain& again) {
+StatusOr<std::vector<ModelOptima>> Search(
+    const std::vector<const SolveSetup*>& setups, SolveContext* context,
+    const FirstPaint* paint, const SearchAgain& again) {
   const SolveSetup& setup = *setups.front();
   const InverseProblem& problem = *setup.problem;
   const size_t views = problem.sheet.views.size();
@@ -166,10 +167,13 @@ StatusOr<Results> FindReflectances(const std::vector<const SolveSetup*>& setups,
   for (const SolveSetup* s : setups) models.push_back(ModelOf(*s, o));
   StatusOr<Results> first =
       SearchReflectances(models, problem.points, observed, o);
-  if (!again || problem.solver.max_iterations == 0 || context->Interrupted() ||
-      first.status().code() == StatusCode::kInvalidInput ||
-      (first.ok() && !again(OptimaOf(*first, setups)))) {
-    return first;
+  const bool once =
+      !again || problem.solver.max_iterations == 0 || context->Interrupted();
+  if (first.ok()) {
+    std::vector<ModelOptima> optima = OptimaOf(*first, setups);
+    if (once || !again(optima)) return optima;
+  } else if (once || first.status().code() == StatusCode::kInvalidInput) {
+    return first.status();
   }
   o = SecondSearch(views, options(kSecondSearchShare));
   StatusOr<Results> second =
@@ -178,22 +182,11 @@ StatusOr<Results> FindReflectances(const std::vector<const SolveSetup*>& setups,
     LOG(WARNING) << "the second search for the reflectance was ended by the "
                     "time limit; a larger solver.seconds gives it more";
   }
-  if (!second.ok()) return first;
-  if (!first.ok()) return second;
-  return BestOfSearches(*std::move(first), *std::move(second));
-}
-
-StatusOr<std::vector<ModelOptima>> Search(
-    const std::vector<const SolveSetup*>& setups, SolveContext* context,
-    const FirstPaint* paint, const SearchAgain& again) {
-  const StatusOr<Results> found =
-      FindReflectances(setups, context, paint, again);
-  if (!found.ok()) return found.status();
-  for (const ReflectanceSearchResult& result : *found) {
-    VLOG(1) << "found from " << result.initial_guess
-            << ", -log evidence: " << result.cost << " nats";
-  }
-  return OptimaOf(*found, setups);
+  if (!first.ok() && !second.ok()) return first.status();
+  if (!second.ok()) return OptimaOf(*first, setups);
+  if (!first.ok()) return OptimaOf(*second, setups);
+  return OptimaOf(BestOfSearches(*std::move(first), *std::move(second)),
+                  setups);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -25,16 +26,17 @@ constexpr double kWideOpen = 1.5;
 // rest is the map's.
 constexpr double kSecondSearchFits = 0.4;
 
-bool IsWideOpen(const std::vector<ModelOptima>& found) {
-  const OptimumAverage average = AverageOptima(found);
-  const SolveSetup& setup = *found[average.model].setup;
-  const double spread =
-      SpreadOf(setup, average.estimate.lobes, average.estimate);
+bool IsWideOpen(const std::vector<ModelOptima>& found,
+                const OptimumAverage& average) {
+  const double spread = SpreadOf(*found[average.model].setup,
+                                 average.estimate.lobes, average.estimate);
   VLOG(1) << "the search's posterior has a spread of " << spread;
   return spread > kWideOpen;
 }
 
-SearchAgain SecondSearchOf(SolverSearch search, const SolveContext& context) {
+// average: set where the first search was averaged and is the only one.
+SearchAgain SecondSearchOf(SolverSearch search, const SolveContext& context,
+                           std::optional<OptimumAverage>* average) {
   switch (search) {
     case SolverSearch::kStandard:
       return {};
@@ -43,9 +45,14 @@ SearchAgain SecondSearchOf(SolverSearch search, const SolveContext& context) {
     case SolverSearch::kAuto:
       break;
   }
-  return [&context](const std::vector<ModelOptima>& found) {
-    return context.Elapsed() < kSecondSearchFits * context.budget() &&
-           IsWideOpen(found);
+  return [&context, average](const std::vector<ModelOptima>& found) {
+    if (!(context.Elapsed() < kSecondSearchFits * context.budget())) {
+      return false;
+    }
+    *average = AverageOptima(found);
+    if (!IsWideOpen(found, **average)) return false;
+    average->reset();
+    return true;
   };
 }
 
@@ -77,14 +84,17 @@ StatusOr<Solution> SolveJoint(const SolveSetup& setup, SolveContext* context) {
       setups.push_back(others.back().setup.get());
     }
   }
+  std::optional<OptimumAverage> of_first;
   const StatusOr<std::vector<ModelOptima>> searches = EstimateReflectances(
-      setups, context, SecondSearchOf(problem.solver.search, *context));
+      setups, context,
+      SecondSearchOf(problem.solver.search, *context, &of_first));
   if (searches.status().code() == StatusCode::kNoImprovement) {
     LOG(WARNING) << searches.status().message();
     return Summarise(setup, ConstantLight(setup, MeanMaterial(setup)), context);
   }
   if (!searches.ok()) return searches.status();
-  OptimumAverage average = AverageOptima(*searches);
+  OptimumAverage average =
+      of_first.has_value() ? *std::move(of_first) : AverageOptima(*searches);
   const SolveSetup& found = *(*searches)[average.model].setup;
   JointTurns turns((*searches)[average.model], context);
   StatusOr<Estimate> estimate = EstimateLight(
