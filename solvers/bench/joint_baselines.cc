@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Counts changes of the fit that its options do not show.
-constexpr int kFitVersion = 1;
+constexpr int kFitVersion = 2;
 
 Json Made(const SweepOptions& options, const SweepCase& c,
           const CookTorranceFitOptions& fit) {
@@ -55,7 +55,9 @@ bool ReadScore(const std::string& path, const Json& made,
   };
   return read("misfit", &score->misfit) &&
          read("brdf_log_rmse", &score->brdf_log_rmse) &&
-         read("brdf_log_rmse_aligned", &score->brdf_log_rmse_aligned);
+         read("brdf_log_rmse_aligned", &score->brdf_log_rmse_aligned) &&
+         read("brdf_log_rmse_aligned_below80",
+              &score->brdf_log_rmse_aligned_below80);
 }
 
 StatusOr<CookTorranceScore> Fit(const SweepOptions& options, const SweepCase& c,
@@ -82,7 +84,8 @@ StatusOr<CookTorranceScore> Fit(const SweepOptions& options, const SweepCase& c,
   const StatusOr<BrdfMetrics> brdf =
       CompareBrdfs(SampleMerl(fit->brdf.Function()), *truth);
   if (!brdf.ok()) return brdf.status();
-  return CookTorranceScore{fit->misfit, brdf->log_rmse, brdf->log_rmse_aligned};
+  return CookTorranceScore{fit->misfit, brdf->log_rmse, brdf->log_rmse_aligned,
+                           brdf->log_rmse_aligned_below80};
 }
 
 }  // namespace
@@ -96,10 +99,12 @@ StatusOr<CookTorranceScore> ScoreCookTorrance(
   if (ReadScore(path, made, &kept)) return kept;
   StatusOr<CookTorranceScore> score = Fit(options, c, fit);
   if (!score.ok()) return score.status();
-  const Json json = {{"made", made},
-                     {"misfit", score->misfit},
-                     {"brdf_log_rmse", score->brdf_log_rmse},
-                     {"brdf_log_rmse_aligned", score->brdf_log_rmse_aligned}};
+  const Json json = {
+      {"made", made},
+      {"misfit", score->misfit},
+      {"brdf_log_rmse", score->brdf_log_rmse},
+      {"brdf_log_rmse_aligned", score->brdf_log_rmse_aligned},
+      {"brdf_log_rmse_aligned_below80", score->brdf_log_rmse_aligned_below80}};
   IBRDF_RETURN_IF_ERROR(WriteFileAtomically(path, json.dump(2) + "\n"));
   return score;
 }
@@ -115,6 +120,8 @@ Status SetJointBaselines(const SweepOptions& options, const SweepCase& c,
   row->Set("cook_torrance_brdf_log_rmse", NumberCell(score->brdf_log_rmse));
   row->Set("cook_torrance_brdf_log_rmse_aligned",
            NumberCell(score->brdf_log_rmse_aligned));
+  row->Set("cook_torrance_brdf_log_rmse_aligned_below80",
+           NumberCell(score->brdf_log_rmse_aligned_below80));
   return OkStatus();
 }
 

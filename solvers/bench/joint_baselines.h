@@ -10,6 +10,7 @@ namespace ibrdf {
 struct CookTorranceScore {
   double misfit = 0.0;
   double brdf_log_rmse = 0.0, brdf_log_rmse_aligned = 0.0;
+  double brdf_log_rmse_aligned_below80 = 0.0;
 };
 
 // Lambertian plus Cook-Torrance fitted to the case's input given the true map.

@@ -8,8 +8,9 @@ const std::vector<std::string>& KnownLightColumns() {
   static const std::vector<std::string> columns = ModelSweepColumns(
       {"seconds", "cpu_seconds", "peak_mb", "misfit", "brdf_log_rmse",
        "brdf_log_rmse_aligned", "brdf_log_rmse_below80",
-       "brdf_log_rmse_expected", "brdf_log_rmse_90", "status", "relit_log_rmse",
-       "relit_rmse", "relit_dssim"});
+       "brdf_log_rmse_aligned_below80", "brdf_log_rmse_expected",
+       "brdf_log_rmse_90", "status", "relit_log_rmse", "relit_rmse",
+       "relit_dssim"});
   return columns;
 }
 

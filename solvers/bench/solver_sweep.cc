@@ -69,7 +69,8 @@ bool ReadMetrics(const std::string& path,
   }
   SetNumbers(json["metrics"],
              {"misfit", "brdf_log_rmse", "brdf_log_rmse_aligned",
-              "brdf_log_rmse_below80", "illumination_relative_log_rmse",
+              "brdf_log_rmse_below80", "brdf_log_rmse_aligned_below80",
+              "illumination_relative_log_rmse",
               "illumination_relative_log_rmse_aligned"},
              columns, row);
   const auto posterior = json.find("posterior");

@@ -75,9 +75,11 @@ StatusOr<NamedMetrics> EvaluateBrdfFiles(const std::string& estimate,
     return NameFile(metrics.status(),
                     {{"estimate", estimate}, {"reference", reference}});
   }
-  return NamedMetrics{{"brdf_log_rmse", metrics->log_rmse},
-                      {"brdf_log_rmse_aligned", metrics->log_rmse_aligned},
-                      {"brdf_log_rmse_below80", metrics->log_rmse_below80}};
+  return NamedMetrics{
+      {"brdf_log_rmse", metrics->log_rmse},
+      {"brdf_log_rmse_aligned", metrics->log_rmse_aligned},
+      {"brdf_log_rmse_below80", metrics->log_rmse_below80},
+      {"brdf_log_rmse_aligned_below80", metrics->log_rmse_aligned_below80}};
 }
 
 StatusOr<IlluminationComparison> EvaluateIlluminationFiles(

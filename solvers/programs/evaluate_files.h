@@ -16,9 +16,9 @@ using NamedMetrics = std::vector<std::pair<std::string, double>>;
 // Each compares the file of an estimate with that of a reference; the message
 // of a failure starts with the path of the file at fault.
 
-// MERL tables: brdf_log_rmse, brdf_log_rmse_aligned, brdf_log_rmse_below80.
-// Bins with a direction further from the normal than `void_beyond`, degrees in
-// (0, 90], play no part.
+// MERL tables: brdf_log_rmse, brdf_log_rmse_aligned, brdf_log_rmse_below80,
+// brdf_log_rmse_aligned_below80. Bins with a direction further from the normal
+// than `void_beyond`, degrees in (0, 90], play no part.
 StatusOr<NamedMetrics> EvaluateBrdfFiles(const std::string& estimate,
                                          const std::string& reference,
                                          double void_beyond = 90.0);

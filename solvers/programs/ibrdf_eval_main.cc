@@ -133,7 +133,8 @@ int Main(int argc, char** argv) {
       &app, "brdf",
       "log-RMSE in raw MERL units over bins where B's red is > 0: as is, "
       "after the best scale per channel (aligned), and with both "
-      "directions within 80 degrees of the normal (below80)",
+      "directions within 80 degrees of the normal (below80), as is and "
+      "aligned",
       "MERL .binary table", &arguments);
   brdf->add_option("--void-beyond", arguments.void_beyond,
                    "bins with a direction further from the normal than this, "

@@ -30,7 +30,8 @@ std::vector<MetricRow> TruthRows(const ResultMetrics& metrics) {
          "Root mean square difference of natural logarithms over the valid "
          "bins of the MERL table: 0.1 is about 10 %, 0.7 a factor of two."});
     rows.push_back(
-        {"BRDF log-RMSE below 80 degrees", brdf->log_rmse_below80, std::nullopt,
+        {"BRDF log-RMSE below 80 degrees", brdf->log_rmse_below80,
+         brdf->log_rmse_aligned_below80,
          "The same over the bins whose two directions lie within 80 degrees of "
          "the normal. Grazing bins dominate the whole table and hardly show in "
          "an image."});

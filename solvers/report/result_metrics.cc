@@ -95,6 +95,8 @@ std::vector<NamedMetric> ListMetrics(const ResultMetrics& metrics) {
     list.push_back({"brdf_log_rmse", brdf->log_rmse});
     list.push_back({"brdf_log_rmse_aligned", brdf->log_rmse_aligned});
     list.push_back({"brdf_log_rmse_below80", brdf->log_rmse_below80});
+    list.push_back(
+        {"brdf_log_rmse_aligned_below80", brdf->log_rmse_aligned_below80});
   }
   if (const auto& map = metrics.illumination) {
     list.push_back({"illumination_relative_log_rmse", map->relative_log_rmse});

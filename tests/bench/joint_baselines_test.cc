@@ -49,6 +49,9 @@ TEST_F(JointBaselinesTest, IsComputedOnce) {
   EXPECT_EQ(first.misfit, again.misfit);
   EXPECT_EQ(first.brdf_log_rmse, again.brdf_log_rmse);
   EXPECT_EQ(first.brdf_log_rmse_aligned, again.brdf_log_rmse_aligned);
+  EXPECT_LT(0.0, first.brdf_log_rmse_aligned_below80);
+  EXPECT_EQ(first.brdf_log_rmse_aligned_below80,
+            again.brdf_log_rmse_aligned_below80);
   EXPECT_TRUE(IsKept());
   options_.num_threads = 1;
   EXPECT_EQ(7.0, Score().misfit);

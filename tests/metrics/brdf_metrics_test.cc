@@ -31,6 +31,7 @@ TEST(BrdfMetrics, SameTablesDifferByNothing) {
   EXPECT_EQ(0.0, m.log_rmse);
   EXPECT_EQ(0.0, m.log_rmse_aligned);
   EXPECT_EQ(0.0, m.log_rmse_below80);
+  EXPECT_EQ(0.0, m.log_rmse_aligned_below80);
   EXPECT_EQ(kMerlBins, m.bins);
 }
 
@@ -49,6 +50,7 @@ TEST(BrdfMetrics, ScalesPerChannelAreAlignedAway) {
   EXPECT_NEAR(std::sqrt(squares / 3), m.log_rmse, kBrdfFloorTolerance);
   EXPECT_NEAR(std::sqrt(squares / 3), m.log_rmse_below80, kBrdfFloorTolerance);
   EXPECT_NEAR(0.0, m.log_rmse_aligned, kBrdfFloorTolerance);
+  EXPECT_NEAR(0.0, m.log_rmse_aligned_below80, kBrdfFloorTolerance);
 }
 
 // The formulas written down once more. The directions are built as vectors: the
@@ -61,8 +63,9 @@ TEST(BrdfMetrics, MatchesASlowReference) {
     if (rng() % 10 == 0) estimate.raw[i] = -1.0;
   }
   double squares = 0.0, squares80 = 0.0, means[3] = {}, variance = 0.0;
+  double means80[3] = {}, variance80 = 0.0;
   int64_t bins = 0, bins80 = 0;
-  std::vector<double> d[3];
+  std::vector<double> d[3], d80[3];
   for (int h = 0; h < 90; ++h) {
     for (int j = 0; j < 90; ++j) {
       for (int k = 0; k < 180; ++k) {
@@ -85,7 +88,11 @@ TEST(BrdfMetrics, MatchesASlowReference) {
           const double x = std::log(std::max(estimate.raw[at], 0.0) + 1e-6) -
                            std::log(std::max(reference.raw[at], 0.0) + 1e-6);
           squares += x * x;
-          if (below) squares80 += x * x;
+          if (below) {
+            squares80 += x * x;
+            means80[c] += x;
+            d80[c].push_back(x);
+          }
           means[c] += x;
           d[c].push_back(x);
         }
@@ -96,6 +103,9 @@ TEST(BrdfMetrics, MatchesASlowReference) {
     for (const double x : d[c]) {
       variance += (x - means[c] / bins) * (x - means[c] / bins);
     }
+    for (const double x : d80[c]) {
+      variance80 += (x - means80[c] / bins80) * (x - means80[c] / bins80);
+    }
   }
   const BrdfMetrics m = CompareBrdfs(estimate, reference).value();
   EXPECT_EQ(bins, m.bins);
@@ -104,6 +114,8 @@ TEST(BrdfMetrics, MatchesASlowReference) {
   EXPECT_NEAR(std::sqrt(squares80 / (3 * bins80)), m.log_rmse_below80,
               kBrdfSumTolerance);
   EXPECT_NEAR(std::sqrt(variance / (3 * bins)), m.log_rmse_aligned,
+              kBrdfSumTolerance);
+  EXPECT_NEAR(std::sqrt(variance80 / (3 * bins80)), m.log_rmse_aligned_below80,
               kBrdfSumTolerance);
 }
 

@@ -61,9 +61,13 @@ StatusOr<BrdfMetrics> CompareBrdfs(const MerlTable& estimate,
   }
   metrics.log_rmse = all.Rms(/*aligned=*/false);
   metrics.log_rmse_aligned = all.Rms(/*aligned=*/true);
-  metrics.log_rmse_below80 = below80.empty()
-                                 ? std::numeric_limits<double>::quiet_NaN()
-                                 : below80.Rms(/*aligned=*/false);
+  if (below80.empty()) {
+    metrics.log_rmse_below80 = metrics.log_rmse_aligned_below80 =
+        std::numeric_limits<double>::quiet_NaN();
+  } else {
+    metrics.log_rmse_below80 = below80.Rms(/*aligned=*/false);
+    metrics.log_rmse_aligned_below80 = below80.Rms(/*aligned=*/true);
+  }
   return metrics;
 }
 

@@ -18,6 +18,8 @@ struct BrdfMetrics {
   // As they are, over the bins whose centre has both directions within 80
   // degrees of the normal; NaN where the reference has no such bin.
   double log_rmse_below80 = 0.0;
+  // The mean differences over those bins taken off first.
+  double log_rmse_aligned_below80 = 0.0;
   int64_t bins = 0;
   int64_t bins_below80 = 0;
 };
