@@ -44,8 +44,9 @@ Row SearchKey() {
                 "wide open."},
                {"standard", "One search. Some images lead it astray."},
                {"thorough",
-                "A second search begins with more tolerance of materials that "
-                "are unlike the object's. The optima of both compete."}})
+                "A second search begins with more tolerance of materials "
+                "unlike the object's, and reflectances of other kinds that a "
+                "search gave up are compared at a finer map."}})
       .Needs("problem: joint")
       .UsedBy(kUsedByJoint);
 }

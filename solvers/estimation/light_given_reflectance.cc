@@ -136,6 +136,9 @@ void FitMap(const LogMap& log_map, SolveContext* context, Estimate* estimate) {
 void TakeRevision(RevisedReflectance revised, const SolveSetup& setup,
                   SolveContext* context, Estimate* estimate) {
   estimate->reflectance.lobes = revised.lobes;
+  if (revised.light.has_value()) {
+    estimate->reflectance.light = *std::move(revised.light);
+  }
   estimate->iterate.state.lobes = std::move(revised.lobes);
   estimate->iterate.scale = setup.initial_scale;
   BeginProcessMap(setup, revised.log_map.size(), estimate);
@@ -284,6 +287,22 @@ StatusOr<Estimate> EstimateLight(const SolveSetup& setup,
     status = EstimateByProcessAndNetwork(setup, revise, context, &estimate);
   }
   if (!status.ok()) return status;
+  return estimate;
+}
+
+StatusOr<Estimate> EstimateProcessLight(const SolveSetup& setup,
+                                        ReflectanceEstimate reflectance,
+                                        MapSize size, SolveContext* context) {
+  Estimate estimate = Begin(setup, std::move(reflectance));
+  BeginProcessMap(setup, size, &estimate);
+  const LogMap& mode = estimate.reflectance.light.mode;
+  if (mode.num_texels() > 0) FitMap(mode.Resized(size), context, &estimate);
+  OuterIterationOptions options = MapOptions(JointMethod::kGaussNewton, 1.0);
+  options.last = kMapIterations;
+  IBRDF_RETURN_IF_ERROR(RunOuterIterations(options, setup,
+                                           estimate.pixels.get(), context,
+                                           &estimate.iterate)
+                            .status());
   return estimate;
 }
 

@@ -17,6 +17,9 @@ struct RevisedReflectance {
   std::vector<double> lobes;  // as LobeModel
   // The estimate's map at the level and hue that go with the lobes.
   LogMap log_map;
+  // Where set: what the light's priors are then, and what the estimate has of
+  // the light. Else that remains the one it came with.
+  std::optional<LightPosterior> light = {};
 };
 
 // What to make of the reflectance in view of a map that is not yet finished;
@@ -31,12 +34,17 @@ using ReviseReflectance =
 //   none     free texels
 // revise, of a reflectance that is unknown: where not null, the MAP estimate
 // asks for another reflectance after its first few iterations, and again after
-// a few more until there is none, and goes on under it. The light of
-// estimate.reflectance remains the one it came with.
+// a few more until there is none, and goes on under it.
 StatusOr<Estimate> EstimateLight(const SolveSetup& setup,
                                  ReflectanceEstimate reflectance,
                                  SolveContext* context,
                                  const ReviseReflectance& revise = nullptr);
+
+// The MAP estimate under the Gaussian process from the bins alone, of a size,
+// in the few iterations that a known reflectance needs. The setup's is known.
+StatusOr<Estimate> EstimateProcessLight(const SolveSetup& setup,
+                                        ReflectanceEstimate reflectance,
+                                        MapSize size, SolveContext* context);
 
 // The reflectance under a constant map that gives the image its level: what
 // there is to say of an image that no search explains.

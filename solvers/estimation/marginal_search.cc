@@ -108,6 +108,7 @@ ModelOptima OptimaOf(const ReflectanceSearchResult& found,
   optima.gauge->Fix(out.initial_lobes.data());
   out.covariance = found.covariance;
   out.ranking = RankMaterials(found.candidates);
+  out.coarse_optima = found.coarse_optima;
   for (const MaterialCandidate& candidate : found.candidates) {
     if (std::isfinite(candidate.cost)) out.candidates.push_back(candidate);
   }

@@ -74,6 +74,7 @@ struct ReflectanceEstimate {
   std::vector<double> initial_lobes;
   Eigen::MatrixXd covariance;                 // of the lobes; empty: not known
   std::vector<MaterialCandidate> candidates;  // by cost
+  std::vector<CoarseOptimum> coarse_optima;   // likewise, of the light unknown
   MaterialRanking ranking;  // of the light unknown; else empty
   LightPosterior light;
 };

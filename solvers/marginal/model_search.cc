@@ -164,6 +164,7 @@ void ModelSearch::KeepCandidates(size_t most) {
 void ModelSearch::Sharpen() {
   last_level_ = std::move(level_);
   level_ = LevelAt(options_.fine);
+  coarse_ = false;
 }
 
 bool ModelSearch::Join(std::vector<LocalOptimum> optima,
@@ -187,6 +188,7 @@ bool ModelSearch::Join(std::vector<LocalOptimum> optima,
     material.parameters = ToVector(objective.LobesOf(optimum.y.data()));
     material.light_level =
         level_->LightLevel(reached.back().parameters, optimum.mode);
+    if (coarse_) KeepCoarse(reached.back());
     if (!what.empty() && options_.report) {
       options_.report(what + material.name, optimum.cost, optimum.value.misfit);
     }
@@ -201,6 +203,19 @@ bool ModelSearch::Join(std::vector<LocalOptimum> optima,
   std::stable_sort(reached.begin(), reached.end(), CostsLess<Candidate>);
   candidates_ = std::move(reached);
   return true;
+}
+
+void ModelSearch::KeepCoarse(const Candidate& candidate) {
+  const std::string& name = materials_[candidate.material].name;
+  auto at = std::find_if(
+      coarse_optima_.begin(), coarse_optima_.end(),
+      [&](const CoarseOptimum& optimum) { return optimum.name == name; });
+  if (at == coarse_optima_.end()) {
+    at = coarse_optima_.insert(at, CoarseOptimum());
+  }
+  at->name = name;
+  at->cost = candidate.cost;
+  at->parameters = materials_[candidate.material].parameters;
 }
 
 void ModelSearch::TakeBouncesOut() {
@@ -264,6 +279,9 @@ ReflectanceSearchResult ModelSearch::Result(bool covariance) {
       likelihood, reflectance.Matrices(best_candidate_.parameters.data()),
       best_.errors, best_candidate_.hyperparameters, best_.mode,
       result.map_height, result.map_width);
+  std::stable_sort(coarse_optima_.begin(), coarse_optima_.end(),
+                   CostsLess<CoarseOptimum>);
+  result.coarse_optima = std::move(coarse_optima_);
   SortByCost(&materials_);
   result.candidates = std::move(materials_);
   return result;

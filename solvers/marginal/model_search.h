@@ -98,6 +98,8 @@ class ModelSearch {
   std::vector<double> LogRadiance() const;
   // Without the directional lights.
   std::vector<double> Lobes(const Candidate& candidate) const;
+  // In place of an earlier one of its material.
+  void KeepCoarse(const Candidate& candidate);
 
   const SearchedModel& model_;
   const std::vector<ShadingPoint>& points_;
@@ -107,10 +109,12 @@ class ModelSearch {
   const ReflectanceSearchOptions& options_;
   std::unique_ptr<SearchLevel> screen_;
   std::unique_ptr<SearchLevel> level_;       // the present resolution
+  bool coarse_ = true;                       // which is that
   std::unique_ptr<SearchLevel> last_level_;  // kept while the best is of it
   std::vector<MaterialCandidate> materials_;
   std::vector<Ranking> rankings_;
   std::vector<Candidate> candidates_;
+  std::vector<CoarseOptimum> coarse_optima_;  // one of a material at most
   const SearchLevel* best_level_ = nullptr;
   LocalOptimum best_;
   Candidate best_candidate_;

@@ -50,6 +50,13 @@ struct MaterialCandidate {
 // By cost: the refined ones, then the others by their first cost.
 void SortByCost(std::vector<MaterialCandidate>* candidates);
 
+// Where a material led at the coarse resolution, whether it went on or not.
+struct CoarseOptimum {
+  std::string name;  // of the material
+  double cost = 0.0;
+  std::vector<double> parameters;  // as LobeModel's
+};
+
 struct ReflectanceSearchResult {
   size_t model = 0;                // of the models that were searched
   std::vector<double> parameters;  // as LobeModel's
@@ -59,6 +66,7 @@ struct ReflectanceSearchResult {
   LightHyperparameters hyperparameters;             // of the light's process
   std::vector<Eigen::Vector3d> directional_lights;  // their directions
   std::vector<MaterialCandidate> candidates;        // by SortByCost
+  std::vector<CoarseOptimum> coarse_optima;         // by cost
   // The posterior of the parameters (Laplace, by the Gauss-Newton Hessian);
   // empty where it was not asked for.
   Eigen::MatrixXd covariance;

@@ -7,6 +7,7 @@
 #include "ibrdf/light/log_map.h"
 #include "ibrdf/solvers/estimation/optimum_average.h"
 #include "ibrdf/solvers/estimation/reflectance_given_light.h"
+#include "ibrdf/solvers/solve/other_kind.h"
 #include "ibrdf/solvers/solve/residual_statistics.h"
 
 namespace ibrdf {
@@ -36,12 +37,17 @@ JointTurns::JointTurns(const ModelOptima& found, SolveContext* context)
     : setup_(*found.setup),
       gauge_(found.gauge),
       context_(context),
+      of_search_(found),
       turns_(1 + setup_.problem->solver.turns, context) {}
 
 StatusOr<std::optional<RevisedReflectance>> JointTurns::Take(
     const Estimate& estimate) {
   std::optional<RevisedReflectance> revised;
   if (!Worthwhile(estimate)) return revised;
+  if (of_search_.has_value()) {
+    StatusOr<std::optional<RevisedReflectance>> other = TakeOtherKind(estimate);
+    if (!other.ok() || other->has_value()) return other;
+  }
   InverseProblem problem = *setup_.problem;
   const LogMap log_map = LogMapOf(estimate.iterate);
   problem.known_map = MapOf(log_map);
@@ -65,6 +71,22 @@ StatusOr<std::optional<RevisedReflectance>> JointTurns::Take(
     revised->log_map.data()[k] -= level;
   }
   return revised;
+}
+
+StatusOr<std::optional<RevisedReflectance>> JointTurns::TakeOtherKind(
+    const Estimate& estimate) {
+  const ModelOptima found = *std::move(of_search_);
+  of_search_.reset();
+  if (setup_.problem->solver.search != SolverSearch::kThorough) {
+    return std::optional<RevisedReflectance>();
+  }
+  StatusOr<std::optional<RevisedReflectance>> other =
+      FindOtherKind(found, estimate, context_);
+  if (other.ok() && other->has_value()) {
+    turns_.Restart();
+    beyond_texels_.reset();
+  }
+  return other;
 }
 
 bool JointTurns::Worthwhile(const Estimate& estimate) {

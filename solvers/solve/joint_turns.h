@@ -20,8 +20,10 @@ namespace ibrdf {
 // while it is being found, the reflectance is found anew under it, solver.turns
 // times at most, as long as the time allows and what is left of the image is
 // not noise. Where pixels show detail that the map's texels cannot, the
-// reflectance is found from the bins that the map is found from. What the
-// search says of the posterior stays.
+// reflectance is found from the bins that the map is found from. Before the
+// first turn, if solver.search is `thorough`, a reflectance of another kind
+// that the search gave up may take the estimate's place (FindOtherKind). What
+// the search says of the posterior stays.
 class JointTurns {
  public:
   // found: what a search found with the model of its setup, which must outlive
@@ -34,10 +36,16 @@ class JointTurns {
 
  private:
   bool Worthwhile(const Estimate& estimate);
+  // Where the search may have been led to another kind of reflectance: that
+  // one.
+  StatusOr<std::optional<RevisedReflectance>> TakeOtherKind(
+      const Estimate& estimate);
 
   const SolveSetup& setup_;
   const std::shared_ptr<const LevelGauge> gauge_;
   SolveContext* const context_;
+  // What the search found, until it has been asked for another kind.
+  std::optional<ModelOptima> of_search_;
   Turns turns_;
   // Whether pixels show detail that the map's texels cannot; unset before the
   // first turn.

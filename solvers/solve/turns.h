@@ -10,6 +10,12 @@ class Turns {
   Turns(int most, const SolveContext* context)
       : most_(most), context_(context), began_(context->Elapsed()) {}
 
+  // All are left again, and the first begins now.
+  void Restart() {
+    taken_ = 0;
+    began_ = context_->Elapsed();
+  }
+
   // Whether to take another, which then begins: so many there are, and a turn
   // that is cut short would undo the last, so there must be half as much time
   // again as that took.

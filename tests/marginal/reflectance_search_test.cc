@@ -69,6 +69,15 @@ TEST_F(ReflectanceSearchTest, AmongCookTorranceExplainsItsOwn) {
   ASSERT_TRUE(found.ok()) << found.status().message();
   EXPECT_LT(found->misfit, found->candidates[0].first_misfit);
   ASSERT_EQ(10u, found->parameters.size());
+  // Those that came to something.
+  ASSERT_LE(2u, found->coarse_optima.size());
+  for (size_t k = 1; k < found->coarse_optima.size(); ++k) {
+    EXPECT_LE(found->coarse_optima[k - 1].cost, found->coarse_optima[k].cost);
+  }
+  for (const CoarseOptimum& optimum : found->coarse_optima) {
+    EXPECT_EQ(10u, optimum.parameters.size()) << optimum.name;
+    EXPECT_GE(optimum.cost, found->cost) << optimum.name;
+  }
   // All three resolutions are one: costs compare.
   for (const MaterialCandidate& tried : found->candidates) {
     EXPECT_LT(found->cost, tried.first_cost - 5.0) << tried.name;
