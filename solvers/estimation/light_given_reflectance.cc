@@ -37,6 +37,17 @@ bool IsFree(const SolveSetup& setup) {
   return setup.problem->illumination_prior == IlluminationPrior::kNone;
 }
 
+// A map's size for the process, its sides halved, where they can be, until it
+// is no wider than that.
+MapSize HalvedSize(MapSize size, int most_width) {
+  while (size.width > most_width && size.width % 4 == 0 &&
+         size.height % 2 == 0) {
+    size.width /= 2;
+    size.height /= 2;
+  }
+  return ProcessSize(size);
+}
+
 Estimate Begin(const SolveSetup& setup, ReflectanceEstimate reflectance) {
   Estimate estimate;
   estimate.iterate.state.lobes = reflectance.lobes;
@@ -132,6 +143,13 @@ void FitMap(const LogMap& log_map, SolveContext* context, Estimate* estimate) {
             &estimate->iterate.state.light);
 }
 
+// The map becomes the search's, where there is one.
+void FitSearchedMap(SolveContext* context, Estimate* estimate) {
+  const LogMap& mode = estimate->reflectance.light.mode;
+  if (mode.num_texels() == 0) return;
+  FitMap(mode.Resized(estimate->iterate.light.map->size()), context, estimate);
+}
+
 // The estimate's lobes become others, under its map of the Gaussian process.
 void TakeRevision(RevisedReflectance revised, const SolveSetup& setup,
                   SolveContext* context, Estimate* estimate) {
@@ -173,8 +191,7 @@ Status EstimateProcessMap(const SolveSetup& setup, MapSize size,
                           SolveContext* context, Estimate* estimate) {
   BeginProcessMap(setup, size, estimate);
   Report("constant map", setup, *estimate, context);
-  const LogMap& mode = estimate->reflectance.light.mode;
-  if (mode.num_texels() > 0) FitMap(mode.Resized(size), context, estimate);
+  FitSearchedMap(context, estimate);
   if (setup.reflectance_known() &&
       options.method == JointMethod::kGaussNewton) {
     options.last = kMapIterations;
@@ -229,22 +246,12 @@ Status EstimateNetworkMap(const SolveSetup& setup, SolveContext* context,
   return OkStatus();
 }
 
-// The size at which the MAP estimate is made for a network of the map's size.
-MapSize FirstSize(MapSize size) {
-  while (size.width > kProcessWidth && size.width % 4 == 0 &&
-         size.height % 2 == 0) {
-    size.width /= 2;
-    size.height /= 2;
-  }
-  return ProcessSize(size);
-}
-
 Status EstimateByProcessAndNetwork(const SolveSetup& setup,
                                    const ReviseReflectance& revise,
                                    SolveContext* context, Estimate* estimate) {
   // solver.method is the network's.
   const JointMethod method = JointMethod::kGaussNewton;
-  const MapSize size = FirstSize(setup.map_size());
+  const MapSize size = HalvedSize(setup.map_size(), kProcessWidth);
   const std::function<bool()> cut_short = context->StopAfter(kProcessShare);
   IBRDF_RETURN_IF_ERROR(EstimateProcessMap(setup, size,
                                            MapOptions(method, kProcessShare),
@@ -292,11 +299,10 @@ StatusOr<Estimate> EstimateLight(const SolveSetup& setup,
 
 StatusOr<Estimate> EstimateProcessLight(const SolveSetup& setup,
                                         ReflectanceEstimate reflectance,
-                                        MapSize size, SolveContext* context) {
+                                        int most_width, SolveContext* context) {
   Estimate estimate = Begin(setup, std::move(reflectance));
-  BeginProcessMap(setup, size, &estimate);
-  const LogMap& mode = estimate.reflectance.light.mode;
-  if (mode.num_texels() > 0) FitMap(mode.Resized(size), context, &estimate);
+  BeginProcessMap(setup, HalvedSize(setup.map_size(), most_width), &estimate);
+  FitSearchedMap(context, &estimate);
   OuterIterationOptions options = MapOptions(JointMethod::kGaussNewton, 1.0);
   options.last = kMapIterations;
   IBRDF_RETURN_IF_ERROR(RunOuterIterations(options, setup,

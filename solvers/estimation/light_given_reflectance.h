@@ -40,11 +40,12 @@ StatusOr<Estimate> EstimateLight(const SolveSetup& setup,
                                  SolveContext* context,
                                  const ReviseReflectance& revise = nullptr);
 
-// The MAP estimate under the Gaussian process from the bins alone, of a size,
-// in the few iterations that a known reflectance needs. The setup's is known.
+// The MAP estimate under the Gaussian process from the bins alone, in the few
+// iterations that a known reflectance needs; the setup's is known. The map's
+// sides are halved, where they can be, until it is no wider than that.
 StatusOr<Estimate> EstimateProcessLight(const SolveSetup& setup,
                                         ReflectanceEstimate reflectance,
-                                        MapSize size, SolveContext* context);
+                                        int most_width, SolveContext* context);
 
 // The reflectance under a constant map that gives the image its level: what
 // there is to say of an image that no search explains.

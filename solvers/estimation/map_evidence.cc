@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "ibrdf/image/radiance_interval.h"
 #include "ibrdf/solvers/optim/lanczos_quadrature.h"
 
 namespace ibrdf {
@@ -27,9 +26,7 @@ std::vector<double> LogSlopes(const std::vector<double>& L_o,
                               const Observations& observed, double epsilon) {
   std::vector<double> slopes(L_o.size(), 0.0);
   for (size_t i = 0; i < L_o.size(); ++i) {
-    if (!observed.valid[i / 3]) continue;
-    const RadianceInterval known = observed.Interval(i);
-    if (!known.HasLow() || !known.HasHigh()) continue;
+    if (!observed.valid[i / 3] || observed.Interval(i).IsOneSided()) continue;
     slopes[i] = 1.0 / (std::max(L_o[i], 0.0) + epsilon);
   }
   return slopes;
@@ -40,7 +37,7 @@ struct Terms {
   double values = 0.0;    // N
   double residual = 0.0;  // mean |r|
   double prior = 0.0;     // |z|^2 / 2
-  // Of S^T J^T J S, in units of the mean residual.
+  // The spectrum of S^T J^T J S, in units of the mean residual.
   std::vector<SpectralNode> information;
 
   double Cost(double scale, double prior_scale) const {

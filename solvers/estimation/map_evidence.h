@@ -19,7 +19,8 @@ struct MapEvidence {
   double misfit = 0.0;  // mean |log L_o - log I| under the map
 };
 
-// Of an estimate's map by the Gaussian process, by Laplace's method:
+// The evidence at an estimate's map by the Gaussian process, by Laplace's
+// method:
 //   cost = sum |r_i| / b + N log(2 b) + |z|^2 / (2 s^2)
 //          + log det(1 + (s / b)^2 S^T J^T J S) / 2,
 // r [N] the log residuals of its pixels, J those's derivatives by the map's

@@ -37,8 +37,11 @@ JointTurns::JointTurns(const ModelOptima& found, SolveContext* context)
     : setup_(*found.setup),
       gauge_(found.gauge),
       context_(context),
-      of_search_(found),
-      turns_(1 + setup_.problem->solver.turns, context) {}
+      turns_(1 + setup_.problem->solver.turns, context) {
+  if (setup_.problem->solver.search == SolverSearch::kThorough) {
+    of_search_ = found;
+  }
+}
 
 StatusOr<std::optional<RevisedReflectance>> JointTurns::Take(
     const Estimate& estimate) {
@@ -77,9 +80,6 @@ StatusOr<std::optional<RevisedReflectance>> JointTurns::TakeOtherKind(
     const Estimate& estimate) {
   const ModelOptima found = *std::move(of_search_);
   of_search_.reset();
-  if (setup_.problem->solver.search != SolverSearch::kThorough) {
-    return std::optional<RevisedReflectance>();
-  }
   StatusOr<std::optional<RevisedReflectance>> other =
       FindOtherKind(found, estimate, context_);
   if (other.ok() && other->has_value()) {

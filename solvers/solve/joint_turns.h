@@ -44,7 +44,7 @@ class JointTurns {
   const SolveSetup& setup_;
   const std::shared_ptr<const LevelGauge> gauge_;
   SolveContext* const context_;
-  // What the search found, until it has been asked for another kind.
+  // What a thorough search found, until it has been asked for another kind.
   std::optional<ModelOptima> of_search_;
   Turns turns_;
   // Whether pixels show detail that the map's texels cannot; unset before the

@@ -33,7 +33,7 @@ struct Kind {
   std::vector<double> lobes;
 };
 
-// Of the coarse optima, at the gauge's level, the best first.
+// They are coarse optima at the gauge's level, the best first.
 std::vector<Kind> OtherKinds(const ModelOptima& found,
                              const Estimate& estimate) {
   std::vector<Kind> kinds;
@@ -60,15 +60,6 @@ std::vector<Kind> OtherKinds(const ModelOptima& found,
     found.gauge->Fix(kinds.back().lobes.data());
   }
   return kinds;
-}
-
-MapSize EvidenceMapSize(MapSize size) {
-  while (size.width > kEvidenceMapWidth && size.width % 4 == 0 &&
-         size.height % 2 == 0) {
-    size.width /= 2;
-    size.height /= 2;
-  }
-  return size;
 }
 
 // The problem of the light alone, for a reflectance that is held.
@@ -102,7 +93,7 @@ StatusOr<HeldKind> Hold(const std::vector<double>& lobes,
   ReflectanceEstimate reflectance;
   reflectance.light = held.light;
   const StatusOr<Estimate> estimate = EstimateProcessLight(
-      *setup, std::move(reflectance), EvidenceMapSize(setup->map_size()), &own);
+      *setup, std::move(reflectance), kEvidenceMapWidth, &own);
   if (!estimate.ok()) return estimate.status();
   held.evidence = EvidenceOfMap(*setup, *estimate);
   VLOG(1) << "-log evidence " << held.evidence.cost << ", misfit "

@@ -19,7 +19,7 @@ using namespace testing;  // NOLINT
 // A ball under a smooth light, its reflectance held while the light is found.
 class MapEvidenceTest : public ::testing::Test {
  protected:
-  static constexpr MapSize kSize = {16, 8};
+  static constexpr int kWidth = 16;  // of the map
 
   // lobes: of the image; held: those that the light is found with.
   void Hold(const std::vector<double>& lobes, const std::vector<double>& held) {
@@ -35,7 +35,7 @@ class MapEvidenceTest : public ::testing::Test {
     const SolveProgress quiet;
     SolveContext context(problem_, quiet, nullptr);
     estimate_ = std::make_unique<Estimate>(
-        EstimateProcessLight(*setup_, {}, kSize, &context).value());
+        EstimateProcessLight(*setup_, {}, kWidth, &context).value());
   }
   double Cost() const { return EvidenceOfMap(*setup_, *estimate_).cost; }
 

@@ -60,7 +60,7 @@ class OtherKindTest : public ::testing::Test {
 
   std::vector<double> truth_ = {0.3,  -0.4, 0.2, 0.1,  5.0, 4.6, 4.2,
                                 -0.5, 0.1,  0.3, -0.2, 3.0, 3.5, 3.3};
-  // Of another code, and a log-RMSE of more than 0.5 from it.
+  // It has another code, and a log-RMSE of more than 0.5 from the truth.
   std::vector<double> wrong_ = {-0.8, 0.5, 0.2, 0.1,  5.0, 4.6, 4.2,
                                 -0.5, 0.1, 0.3, -0.2, 3.0, 3.5, 3.3};
   const SolveProgress progress_;
