@@ -4,7 +4,8 @@
 usage: plot.py RESULTS.csv [--out pareto.png] [--front pareto.csv]
 A point for each setting: medians over the cases that every setting has solved,
 of the BRDF's error, the map's (both aligned) and the misfit against the time
-the program took. The line is the Pareto front: no setting is faster and
+the program took. A thin upright line goes from the lower to the upper quartile.
+The line is the Pareto front: no setting is faster and
 better. The star is what `method: auto` does by default. --front lists the
 points. Needs Debian's python3-matplotlib (scripts/install_plots.sh).
 """
@@ -14,21 +15,28 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
-from results import front, median, numbers, open_pyplot, place_labels, read_rows
+from results import (front, median, numbers, open_pyplot, percentile,
+                     place_labels, read_rows)
 
 CASE = ("material", "map", "geometry")
 SETTING = ("setting", "estimator", "method", "budget_seconds", "size",
            "map_width", "lobes", "prior", "unet_channels", "quadrature")
+# Tables of before they were varied lack these.
+NEW_SETTING = ("search", "turns", "models")
 PANELS = (("brdf_log_rmse_aligned", "BRDF log-RMSE, aligned"),
           ("illumination_relative_log_rmse_aligned",
            "map, relative log-RMSE, aligned"),
-          ("misfit", "misfit, mean |log E - log I|"))
+          ("misfit", "misfit, mean |log L_o - log I|"))
 # By what a setting changes, the word before its dash.
 FAMILIES = {"default": "tab:red", "method": "tab:purple",
             "maximum": "tab:brown", "adam": "black", "seconds": "tab:red",
             "size": "tab:blue", "map": "tab:cyan", "lobes": "tab:green",
             "prior": "tab:olive", "unet": "tab:pink",
-            "quadrature": "tab:orange", "small": "tab:gray"}
+            "quadrature": "tab:orange", "small": "tab:gray",
+            "models": "tab:blue", "search": "tab:green", "turns": "tab:orange"}
+
+
+BAND = "_quartiles"  # after a column's name: the lower and the upper one
 
 
 def family(name):
@@ -36,15 +44,17 @@ def family(name):
 
 
 def settings(rows):
-    """[(name, {column: median})] over the cases that all settings share, in
-    the table's order, and the number of those cases.
+    """[(name, {column: median, column + BAND: quartiles})] over the cases that
+    all settings share, in the table's order, and the number of those cases.
 
     Raises ValueError where no case is shared or one setting is there twice
     with different defaults.
     """
     groups = {}
     for row in rows:
-        group = groups.setdefault(tuple(row[c] for c in SETTING), {})
+        group = groups.setdefault(
+            tuple(row[c] for c in SETTING) +
+            tuple(row.get(c, "") for c in NEW_SETTING), {})
         group[tuple(row[c] for c in CASE)] = row
     names = [key[0] for key in groups]
     twice = [name for name in names if names.count(name) > 1]
@@ -58,9 +68,14 @@ def settings(rows):
     points = []
     for key, group in groups.items():
         chosen = [row for case, row in group.items() if case in shared]
-        values = {c: numbers(chosen, c) for c in columns}
-        points.append((key[0], {c: median(v) if len(v) == len(shared) else None
-                                for c, v in values.items()}))
+        values = {}
+        for c in columns:
+            v = numbers(chosen, c)
+            known = len(v) == len(shared)
+            values[c] = median(v) if known else None
+            values[c + BAND] = (tuple(percentile(v, q) for q in (0.25, 0.75))
+                                if known else None)
+        points.append((key[0], values))
     return points, len(shared)
 
 
@@ -84,7 +99,10 @@ def draw(points, num_cases, out):
         if len(budget) > 1:
             axes.plot(*zip(*budget), ":", color="tab:red", lw=1, zorder=1,
                       label="other time budgets")
+        quartiles = dict((name, v[column + BAND]) for name, v in points)
         for name, at in shown:
+            axes.plot([at[0]] * 2, quartiles[name], "-", lw=1, alpha=0.35,
+                      color=FAMILIES.get(family(name), "0.3"), zorder=1)
             if name == "default":
                 axes.plot(*at, "*", ms=15, color="tab:red", zorder=3,
                           label="auto, the default")
@@ -97,7 +115,7 @@ def draw(points, num_cases, out):
         axes.set_xticks(ticks, [str(t) for t in ticks])
         axes.minorticks_off()
         axes.set_xlim(min(xy)[0] / 1.5, max(xy)[0] * 1.9)
-        span = [y for _, y in xy]
+        span = [y for name, _ in shown for y in quartiles[name]]
         pad = 0.12 * ((max(span) - min(span)) or max(span) or 1.0)
         axes.set_ylim(max(min(span) - pad, 0.0), max(span) + 2 * pad)
         axes.set_xlabel("seconds, wall clock (median)")
@@ -124,11 +142,15 @@ def write_front(points, path):
     with open(path, "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(("setting",) + columns +
+                        tuple(column + quartile for column in on
+                              for quartile in ("_25", "_75")) +
                         tuple("front_" + column for column in on))
         for name, v in sorted(points, key=lambda p: p[1]["seconds"]):
             writer.writerow(
                 [name] + ["" if v[c] is None else f"{v[c]:.6g}"
                           for c in columns] +
+                ["" if q is None else f"{q:.6g}" for column in on
+                 for q in v[column + BAND] or (None, None)] +
                 [int(name in on[column]) for column in on])
 
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Tests of the plots: fronts, percentiles, tables, and pictures of made-up
 tables. Exits with 77 without matplotlib, after the rest passed."""
+import array
 import csv
 import importlib.util
 import subprocess
@@ -14,10 +15,10 @@ sys.path.insert(0, str(HERE))
 import results
 
 
-def load(name):
-    """experiments/NAME/plot.py as a module."""
+def load(name, script="plot.py"):
+    """experiments/NAME/SCRIPT as a module."""
     spec = importlib.util.spec_from_file_location(
-        name, HERE.parent / name / "plot.py")
+        name, HERE.parent / name / script)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -25,6 +26,7 @@ def load(name):
 
 pareto, joint_grid = load("pareto"), load("joint_grid")
 known_light, known_brdf = load("known_light"), load("known_brdf")
+budget = load("pareto", "budget.py")
 HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -167,6 +169,49 @@ class Pareto(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "p.png"
             pareto.draw(points, cases, path)
+            self.assertTrue(path.read_bytes().startswith(PNG))
+
+
+def write_table(path, peak, at_40):
+    """A MERL table of which the rows that tell its kind are set."""
+    with open(path, "wb") as file:
+        file.truncate(12 + 3 * 90 * 90 * 180 * 8)
+        for channel in range(3):
+            for theta_h, value in ((0, peak), (1, peak), (2, peak), (60, at_40)):
+                file.seek(12 + 8 * 180 * ((channel * 90 + theta_h) * 90 + 2))
+                file.write(array.array("d", [value] * 180).tobytes())
+
+
+class Budget(unittest.TestCase):
+    ROWS = [pareto_row("a", "default", 26, 0.4, budget_seconds=120),
+            pareto_row("a", "seconds-5", 5, 0.8, budget_seconds=5),
+            pareto_row("b", "default", 28, 0.6, budget_seconds=120),
+            pareto_row("b", "turns-0", 20, 0.9, budget_seconds=120)]
+
+    def test_kinds_are_told_by_the_highlight(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "a.binary"
+            for peak, kind in ((9.0, "matte"), (11.0, "glossy"),
+                               (3900.0, "glossy"), (4100.0, "mirror-like")):
+                write_table(path, peak, 1.0)
+                self.assertEqual(kind, budget.kind(path))
+
+    def test_rows_by_kind_and_budget(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_table(Path(folder) / "a.binary", 2.0, 1.0)
+            write_table(Path(folder) / "b.binary", 9000.0, 1.0)
+            groups = budget.by_kind(self.ROWS, folder)
+        self.assertEqual(["matte", "mirror-like"], list(groups))
+        self.assertEqual([5.0, 120.0], sorted(groups["matte"]))
+        # Other settings are no budgets.
+        self.assertEqual(1, len(groups["mirror-like"][120.0]))
+
+    @unittest.skipUnless(HAS_MATPLOTLIB, "no matplotlib")
+    def test_picture(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "b.png"
+            budget.draw({"matte": {5.0: self.ROWS[1:2], 120.0: self.ROWS[:1]}},
+                        path)
             self.assertTrue(path.read_bytes().startswith(PNG))
 
 

@@ -54,10 +54,15 @@ std::string ChosenModel::folder_suffix() const {
   return name;
 }
 
-std::string ReflectanceYaml(const ChosenModel& model, int lobes) {
-  return (model.path == kDefaultModel
-              ? "{"
-              : "{model: " + Quoted(model.path) + ", ") +
+std::string ReflectanceYaml(const ChosenModel& model, int lobes, bool alone) {
+  std::string path = model.path;
+  if (path == kDefaultModel) {
+    // A problem that names none has the pair.
+    if (!alone) path.clear();
+  } else if (alone && fs::is_directory(path)) {
+    path = ModelsOfFolder(path)[0];
+  }
+  return (path.empty() ? "{" : "{model: " + Quoted(path) + ", ") +
          "lobes: " + std::to_string(lobes) + "}\n";
 }
 

@@ -26,8 +26,10 @@ struct ChosenModel {
   std::string folder_suffix() const;
 };
 
-// "{...}\n", the value of `reflectance` in a problem file.
-std::string ReflectanceYaml(const ChosenModel& model, int lobes);
+// "{...}\n", the value of `reflectance` in a problem file. alone: of a pair the
+// first only.
+std::string ReflectanceYaml(const ChosenModel& model, int lobes,
+                            bool alone = false);
 
 // Immutable.
 class HeldOutModels {

@@ -34,8 +34,8 @@ void Publish(ParetoPoint* p) {
 bool ParetoPoint::operator==(const ParetoPoint& o) const {
   const auto tie = [](const ParetoPoint& p) {
     return std::tie(p.estimator, p.method, p.seconds, p.size, p.map_width,
-                    p.lobes, p.prior, p.unet_channels, p.quadrature,
-                    p.tolerance, p.max_iterations);
+                    p.lobes, p.prior, p.unet_channels, p.quadrature, p.search,
+                    p.turns, p.models, p.tolerance, p.max_iterations);
   };
   return tie(*this) == tie(o);
 }
@@ -82,6 +82,11 @@ const std::vector<ParetoSetting>& ParetoSettings() {
       {"lobes-1", [](P* p) { p->lobes = 1; }},
       {"lobes-2", [](P* p) { p->lobes = 2; }},
       {"lobes-3", [](P* p) { p->lobes = 3; }},
+      {"models-1", [](P* p) { p->models = 1; }},
+      {"search-standard", [](P* p) { p->search = "standard"; }},
+      {"search-thorough", [](P* p) { p->search = "thorough"; }},
+      {"turns-0", [](P* p) { p->turns = 0; }},
+      {"turns-4", [](P* p) { p->turns = 4; }},
       {"unet-8", [](P* p) { SetNetwork(p, 8); }},
       {"unet-64", [](P* p) { SetNetwork(p, 64); }},
       {"quadrature-coarse", [](P* p) { p->quadrature = "coarse"; }},

@@ -15,7 +15,9 @@ struct ParetoPoint {
   int lobes = 2;
   std::string prior = "process";
   int unet_channels = 32;  // of prior unet
-  std::string quadrature = "standard";
+  std::string quadrature = "standard", search = "auto";
+  int turns = 2;
+  int models = 2;  // of a pair: both, or 1 that is named `default`
   double tolerance = 1e-4;
   int max_iterations = 1000;
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kDefaultSetting[] = "default";
 constexpr char kReference[] = "adam";
-constexpr int kParetoKeys = 14;
+constexpr int kParetoKeys = 17;
 
 struct NamedPoint {
   std::string name;
@@ -61,7 +61,7 @@ StatusOr<std::vector<NamedPoint>> ChoosePoints(
 std::string ProblemText(const ParetoSweepOptions& options, const SweepCase& c,
                         const ChosenModel& model, const ParetoPoint& p) {
   return "problem: joint\n" + ImageYaml(options) +
-         "reflectance: " + ReflectanceYaml(model, p.lobes) +
+         "reflectance: " + ReflectanceYaml(model, p.lobes, p.models == 1) +
          "illumination: {width: " + std::to_string(p.map_width) +
          ", height: " + std::to_string(p.map_width / 2) +
          ", prior: " + p.prior +
@@ -69,7 +69,8 @@ std::string ProblemText(const ParetoSweepOptions& options, const SweepCase& c,
               ? ", unet_channels: " + std::to_string(p.unet_channels)
               : "") +
          "}\nsolver: {estimator: " + p.estimator + ", method: " + p.method +
-         ", quadrature: " + p.quadrature +
+         ", quadrature: " + p.quadrature + ", search: " + p.search +
+         ", turns: " + std::to_string(p.turns) +
          ", seconds: " + NumberCell(p.seconds) +
          ", tolerance: " + NumberCell(p.tolerance) +
          ", max_iterations: " + std::to_string(p.max_iterations) + "}\n" +
@@ -83,7 +84,8 @@ std::string EstimateName(const NamedPoint& named, const ChosenModel& model) {
   return "pareto_" + named.name + "_" + p.estimator + "_" + p.method + "_" +
          NumberCell(p.seconds) + "s_" + std::to_string(p.map_width) + "_" +
          std::to_string(p.lobes) + "_" + p.prior +
-         std::to_string(p.unet_channels) + "_" + p.quadrature +
+         std::to_string(p.unet_channels) + "_" + p.quadrature + "_" +
+         p.search + std::to_string(p.turns) + "_" + std::to_string(p.models) +
          model.folder_suffix();
 }
 
@@ -103,6 +105,9 @@ NamedRow KeyRow(const ParetoSweepOptions& options, const SweepCase& c,
   row.Set("unet_channels",
           p.prior == "unet" ? std::to_string(p.unet_channels) : "");
   row.Set("quadrature", p.quadrature);
+  row.Set("search", p.search);
+  row.Set("turns", std::to_string(p.turns));
+  row.Set("models", std::to_string(p.models));
   return row;
 }
 
@@ -203,6 +208,9 @@ const std::vector<std::string>& ParetoColumns() {
       "prior",
       "unet_channels",
       "quadrature",
+      "search",
+      "turns",
+      "models",
       "seconds",
       "cpu_seconds",
       "peak_mb",

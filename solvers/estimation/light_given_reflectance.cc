@@ -157,6 +157,10 @@ void TakeRevision(RevisedReflectance revised, const SolveSetup& setup,
   if (revised.light.has_value()) {
     estimate->reflectance.light = *std::move(revised.light);
   }
+  if (!revised.initial_guess.empty()) {
+    estimate->reflectance.initial_guess = std::move(revised.initial_guess);
+    estimate->reflectance.initial_lobes = std::move(revised.initial_lobes);
+  }
   estimate->iterate.state.lobes = std::move(revised.lobes);
   estimate->iterate.scale = setup.initial_scale;
   BeginProcessMap(setup, revised.log_map.size(), estimate);

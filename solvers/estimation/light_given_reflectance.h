@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "ibrdf/base/status.h"
@@ -20,6 +21,9 @@ struct RevisedReflectance {
   // Where set: what the light's priors are then, and what the estimate has of
   // the light. Else that remains the one it came with.
   std::optional<LightPosterior> light = {};
+  // Where not empty: the material that these lobes came from, and its lobes.
+  std::string initial_guess = {};
+  std::vector<double> initial_lobes = {};
 };
 
 // What to make of the reflectance in view of a map that is not yet finished;

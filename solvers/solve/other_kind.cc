@@ -1,11 +1,10 @@
 #include "ibrdf/solvers/solve/other_kind.h"
 
-#include <glog/logging.h>
-
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/solvers/estimation/lobe_distance.h"
 #include "ibrdf/solvers/estimation/map_evidence.h"
@@ -96,10 +95,30 @@ StatusOr<HeldKind> Hold(const std::vector<double>& lobes,
       *setup, std::move(reflectance), kEvidenceMapWidth, &own);
   if (!estimate.ok()) return estimate.status();
   held.evidence = EvidenceOfMap(*setup, *estimate);
-  VLOG(1) << "-log evidence " << held.evidence.cost << ", misfit "
-          << held.evidence.misfit << ", scale " << held.evidence.scale
-          << ", deviations of the prior times " << held.evidence.prior_scale;
   return held;
+}
+
+void Report(const std::string& stage, const HeldKind& held,
+            const SolveSetup& setup, SolveContext* context) {
+  TraceEntry entry;
+  entry.stage = stage;
+  entry.pixels = setup.pixels.observed.num_valid;
+  entry.cost = entry.likelihood = held.evidence.cost;
+  entry.misfit = held.evidence.misfit;
+  entry.seconds = context->Elapsed();
+  context->Report(entry);
+}
+
+// At the gauge's level, as a search's initial lobes; empty where no material is
+// called so.
+std::vector<double> MaterialLobes(const std::string& name,
+                                  const ModelOptima& found) {
+  std::vector<double> lobes;
+  for (const auto& material : found.setup->materials.materials) {
+    if (material.name == name) lobes = ToVector(material.parameters);
+  }
+  if (!lobes.empty()) found.gauge->Fix(lobes.data());
+  return lobes;
 }
 
 bool TimeIsUp(const SolveContext& context) {
@@ -120,6 +139,7 @@ StatusOr<std::optional<RevisedReflectance>> FindOtherKind(
   const StatusOr<HeldKind> present = Hold(
       estimate.reflectance.lobes, &estimate.reflectance.light, setup, context);
   if (!present.ok()) return present.status();
+  Report("hold the estimate", *present, setup, context);
   const double misfit =
       Evaluate("map", setup, *context, estimate.iterate, estimate.pixels.get())
           .misfit;
@@ -128,9 +148,9 @@ StatusOr<std::optional<RevisedReflectance>> FindOtherKind(
   const Kind* best_kind = nullptr;
   for (const Kind& kind : kinds) {
     if (TimeIsUp(*context)) return none;
-    VLOG(1) << "another kind, from " << kind.name;
     StatusOr<HeldKind> held = Hold(kind.lobes, nullptr, setup, context);
     if (!held.ok()) return held.status();
+    Report("hold " + kind.name, *held, setup, context);
     if (held->evidence.cost < best.evidence.cost) {
       best = *std::move(held);
       best_kind = &kind;
@@ -148,6 +168,8 @@ StatusOr<std::optional<RevisedReflectance>> FindOtherKind(
   revised.log_map =
       best.light.mode.Resized(SizeOf(estimate.iterate.light, setup));
   revised.light = std::move(best.light);
+  revised.initial_lobes = MaterialLobes(best_kind->name, found);
+  if (!revised.initial_lobes.empty()) revised.initial_guess = best_kind->name;
   return std::optional<RevisedReflectance>(std::move(revised));
 }
 

@@ -58,6 +58,13 @@ TEST(HeldOutModels, AFolderOfTwoIsAPairThatHasSeenWhatEitherHas) {
   EXPECT_EQ("_pair", models.For("gold")->folder_suffix());
   EXPECT_EQ("alone/default.ibrdf", models.For("m1")->label);
   EXPECT_FALSE(models.For("m0").ok());
+  const auto yaml = [&](const std::string& material, bool alone) {
+    return ReflectanceYaml(*models.For(material), 2, alone);
+  };
+  const std::string first = dir.File("pair/default.ibrdf");
+  EXPECT_EQ(std::string::npos, yaml("gold", false).find(first));
+  EXPECT_NE(std::string::npos, yaml("gold", true).find(first));
+  EXPECT_EQ(yaml("m1", false), yaml("m1", true));
 }
 
 TEST(HeldOutModels, OneModelServesAll) {
@@ -65,6 +72,9 @@ TEST(HeldOutModels, OneModelServesAll) {
   EXPECT_EQ("default", HeldOutModels::Open({}).value().For("m0")->label);
   EXPECT_EQ("{lobes: 3}\n",
             ReflectanceYaml(*HeldOutModels::Open({}).value().For("m0"), 3));
+  EXPECT_EQ(
+      "{model: \"default\", lobes: 3}\n",
+      ReflectanceYaml(*HeldOutModels::Open({}).value().For("m0"), 3, true));
   WriteFold(dir, "one.ibrdf", 2, 0);
   const HeldOutModels one =
       HeldOutModels::Open({dir.File("one.ibrdf"), ""}).value();

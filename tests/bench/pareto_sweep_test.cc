@@ -97,6 +97,10 @@ TEST_F(ParetoSweepTest, ProblemsSayWhatRowsSay) {
                 problem->illumination.unet_channels);
     }
     EXPECT_EQ(Cell(row, "quadrature"), QuadratureLevelName(solver.quadrature));
+    EXPECT_EQ(Cell(row, "search"), SolverSearchName(solver.search));
+    EXPECT_EQ(std::stoi(Cell(row, "turns")), solver.turns);
+    EXPECT_EQ(Cell(row, "models") == "1",
+              problem->reflectance.model == "default");
     EXPECT_EQ(std::stoi(Cell(row, "size")), run.of.size);
     const bool own_case = run.of.name != "paint_a";
     EXPECT_EQ(own_case, run.of.size != options_.size);

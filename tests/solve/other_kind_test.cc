@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -41,9 +42,10 @@ class OtherKindTest : public ::testing::Test {
     return EstimateLight(*setup_, std::move(reflectance), context_.get())
         .value();
   }
-  void AddCoarse(const std::vector<double>& lobes, double cost) {
+  void AddCoarse(const std::vector<double>& lobes, double cost,
+                 const std::string& name = "coarse") {
     CoarseOptimum optimum;
-    optimum.name = "coarse";
+    optimum.name = name;
     optimum.cost = cost;
     optimum.parameters = lobes;
     found_.estimate.coarse_optima.push_back(optimum);
@@ -79,6 +81,14 @@ TEST_F(OtherKindTest, TheReflectanceOfTheImageTakesThePlaceOfAWrongOne) {
   EXPECT_EQ((MapSize{16, 8}), other->log_map.size());
   ASSERT_TRUE(other->light.has_value());
   EXPECT_GT(other->light->log_std.num_pixels(), 0u);
+  // No material is called so.
+  EXPECT_EQ("", other->initial_guess);
+  // What takes seconds is told.
+  const std::vector<TraceEntry>& trace = context_->trace();
+  ASSERT_LE(2u, trace.size());
+  EXPECT_EQ("hold the estimate", trace[trace.size() - 2].stage);
+  EXPECT_EQ("hold coarse", trace.back().stage);
+  EXPECT_LT(trace.back().cost, trace[trace.size() - 2].cost);
 }
 
 TEST_F(OtherKindTest, TheReflectanceOfTheImageKeepsItsPlace) {
@@ -120,8 +130,9 @@ TEST_F(OtherKindTest, AThoroughSearchAsksBeforeTheFirstTurn) {
   EXPECT_FALSE((*turned)->light.has_value());
 }
 
-TEST_F(OtherKindTest, TheEstimateHasItsLobesAndItsLight) {
-  AddCoarse(truth_, 0.0);
+TEST_F(OtherKindTest, TheEstimateHasItsLobesItsLightAndItsBeginning) {
+  const MaterialPrior::Material& material = setup_->materials.materials.back();
+  AddCoarse(truth_, 0.0, material.name);
   ReflectanceEstimate reflectance;
   reflectance.lobes = reflectance.initial_lobes = wrong_;
   int calls = 0;
@@ -135,6 +146,13 @@ TEST_F(OtherKindTest, TheEstimateHasItsLobesAndItsLight) {
           .value();
   ExpectNear(truth_, after.reflectance.lobes);
   EXPECT_GT(after.reflectance.light.log_std.num_pixels(), 0u);
+  EXPECT_EQ(material.name, after.reflectance.initial_guess);
+  std::vector<double> initial(
+      material.parameters.data(),
+      material.parameters.data() + material.parameters.size());
+  found_.gauge->Fix(initial.data());
+  EXPECT_EQ(initial, after.reflectance.initial_lobes);
+  EXPECT_EQ(initial, after.reference.state.lobes);
   EXPECT_LT(Evaluate("", *setup_, *context_, after.iterate, after.pixels.get())
                 .misfit,
             0.025);
