@@ -97,7 +97,10 @@ std::string MethodNames() {
   std::string methods = "flow; flow_lambertian; flow_free; ";
   for (const auto& fitter : BaselineFitters()) {
     const std::string name = fitter->method();
-    if (methods.find(name + ";") == std::string::npos) methods += name + "; ";
+    // Not as the end of a longer name.
+    if ((" " + methods).find(" " + name + ";") == std::string::npos) {
+      methods += name + "; ";
+    }
   }
   return methods;
 }
