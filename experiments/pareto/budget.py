@@ -17,12 +17,12 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from plot import BUDGETS, PANELS, family
 from results import median, numbers, open_pyplot, percentile, read_rows
 
 KINDS = (("matte", 10.0), ("glossy", 4000.0), ("mirror-like", float("inf")))
-ERRORS = (("brdf_log_rmse_aligned", "BRDF log-RMSE, aligned"),
-          ("illumination_relative_log_rmse_aligned",
-           "map, relative log-RMSE, aligned"))
+ERRORS = PANELS[:2]  # of BRDF and map
 THETA_H, THETA_D, PHI_D = 90, 90, 180  # bins of a table
 HEADER = 12  # bytes
 # Of luminance, times the scale of the file's channels.
@@ -51,8 +51,7 @@ def kind(path):
 
 def by_kind(rows, data):
     """{kind: {budget in seconds: rows}}, budgets as numbers."""
-    budgets = [row for row in rows if row["setting"] == "default" or
-               row["setting"].startswith("seconds-")]
+    budgets = [row for row in rows if family(row["setting"]) in BUDGETS]
     kinds = {m: kind(Path(data) / f"{m}.binary")
              for m in {row["material"] for row in budgets}}
     out = {name: {} for name, _ in KINDS}

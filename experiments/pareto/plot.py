@@ -34,8 +34,8 @@ FAMILIES = {"default": "tab:red", "method": "tab:purple",
             "prior": "tab:olive", "unet": "tab:pink",
             "quadrature": "tab:orange", "small": "tab:gray",
             "models": "tab:blue", "search": "tab:green", "turns": "tab:orange"}
-
-
+# Families that differ in the time that a solve may take, and in nothing else.
+BUDGETS = ("default", "seconds")
 BAND = "_quartiles"  # after a column's name: the lower and the upper one
 
 
@@ -95,7 +95,7 @@ def draw(points, num_cases, out):
         axes.step([x for x, _ in best], [y for _, y in best], where="post",
                   color="0.6", lw=1.2, zorder=1, label="Pareto front")
         budget = sorted(at for name, at in shown
-                        if family(name) in ("default", "seconds"))
+                        if family(name) in BUDGETS)
         if len(budget) > 1:
             axes.plot(*zip(*budget), ":", color="tab:red", lw=1, zorder=1,
                       label="other time budgets")

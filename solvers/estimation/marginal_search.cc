@@ -100,12 +100,7 @@ ModelOptima OptimaOf(const ReflectanceSearchResult& found,
   out.lobes = found.parameters;
   out.light = LightOf(found, optima.gauge->Fix(out.lobes.data()));
   out.initial_guess = found.initial_guess;
-  const auto& materials = setup.materials.materials;
-  const auto initial = std::find_if(
-      materials.begin(), materials.end(),
-      [&](const auto& m) { return m.name == found.initial_guess; });
-  out.initial_lobes = ToVector(initial->parameters);
-  optima.gauge->Fix(out.initial_lobes.data());
+  out.initial_lobes = optima.LobesOf(out.initial_guess);
   out.covariance = found.covariance;
   out.ranking = RankMaterials(found.candidates);
   out.coarse_optima = found.coarse_optima;
@@ -192,6 +187,14 @@ StatusOr<std::vector<ModelOptima>> Search(
 
 }  // namespace
 
+std::vector<double> ModelOptima::LobesOf(const std::string& material) const {
+  const MaterialPrior::Material* found = setup->materials.Find(material);
+  if (found == nullptr) return {};
+  std::vector<double> lobes = ToVector(found->parameters);
+  if (gauge != nullptr) gauge->Fix(lobes.data());
+  return lobes;
+}
+
 StatusOr<ReflectanceEstimate> EstimateReflectance(const SolveSetup& setup,
                                                   SolveContext* context,
                                                   const FirstPaint* paint) {
@@ -242,9 +245,7 @@ double CoarseEvidence(const SolveSetup& setup, SolveContext* context,
 ReflectanceEstimate MeanMaterial(const SolveSetup& setup) {
   ReflectanceEstimate out;
   out.initial_guess = SpreadMaterials(*setup.problem->model, 1).front().name;
-  for (const MaterialPrior::Material& m : setup.materials.materials) {
-    if (m.name == out.initial_guess) out.lobes = ToVector(m.parameters);
-  }
+  out.lobes = ToVector(setup.materials.Find(out.initial_guess)->parameters);
   out.initial_lobes = out.lobes;
   return out;
 }

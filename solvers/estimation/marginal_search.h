@@ -28,6 +28,9 @@ struct ModelOptima {
   // Its materials say the level; null under a known light, which tells it.
   std::shared_ptr<const LevelGauge> gauge;
   ReflectanceEstimate estimate;
+
+  // A material's, at the gauge's level; empty where none is called so.
+  std::vector<double> LobesOf(const std::string& material) const;
 };
 
 // Whether what a search found calls for a second one.

@@ -117,13 +117,7 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
   LimitIterations(problem.solver.max_iterations, &o);
   o.report = [&setup, context](const std::string& stage, double cost,
                                double misfit) {
-    TraceEntry entry;
-    entry.stage = stage;
-    entry.pixels = setup.pixels.observed.num_valid;
-    entry.cost = entry.likelihood = cost;
-    entry.misfit = misfit;
-    entry.seconds = context->Elapsed();
-    context->Report(entry);
+    context->Report(stage, setup.pixels.observed.num_valid, cost, misfit);
   };
   return o;
 }

@@ -28,4 +28,15 @@ void SolveContext::Report(const TraceEntry& entry) {
   if (progress_) progress_(entry, std::min(entry.seconds / budget_, 1.0));
 }
 
+void SolveContext::Report(const std::string& stage, int pixels, double cost,
+                          double misfit) {
+  TraceEntry entry;
+  entry.stage = stage;
+  entry.pixels = pixels;
+  entry.cost = entry.likelihood = cost;
+  entry.misfit = misfit;
+  entry.seconds = Elapsed();
+  Report(entry);
+}
+
 }  // namespace ibrdf

@@ -51,6 +51,9 @@ class SolveContext {
 
   // Adds a line to the trace and calls `progress`.
   void Report(const TraceEntry& entry);
+  // The same of a stage that knows these alone: the cost, nats, is all the
+  // likelihood's.
+  void Report(const std::string& stage, int pixels, double cost, double misfit);
   const std::vector<TraceEntry>& trace() const { return trace_; }
 
  private:

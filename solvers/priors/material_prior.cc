@@ -147,6 +147,13 @@ void MaterialPrior::AddWallInformation(const Eigen::VectorXd& x,
   }
 }
 
+const MaterialPrior::Material* MaterialPrior::Find(
+    const std::string& name) const {
+  const auto at = std::find_if(materials.begin(), materials.end(),
+                               [&](const auto& m) { return m.name == name; });
+  return at != materials.end() ? &*at : nullptr;
+}
+
 double MaterialPrior::Cost(const Eigen::VectorXd& x,
                            Eigen::VectorXd* gradient) const {
   const auto lower = factor.triangularView<Eigen::Lower>();

@@ -32,6 +32,8 @@ struct MaterialPrior {
     return LobeLayout::OfSize(mean.size() / num_materials, code_size);
   }
   int num_lobes() const { return layout().num_lobes; }
+  // The material of this name; null where there is none.
+  const Material* Find(const std::string& name) const;
 
   // 1/2 |factor^-1 (x - mean)|^2 + 1/2 wall^2 sum_k max(0, |z_k| - 1)^2;
   // gradient (may be null) is added to.

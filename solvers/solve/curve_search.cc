@@ -224,11 +224,7 @@ StatusOr<std::vector<CurveEstimate>> FindCurves(const InverseProblem& problem,
   const auto cost = [&](const ResponseDefinition& curve) {
     if (!std::exchange(first, false) && stop()) return kInfinity;
     const double found = CostOf(WithCurve(problem, curve), context);
-    TraceEntry entry;
-    entry.stage = StageName(curve);
-    entry.cost = entry.likelihood = found;
-    entry.seconds = context->Elapsed();
-    context->Report(entry);
+    context->Report(StageName(curve), 0, found, 0.0);
     return found;
   };
   std::vector<CurveEstimate> found;

@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "ibrdf/base/eigen_vectors.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/solvers/estimation/lobe_distance.h"
 #include "ibrdf/solvers/estimation/map_evidence.h"
@@ -100,25 +99,8 @@ StatusOr<HeldKind> Hold(const std::vector<double>& lobes,
 
 void Report(const std::string& stage, const HeldKind& held,
             const SolveSetup& setup, SolveContext* context) {
-  TraceEntry entry;
-  entry.stage = stage;
-  entry.pixels = setup.pixels.observed.num_valid;
-  entry.cost = entry.likelihood = held.evidence.cost;
-  entry.misfit = held.evidence.misfit;
-  entry.seconds = context->Elapsed();
-  context->Report(entry);
-}
-
-// At the gauge's level, as a search's initial lobes; empty where no material is
-// called so.
-std::vector<double> MaterialLobes(const std::string& name,
-                                  const ModelOptima& found) {
-  std::vector<double> lobes;
-  for (const auto& material : found.setup->materials.materials) {
-    if (material.name == name) lobes = ToVector(material.parameters);
-  }
-  if (!lobes.empty()) found.gauge->Fix(lobes.data());
-  return lobes;
+  context->Report(stage, setup.pixels.observed.num_valid, held.evidence.cost,
+                  held.evidence.misfit);
 }
 
 bool TimeIsUp(const SolveContext& context) {
@@ -168,7 +150,7 @@ StatusOr<std::optional<RevisedReflectance>> FindOtherKind(
   revised.log_map =
       best.light.mode.Resized(SizeOf(estimate.iterate.light, setup));
   revised.light = std::move(best.light);
-  revised.initial_lobes = MaterialLobes(best_kind->name, found);
+  revised.initial_lobes = found.LobesOf(best_kind->name);
   if (!revised.initial_lobes.empty()) revised.initial_guess = best_kind->name;
   return std::optional<RevisedReflectance>(std::move(revised));
 }

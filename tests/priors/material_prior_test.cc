@@ -105,6 +105,16 @@ TEST(MaterialPrior, CostAndResidualsAgreeInsideAndBeyondTheBall) {
   }
 }
 
+TEST(MaterialPrior, FindsAMaterialByName) {
+  MaterialPrior prior;
+  prior.materials = {{"felt", Eigen::VectorXd::Constant(2, 1.0)},
+                     {"steel", Eigen::VectorXd::Constant(2, 2.0)}};
+  ASSERT_NE(nullptr, prior.Find("steel"));
+  EXPECT_EQ(2.0, prior.Find("steel")->parameters[0]);
+  EXPECT_EQ(nullptr, prior.Find("stee"));
+  EXPECT_EQ(nullptr, MaterialPrior().Find("steel"));
+}
+
 TEST(MaterialPrior, KnowsHowLobesGoTogether) {
   NeuralBrdfModel model = TinyModel(40);
   model.fit_lobes = 2;

@@ -39,10 +39,9 @@ Eigen::MatrixXd NormalMatrix(const ceres::CostFunction& cost,
 
 Eigen::VectorXd ParametersOf(const MaterialPrior& prior,
                              const std::string& name) {
-  for (const MaterialPrior::Material& m : prior.materials) {
-    if (m.name == name) return m.parameters;
-  }
-  LOG(FATAL) << "no material " << name;
+  const MaterialPrior::Material* material = prior.Find(name);
+  CHECK(material != nullptr) << "no material " << name;
+  return material->parameters;
 }
 
 // At the minimum that the descent finds from x, by central differences of the
