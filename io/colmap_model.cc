@@ -139,7 +139,7 @@ StatusOr<std::vector<CalibratedView>> ViewsOf(const ColmapFile& cameras_file,
   return views;
 }
 
-// ColmapLines of text, counted.
+// The lines of a text file, counted.
 class ColmapLines {
  public:
   explicit ColmapLines(const ColmapFile& file)

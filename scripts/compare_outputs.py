@@ -1,7 +1,11 @@
 #!/usr/bin/env python3
-"""Records what the programs write for a fixed list of problems and compares two such records byte for byte.
+"""Records what the programs write for a fixed list of problems and compares two such records.
 
-    scripts/compare_outputs.py record BIN OUT [--only a,b]  runs the programs of folder BIN, writes outputs below OUT
+Images, tables and models are compared byte for byte, and so is JSON but for the clock's fields. In pages and on
+terminals percentages and numbers in table cells are passed over, as many are times: result.json has the metrics.
+
+    scripts/compare_outputs.py record BIN OUT [--only a,b]  runs the programs of folder BIN, writes outputs below OUT,
+                                                            which is new, empty or an earlier record
     scripts/compare_outputs.py compare OUT OTHER            status 1 where a file differs, with the names of those
 
 --only records the named cases alone; files that only one of two records has are then no difference.
@@ -105,9 +109,11 @@ RENDERS = {
 class Recorder:
     def __init__(self, binaries, out):
         self.bin, self.out = binaries.resolve(), out.resolve()
+        self.inputs = self.out / "inputs"
+        if self.out.exists() and any(self.out.iterdir()) and not (self.inputs / "torus.obj").exists():
+            sys.exit(f"error: {out}: expected an empty folder or an earlier record")
         shutil.rmtree(self.out, ignore_errors=True)
         self.out.mkdir(parents=True)
-        self.inputs = self.out / "inputs"
         self.inputs.mkdir()
 
     def run(self, name, program, *arguments):
@@ -115,6 +121,7 @@ class Recorder:
                               cwd=self.inputs)
         text = f"exit {done.returncode}\n{done.stdout}{done.stderr}"
         (self.out / f"{name}.txt").write_text(text.replace(str(self.out), "OUT").replace(str(self.bin), "BIN"))
+        return done.returncode
 
     def render(self, name, scene, sets):
         (self.out / name).mkdir()
@@ -137,8 +144,10 @@ class Recorder:
         torus(self.inputs / "torus.obj")
         for scene, text in SCENES.items():
             (self.inputs / f"{scene}.yaml").write_text(text)
-            self.run(f"prepare_{scene}", "ibrdf_render", "--scene", f"{scene}.yaml", "--out", f"{scene}.exr", "--mask",
-                     f"{scene}.png", "--illumination-out", f"{scene}_map.exr", "--brdf-out", f"{scene}.binary")
+            if self.run(f"prepare_{scene}", "ibrdf_render", "--scene", f"{scene}.yaml", "--out", f"{scene}.exr",
+                        "--mask", f"{scene}.png", "--illumination-out", f"{scene}_map.exr", "--brdf-out",
+                        f"{scene}.binary") != 0:
+                sys.exit(f"error: the scene {scene} was not rendered; see {self.out}/prepare_{scene}.txt")
         tables, maps = self.inputs / "tables", self.inputs / "maps"
         tables.mkdir()
         maps.mkdir()
@@ -214,10 +223,10 @@ def record(binaries, out, only):
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         jobs = [pool.submit(recorder.solve, name, *of) for name, of in SOLVES.items() if wanted(name)]
         jobs += [pool.submit(recorder.render, name, *of) for name, of in RENDERS.items() if wanted(name)]
-        if wanted("others"):
-            jobs.append(pool.submit(recorder.others))
         for job in jobs:
             job.result()
+    if wanted("others"):
+        recorder.others()
     return 0
 
 

@@ -7,8 +7,6 @@
 #include <utility>
 
 namespace ibrdf {
-namespace {}  // namespace
-
 double Percentile(std::vector<double> values, double percentile) {
   const size_t rank =
       std::min(values.size() - 1,

@@ -66,6 +66,7 @@ std::vector<LabelCandidate> CandidatesOf(const SolveSetup& setup, int material,
     o.coarse_stages[k].iterations =
         std::min(o.coarse_stages[k].iterations, kAloneStages[k].iterations);
   }
+  LimitIterations(alone.solver.max_iterations, &o);
   o.report = [report = o.report, label = alone.materials.front().value](
                  const std::string& stage, double cost, double misfit) {
     report("label " + label + ": " + stage, cost, misfit);

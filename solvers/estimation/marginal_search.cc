@@ -231,6 +231,7 @@ double CoarseEvidence(const SolveSetup& setup, SolveContext* context,
   const InverseProblem& problem = *setup.problem;
   ReflectanceSearchOptions o = CoarseSearchOptions(1.0, setup, context);
   o.coarse_stages = kEvidenceStages;
+  LimitIterations(problem.solver.max_iterations, &o);
   o.report = {};
   if (paint != nullptr) o.paint = *paint;
   const MaterialPrior known =

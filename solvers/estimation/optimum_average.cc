@@ -26,18 +26,18 @@ struct Optimum {
   double weight = 0.0;  // > 0
 };
 
-// Those that count, at least one.
+// Those that count; none where no candidate has a finite cost.
 std::vector<Optimum> WeightedOptima(const std::vector<ModelOptima>& models) {
   std::vector<Optimum> optima;
   std::vector<double> costs;
   for (size_t m = 0; m < models.size(); ++m) {
     for (const MaterialCandidate& c : models[m].estimate.candidates) {
+      if (!std::isfinite(c.cost)) continue;
       optima.push_back({m, &c});
       costs.push_back(c.cost);
     }
   }
   const std::vector<double> weights = OptimumWeights(costs);
-  CHECK(!optima.empty());
   for (size_t k = 0; k < optima.size(); ++k) optima[k].weight = weights[k];
   optima.erase(std::remove_if(optima.begin(), optima.end(),
                               [](const Optimum& o) { return o.weight == 0.0; }),
@@ -221,6 +221,11 @@ OptimumAverage AverageOptima(const std::vector<ModelOptima>& models) {
   const std::vector<Optimum> optima = WeightedOptima(models);
   OptimumAverage out;
   out.model_weights.assign(models.size(), 0.0);
+  if (optima.empty()) {
+    out.model_weights.front() = 1.0;
+    out.estimate = models.front().estimate;
+    return out;
+  }
   const Optimum* best = &optima.front();
   for (const Optimum& optimum : optima) {
     out.model_weights[optimum.model] += optimum.weight;

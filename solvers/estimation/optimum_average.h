@@ -24,8 +24,9 @@ struct OptimumAverage {
   ReflectanceEstimate estimate;
 };
 
-// models: of one search, at least one. Each must have candidates of finite
-// cost, and a gauge where the light is unknown.
+// models: of one search, at least one, each with a gauge where the light is
+// unknown. Candidates of no finite cost do not count; where there are no others
+// the estimate is the first model's.
 OptimumAverage AverageOptima(const std::vector<ModelOptima>& models);
 
 }  // namespace ibrdf

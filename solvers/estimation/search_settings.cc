@@ -94,15 +94,6 @@ void LimitBins(size_t views, NormalBinOptions* bins) {
   bins->bins_across = BinsAcrossView(bins->bins_across, views);
 }
 
-// The first stages of a small budget of iterations are cut short alike.
-void LimitIterations(int iterations, ReflectanceSearchOptions* options) {
-  if (iterations == 0) options->coarse_stages = {{1, 0}};
-  for (SearchStage& stage : options->coarse_stages) {
-    stage.iterations = std::min(stage.iterations, 5 * iterations);
-  }
-  options->fine_iterations = std::min(options->fine_iterations, 5 * iterations);
-}
-
 }  // namespace
 
 ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
@@ -120,6 +111,15 @@ ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
     context->Report(stage, setup.pixels.observed.num_valid, cost, misfit);
   };
   return o;
+}
+
+void LimitIterations(int max_iterations, ReflectanceSearchOptions* options) {
+  if (max_iterations == 0) options->coarse_stages = {{1, 0}};
+  const int most = 5 * max_iterations;
+  for (SearchStage& stage : options->coarse_stages) {
+    stage.iterations = std::min(stage.iterations, most);
+  }
+  options->fine_iterations = std::min(options->fine_iterations, most);
 }
 
 void AdaptResolution(const InverseProblem& problem, size_t views,

@@ -14,6 +14,10 @@ namespace ibrdf {
 ReflectanceSearchOptions SearchOptions(double share, const SolveSetup& setup,
                                        SolveContext* context);
 
+// Cuts the stages short as solver.max_iterations asks for; 0: the initial guess
+// is kept.
+void LimitIterations(int max_iterations, ReflectanceSearchOptions* options);
+
 // A resolution of a search for the problem as if it had so many photographs:
 // what the object hides of the light, the level of the quadrature, and bins,
 // which several views share.

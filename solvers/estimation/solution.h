@@ -38,8 +38,11 @@ struct TraceEntry {
 struct Alternative {
   std::string start;  // training material
   double cost = 0.0;  // -log posterior, nats, above the best one's
-  double brdf_log_difference = 0.0;          // as ibrdf_eval's aligned log-RMSE
+  // From the estimate, which may be a mean of optima or a later one, and from
+  // the best optimum, as ibrdf_eval's aligned log-RMSE.
+  double brdf_log_difference = 0.0;
   std::vector<double> lobe_parameters = {};  // as LobeModel
+  double difference_from_best = 0.0;
 };
 
 // A response curve that explains the image's codes.
@@ -74,9 +77,9 @@ struct MaterialSolution {
   // The spread of that posterior, see reflectance_spread.h; NaN where it was
   // not found.
   double spread = std::numeric_limits<double>::quiet_NaN();
-  // One material under a known light: misfit * sqrt(correlation of neighbouring
-  // pixels' residuals), the part of the misfit that is no noise, of the first
-  // model searched. NaN elsewhere.
+  // One material: misfit * sqrt(correlation of neighbouring pixels'
+  // residuals), the part of the misfit that is no noise; under a known light of
+  // the first model searched. NaN elsewhere.
   double structured_misfit = std::numeric_limits<double>::quiet_NaN();
   // Joint problems: other optima, with labels of all materials at once.
   std::vector<Alternative> alternatives;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/solvers/estimation/view_bins.h"
 #include "ibrdf/solvers/priors/embedding_prior.h"
@@ -19,9 +20,9 @@ constexpr double kEpsilonShare = 1e-5;  // of the mean radiance
 
 // The spacing of directions that stand for a bright texel: finer than the
 // narrowest lobes.
-constexpr double kBrightSpacing = 0.75 * M_PI / 180.0;
+constexpr double kBrightSpacing = 0.75 * kPi / 180.0;
 int BrightSamplesPerSide(int map_height) {
-  const double texel = M_PI / map_height;
+  const double texel = kPi / map_height;
   return 2 * static_cast<int>(std::ceil(texel / kBrightSpacing));
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/base/pi.h"
 
 namespace ibrdf {
 namespace {
@@ -40,8 +41,7 @@ std::string Describe(const ApproximationPlan& plan) {
       return "";
     case ApproximationVerdict::kNarrowLobe:
       return kBoth + Format("not within %.4f for a lobe of %.1f degrees",
-                            plan.log_error,
-                            plan.lobe_half_width * 180.0 / M_PI);
+                            plan.log_error, plan.lobe_half_width * 180.0 / kPi);
     case ApproximationVerdict::kPredictedOff:
       return kBoth + Format("not within %.4f: predicted at best %.4f",
                             plan.log_error, plan.predicted_error);

@@ -15,6 +15,9 @@ namespace {
 // A step must bring this share of the gain that the slope promises.
 constexpr double kSufficientGain = 1e-3;
 constexpr double kSmallestStep = 1e-3;
+// A gain below options.least_gain is the end of a descent only where the slope
+// promises no more than so many times that: in a curved valley steps are short.
+constexpr double kPromise = 10.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Newton's direction by the information, or downhill where there is none.
@@ -69,7 +72,9 @@ MarginalDescent Descend(const MarginalObjective& objective,
     descent.cost = cost;
     ++descent.iterations;
     longest = std::min(1.0, 2.0 * step);
-    small_gains = before - cost < options.least_gain ? small_gains + 1 : 0;
+    const bool settled = before - cost < options.least_gain &&
+                         0.5 * slope < kPromise * options.least_gain;
+    small_gains = settled ? small_gains + 1 : 0;
   }
   return descent;
 }

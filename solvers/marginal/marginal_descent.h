@@ -9,7 +9,7 @@ namespace ibrdf {
 
 struct MarginalDescentOptions {
   int max_iterations = 12;
-  // Ends where two steps in a row gain less, nats.
+  // Ends where two steps in a row gain less, nats, and promised little more.
   double least_gain = 0.05;
   // Checked before each iteration; true ends with the best so far.
   std::function<bool()> should_stop;

@@ -22,9 +22,6 @@ constexpr double kWeightOfKind = 5000.0;
 // As in shading_light.cc: first of nearly one colour; then wider, as the
 // light's colour is known.
 constexpr double kFirstAlike = 0.06, kNextAlike = 0.09;
-// Where normals turn by more from pixel to pixel, radians, neighbours say
-// little of each other.
-constexpr double kSharpTurn = 0.05;
 // Differences beyond are paint's: of log luminance and of log chroma, between
 // points of one colour and between neighbours.
 constexpr double kLuminanceOfColour = 0.15, kChromaOfColour = 0.05;
@@ -134,8 +131,7 @@ class ShadingFit {
     for (size_t k = 0; k < neighbours.size(); k += stride) {
       const NeighbourPair& pair = neighbours[k];
       if (!used_[pair.first] || !used_[pair.second]) continue;
-      const double turn = pair.turn / kSharpTurn;
-      Add(pair.first, pair.second, 1.0 / (1.0 + turn * turn), kLuminanceOfStep,
+      Add(pair.first, pair.second, WeightOfTurn(pair.turn), kLuminanceOfStep,
           kChromaOfStep);
     }
     Normalise(0);

@@ -109,16 +109,16 @@ std::string ColourVerdict(const PhotographCheck& check) {
          Two(kSeveralMaterials) + ", " + share + ")";
 }
 
-std::vector<std::string> CheckLines(const PhotographCheck& check) {
-  std::vector<std::string> lines = {"image         " + ImageLine(check),
-                                    "object        " + ObjectLine(check),
-                                    "its pixels    " + CountsLine(check),
-                                    "like normals  " + SpreadLine(check),
-                                    "materials     " + ColourVerdict(check)};
+std::vector<CheckFinding> CheckFindings(const PhotographCheck& check) {
+  std::vector<CheckFinding> findings = {{"image", ImageLine(check)},
+                                        {"object", ObjectLine(check)},
+                                        {"its pixels", CountsLine(check)},
+                                        {"like normals", SpreadLine(check)},
+                                        {"materials", ColourVerdict(check)}};
   if (!check.normals.empty()) {
-    lines.push_back("normals       " + NormalsLine(check));
+    findings.push_back({"normals", NormalsLine(check)});
   }
-  return lines;
+  return findings;
 }
 
 std::vector<std::string> CheckWarnings(const PhotographCheck& check,

@@ -7,8 +7,12 @@
 
 namespace ibrdf {
 
-// A short block for a terminal, a line each, without line ends.
-std::vector<std::string> CheckLines(const PhotographCheck& check);
+// What the check says of one thing.
+struct CheckFinding {
+  std::string subject;  // "image", "its pixels", ...
+  std::string text;     // without line ends
+};
+std::vector<CheckFinding> CheckFindings(const PhotographCheck& check);
 
 // What an estimate takes an object for: a single material is misled by paint.
 enum class MaterialsSought { kOne, kPainted, kLabelled };

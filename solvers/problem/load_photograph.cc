@@ -59,12 +59,14 @@ StatusOr<ResponseDefinition> StatedCurve(const std::string& path,
       break;
   }
   return InvalidInput(
-      path, std::string("the response curve of a ") + NameOf(photo.format) +
-                " file of " + std::to_string(photo.bits) + " bits is not " +
-                (photo.curve.source.empty()
-                     ? std::string("stated")
-                     : "understood (" + photo.curve.source + ")") +
-                "; say image.response, as srgb or linear");
+      path,
+      std::string("the response curve of a ") + NameOf(photo.format) +
+          " file of " + std::to_string(photo.bits) + " bits is not " +
+          (photo.curve.source.empty()
+               ? std::string("stated")
+               : "understood (" + photo.curve.source + ")") +
+          "; say image.response (--response on the command line), as srgb or "
+          "linear");
 }
 
 StatusOr<ResponseCurve> CurveOf(const ImageSpec& spec, const Photo& photo,

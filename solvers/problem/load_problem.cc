@@ -295,7 +295,8 @@ StatusOr<InverseProblem> LoadInverseProblem(const Problem& problem,
   IBRDF_RETURN_IF_ERROR(LoadReflectance(problem, &inverse));
   IBRDF_RETURN_IF_ERROR(LoadIllumination(problem, &inverse));
   IBRDF_RETURN_IF_ERROR(PlanAndTraceEffects(problem, object.scene, &inverse));
-  IBRDF_RETURN_IF_ERROR(FindDarkPixels(problem.illumination.ambient, &inverse));
+  const Status dark = FindDarkPixels(problem.illumination.ambient, &inverse);
+  if (!dark.ok()) return InvalidInput(problem.path, dark.message());
   return inverse;
 }
 

@@ -67,13 +67,22 @@ Photograph EmptySheet(const std::vector<ViewPhotograph>& views,
 StatusOr<PhotographSheet> LoadPhotographSheet(const Problem& problem) {
   std::vector<ViewPhotograph> views;
   std::vector<std::string> warnings;
-  IBRDF_RETURN_IF_ERROR(ReadViewPhotographs(
-      problem,
-      [&views](ViewPhotograph view) {
-        views.push_back(std::move(view));
-        return OkStatus();
-      },
-      &warnings));
+  int64_t pixels = 0;
+  // Too many are refused before they fill the memory.
+  const auto take = [&](ViewPhotograph view) {
+    const Image& radiance = view.photograph.radiance;
+    pixels += int64_t{radiance.width} * radiance.height;
+    if (pixels > kMaxImagePixels) {
+      return InvalidInput(
+          problem.path + ": views (all together)",
+          "expected at most " + std::to_string(kMaxImagePixels) +
+              " pixels, found " + std::to_string(pixels) + " up to view " +
+              view.name + "; give fewer or smaller images");
+    }
+    views.push_back(std::move(view));
+    return OkStatus();
+  };
+  IBRDF_RETURN_IF_ERROR(ReadViewPhotographs(problem, take, &warnings));
   std::vector<SheetView> placed;
   for (const ViewPhotograph& view : views) {
     const Image& radiance = view.photograph.radiance;

@@ -134,8 +134,8 @@ void PrintLook(const AskedProblem& asked, const PhotographedObject& object) {
       std::printf("%s\n", note.c_str());
     }
   }
-  for (const std::string& line : CheckLines(object.look->check)) {
-    std::printf("  %s\n", line.c_str());
+  for (const CheckFinding& finding : CheckFindings(object.look->check)) {
+    std::printf("  %-12s  %s\n", finding.subject.c_str(), finding.text.c_str());
   }
   std::fflush(stdout);
 }
@@ -186,6 +186,9 @@ Status SolveAndWrite(const Problem& problem, const Truth& truth,
   const std::string& folder = flags.folder();
   const StatusOr<Solution> estimate = SolveInverseRendering(
       inverse, PrintedProgress(flags.common.quiet), &stop_requested);
+  if (estimate.status().code() == StatusCode::kInvalidInput) {
+    return InvalidInput(problem.path, estimate.status().message());
+  }
   if (!estimate.ok()) return estimate.status();
   if (!estimate->curves.empty()) {
     inverse = WithCurve(inverse, estimate->curves.front().curve);

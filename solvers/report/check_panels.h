@@ -11,7 +11,7 @@
 namespace ibrdf {
 
 // The photograph, its object's 99th percentile white; pixels that are no number
-// are black.
+// are white.
 Image ExposedPhotograph(const Image& radiance, const Mask& mask);
 
 // Normals as (n + 1) / 2 in sRGB over the darkened photograph.

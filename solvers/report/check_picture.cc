@@ -311,11 +311,9 @@ class CheckDrawing {
     const int width =
         columns * (kPanel + kPanelGap) - kPanelGap - kVerdictIndent;
     std::vector<Verdict> verdicts;
-    for (const std::string& line : CheckLines(check_)) {
-      constexpr size_t kName = 14;  // of CheckLines
+    for (const CheckFinding& finding : CheckFindings(check_)) {
       verdicts.push_back(
-          {line.substr(0, std::min(line.find("  "), kName)),
-           Wrapped(Printable(line.substr(kName)), width, kText)});
+          {finding.subject, Wrapped(Printable(finding.text), width, kText)});
     }
     return verdicts;
   }

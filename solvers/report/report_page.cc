@@ -101,12 +101,14 @@ std::string ProblemSection(const SolvedProblem& solved) {
   for (const ProblemSetting& setting : ListSettings(solved.problem)) {
     settings.push_back({setting.key, setting.value});
   }
-  return HtmlSection("What was solved",
-                     HtmlElement("p", KindInWords(solved.problem.kind)) + "\n" +
-                         HtmlElement("h3", "What the program chose") + "\n" +
-                         HtmlTable({}, Choices(solved)) +
-                         HtmlElement("h3", "The problem as resolved") + "\n" +
-                         HtmlTable({}, settings));
+  return HtmlSection(
+      "What was solved",
+      HtmlElement("p", KindInWords(solved.problem.kind) +
+                           " Problem file: " + solved.problem.path + ".") +
+          "\n" + HtmlElement("h3", "What the program chose") + "\n" +
+          HtmlTable({}, Choices(solved)) +
+          HtmlElement("h3", "The problem as resolved") + "\n" +
+          HtmlTable({}, settings));
 }
 
 std::string GaugeSection(const InverseProblem& inverse) {
@@ -165,9 +167,12 @@ std::string PlotSection(const std::vector<TraceEntry>& trace) {
 
 StatusOr<std::string> ReportPage(const SolvedProblem& solved,
                                  const std::vector<ReportGroup>& groups) {
-  const std::string name =
-      std::filesystem::path(solved.problem.path).filename().string();
-  const ProblemKind kind = solved.problem.kind;
+  const Problem& problem = solved.problem;
+  // Many problem files are called problem.yaml.
+  const std::string& named =
+      problem.image.file.empty() ? problem.path : problem.image.file;
+  const std::string name = std::filesystem::path(named).filename().string();
+  const ProblemKind kind = problem.kind;
   std::string body = HtmlElement("h1", name) + "\n" + VerdictSection(solved) +
                      HtmlElement("p", Summary(solved), "class=\"summary\"") +
                      "\n" + WarningList(solved);

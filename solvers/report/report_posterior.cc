@@ -102,7 +102,7 @@ std::string DeterminedInWords(const Solution& solution) {
 std::string ExpectedErrorInWords(const Solution& solution, bool light_unknown) {
   const double spread = solution.spread;
   if (!std::isfinite(spread)) return "";
-  const ErrorToExpect error = ExpectError(solution);
+  const ErrorToExpect error = ExpectError(solution, light_unknown);
   return HtmlElement(
              "p",
              "How far off to expect it: reflectances sampled from this "
@@ -114,10 +114,12 @@ std::string ExpectedErrorInWords(const Solution& solution, bool light_unknown) {
                  ". Of images whose truth is known, half were off by more "
                  "than " +
                  Format("%.2g", error.median) + " at such a spread" +
-                 (light_unknown ? "" : " and such residuals") + " (" +
-                 ErrorInWords(error.median) + "), one in ten by more than " +
-                 Format("%.2g", error.most) + " (" + ErrorInWords(error.most) +
-                 ").") +
+                 (std::isfinite(solution.structured_misfit)
+                      ? " and such residuals"
+                      : "") +
+                 " (" + ErrorInWords(error.median) +
+                 "), one in ten by more than " + Format("%.2g", error.most) +
+                 " (" + ErrorInWords(error.most) + ").") +
          "\n";
 }
 
@@ -130,7 +132,11 @@ std::string AtLeast(double least, double value) {
 
 // The models that were searched, and what the estimate is the mean of.
 std::string ModelsInWords(const Solution& solution, bool light_unknown) {
-  if (solution.models.empty()) return "";
+  // An initial guess is of no search.
+  if (solution.models.empty() ||
+      solution.status.code() == StatusCode::kNoImprovement) {
+    return "";
+  }
   // Under a known light a model has one optimum.
   if (!light_unknown && solution.models.size() == 1) {
     return HtmlElement("p", "The model " + solution.models.front().name +

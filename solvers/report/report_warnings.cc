@@ -136,7 +136,7 @@ std::string FewPixelsWarning(const SolvedProblem& solved) {
 
 std::string UncertainWarning(const Solution& solution, bool light_unknown) {
   if (!std::isfinite(solution.spread)) return "";
-  const double expected = ExpectError(solution).median;
+  const double expected = ExpectError(solution, light_unknown).median;
   if (!(expected > kUncertain)) return "";
   if (expected > kLargestKnownError) {
     return "This image does not determine the reflectance.";
@@ -184,13 +184,12 @@ std::string CurveWarning(const SolvedProblem& solved) {
 
 std::string RivalWarning(const std::vector<Alternative>& alternatives) {
   for (const Alternative& other : alternatives) {
-    const double difference = other.brdf_log_difference;
+    const double difference = other.difference_from_best;
     if (!(other.cost < kRivalCost && difference > kRivalDifference)) continue;
     return "Several reflectances explain the image nearly as well. The one "
            "found from " +
            other.start + " is " + ProbabilityInWords(other.cost) +
-           " as the best one, and its logarithm differs from the estimate's "
-           "by " +
+           " as the best one, and its logarithm differs from that one's by " +
            Format("%.2g", difference) + " (root mean square).";
   }
   return "";
@@ -198,15 +197,21 @@ std::string RivalWarning(const std::vector<Alternative>& alternatives) {
 
 std::string PaintWarning(const SolvedProblem& solved) {
   if (solved.inverse.variation != ReflectanceVariation::kAuto) return "";
-  return solved.solution.has_paint()
-             ? "The object looks painted: its colour has sharp edges, and "
-               "paint "
-               "explains the image better than mirrored light does. Its albedo "
-               "was taken to vary; for one material set "
-               "reflectance.variation: none."
-             : "The object's colour has sharp edges. They were taken for what "
-               "one material mirrors; if it is painted, set "
-               "reflectance.variation: albedo.";
+  const bool edges = solved.inverse.look != nullptr &&
+                     solved.inverse.look->check.MayBePainted();
+  if (solved.solution.has_paint()) {
+    return std::string("The object looks painted: ") +
+           (edges ? "its colour has sharp edges, and paint explains the image "
+                    "better than mirrored light does."
+                  : "under the known light paint explains what one material "
+                    "does not.") +
+           " Its albedo was taken to vary; for one material set "
+           "reflectance.variation: none.";
+  }
+  return edges ? "The object's colour has sharp edges. They were taken for "
+                 "what one material mirrors; if it is painted, set "
+                 "reflectance.variation: albedo."
+               : "";
 }
 
 }  // namespace

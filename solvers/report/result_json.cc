@@ -250,7 +250,8 @@ Json PosteriorJson(const InverseProblem& inverse, const Solution& solution) {
   if (!solution.slices.empty()) out["slices"] = SlicesJson(solution.slices);
   if (std::isfinite(solution.spread)) {
     out["brdf_spread"] = solution.spread;
-    const ErrorToExpect error = ExpectError(solution);
+    const ErrorToExpect error =
+        ExpectError(solution, !inverse.known_map.has_value());
     out["brdf_log_rmse_expected"] = error.median;
     out["brdf_log_rmse_90"] = error.most;
     if (std::isfinite(solution.structured_misfit)) {

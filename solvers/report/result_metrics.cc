@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "ibrdf/base/format.h"
+#include "ibrdf/base/quantile.h"
 #include "ibrdf/light/environment_map.h"
-#include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/priors/determined_directions.h"
 #include "ibrdf/solvers/report/result_images.h"
 
@@ -85,7 +85,7 @@ AlbedoDeviation MeasureAlbedoDeviation(
   for (const ShadingPoint& point : points) {
     values.push_back(log_std.rgb[size_t{3} * point.pixel]);
   }
-  return {Percentile(values, 50.0), Percentile(values, 90.0)};
+  return {Quantile(values, 0.5), Quantile(values, 0.9)};
 }
 
 std::vector<NamedMetric> ListMetrics(const ResultMetrics& metrics) {

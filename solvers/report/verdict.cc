@@ -481,13 +481,14 @@ VerdictNumbers NumbersForVerdict(const SolvedProblem& solved) {
     n.floor = 0.0;
   }
   if (std::isfinite(solution.spread)) {
-    n.reflectance_error = ExpectError(solution).median;
+    n.reflectance_error =
+        ExpectError(solution, !solved.inverse.known_map.has_value()).median;
   }
   FindColourErrors(solved, &n);
   for (const Alternative& other : solution.alternatives) {
     if (other.cost < kRivalCost) {
       n.rival_difference =
-          std::max(n.rival_difference, other.brdf_log_difference);
+          std::max(n.rival_difference, other.difference_from_best);
     }
   }
   n.light_error = MedianOverLight(solution.map, solution.map_std);

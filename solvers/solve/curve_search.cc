@@ -192,8 +192,8 @@ LineMinimum MinimiseOnLine(const std::function<double(double)>& f,
     const Parabola parabola = Through(x, y);
     double next = minimum.at;
     if (parabola.curvature > 0.0) {
-      minimum.curvature = parabola.curvature;
       next = std::clamp(parabola.vertex, line.low, line.high);
+      if (next == parabola.vertex) minimum.curvature = parabola.curvature;
     } else if (best == values.begin()) {
       next = line.low;
     } else if (std::next(best) == values.end()) {

@@ -46,7 +46,7 @@ std::vector<double> EqualSteps(double low, double high, int count);
 // Infinite values are passed over.
 struct LineMinimum {
   double at = 0.0, value = 0.0;
-  double curvature = 0.0;  // second derivative there; 0: the ends are lowest
+  double curvature = 0.0;  // second derivative there; 0: an end is lowest
 };
 LineMinimum MinimiseOnLine(const std::function<double(double)>& f,
                            const LineSearch& line);

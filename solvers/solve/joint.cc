@@ -12,6 +12,7 @@
 #include "ibrdf/solvers/estimation/optimum_average.h"
 #include "ibrdf/solvers/solve/joint_turns.h"
 #include "ibrdf/solvers/solve/other_model.h"
+#include "ibrdf/solvers/solve/residual_statistics.h"
 #include "ibrdf/solvers/solve/summary.h"
 
 namespace ibrdf {
@@ -103,6 +104,10 @@ StatusOr<Solution> SolveJoint(const SolveSetup& setup, SolveContext* context) {
   if (!estimate.ok()) return estimate.status();
   Solution solution = Summarise(found, *std::move(estimate), context);
   NameModels(*searches, average, &solution);
+  if (solution.status.code() != StatusCode::kNoImprovement) {
+    solution.structured_misfit =
+        ResidualStatisticsOf(found, solution.render).Structured();
+  }
   return solution;
 }
 

@@ -19,9 +19,6 @@ namespace {
 // standard deviation of 0.013.
 constexpr double kNoise = 0.05;
 
-// Beside it an optimum that has no finite cost counts nothing.
-constexpr double kNoCost = 1e300;
-
 // One model's optimum.
 struct Search {
   NamedModel model;
@@ -80,7 +77,6 @@ std::vector<ModelOptima> OptimaOf(const SolveContext& context,
     iterate.scale = own_scale;
     optimum.cost = share * entry.likelihood + entry.reflectance_prior +
                    entry.illumination_prior;
-    if (!std::isfinite(optimum.cost)) optimum.cost = kNoCost;
     VLOG(1) << s.model.name << " costs " << optimum.cost;
     ModelOptima of_model;
     of_model.setup = s.setup;

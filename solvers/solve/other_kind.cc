@@ -129,7 +129,7 @@ StatusOr<std::optional<RevisedReflectance>> FindOtherKind(
   HeldKind best = *present;
   const Kind* best_kind = nullptr;
   for (const Kind& kind : kinds) {
-    if (TimeIsUp(*context)) return none;
+    if (TimeIsUp(*context)) break;
     StatusOr<HeldKind> held = Hold(kind.lobes, nullptr, setup, context);
     if (!held.ok()) return held.status();
     Report("hold " + kind.name, *held, setup, context);

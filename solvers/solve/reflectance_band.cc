@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ibrdf/base/pi.h"
+#include "ibrdf/base/quantile.h"
 #include "ibrdf/solvers/solve/reflectance_samples.h"
 
 namespace ibrdf {
@@ -60,15 +61,6 @@ void Align(const LobeDistance& level, const std::vector<double>& estimate,
 }
 
 }  // namespace
-
-double Quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<size_t>(at);
-  const size_t high = std::min(low + 1, values.size() - 1);
-  const double part = at - static_cast<double>(low);
-  return (1.0 - part) * values[low] + part * values[high];
-}
 
 std::vector<BrdfSlice> ReflectanceBand(const LobeFactory& lobes,
                                        const std::vector<double>& parameters,

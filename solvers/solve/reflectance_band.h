@@ -19,8 +19,4 @@ std::vector<BrdfSlice> ReflectanceBand(const LobeFactory& lobes,
                                        int count, uint64_t seed,
                                        const LobeDistance* level = nullptr);
 
-// By interpolation between the order statistics; share in [0, 1]. values: one
-// or more, finite.
-double Quantile(std::vector<double> values, double share);
-
 }  // namespace ibrdf

@@ -33,12 +33,13 @@ struct ErrorToExpect {
   double median = 0.0, most = 0.0;
 };
 ErrorToExpect ExpectError(double spread);
-// The same for a solution. The spread of a mean over the optima of two models
-// has what they disagree in, and a small one says little: sqrt(0.35^2 + (0.55
-// spread)^2) and 1.8 times that, by 22 held-out cases
-// (docs/notes/averaged_optima.md). Under a known light, where the error is that
-// of the level too, it is sqrt((0.55 spread)^2 + (12 structured_misfit)^2) and
-// 1.6 times that, by 50 held-out cases (docs/notes/known_light.md).
-ErrorToExpect ExpectError(const Solution& solution);
+// The same for a solution, which also has what the estimate does not explain.
+// Of a mean over the optima of two models it is sqrt(0.1^2 + (0.6 spread)^2 +
+// (12 structured_misfit)^2) and sqrt(0.15^2 + (0.9 spread)^2 +
+// (36 structured_misfit)^2) (docs/notes/posterior_is_overconfident.md). Under a
+// known light, where the error is that of the level too, it is
+// sqrt((0.55 spread)^2 + (12 structured_misfit)^2) and 1.6 times that, by 50
+// held-out cases (docs/notes/known_light.md).
+ErrorToExpect ExpectError(const Solution& solution, bool light_unknown);
 
 }  // namespace ibrdf

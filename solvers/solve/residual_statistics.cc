@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -12,7 +13,9 @@
 namespace ibrdf {
 namespace {
 
-constexpr int kMostPixels = 2000;  // that correlation is taken of
+// That correlation is taken of, about; and the rows they lie in, at least.
+constexpr size_t kSomePixels = 2000;
+constexpr size_t kLeastRows = 8;
 
 std::vector<float> RadianceOf(const LogMap& log_map) {
   std::vector<float> radiance;
@@ -20,14 +23,24 @@ std::vector<float> RadianceOf(const LogMap& log_map) {
   return radiance;
 }
 
-// Whole rows of the image, evenly spread: indices of pixels.
+// Rows of the object, evenly spread, and pairs of neighbours in long ones:
+// indices of pixels.
 std::vector<size_t> SomeRows(const Observation& pixels, int width) {
-  const size_t stride = pixels.points.size() / kMostPixels + 1;
-  std::vector<size_t> out;
+  std::map<int, std::vector<size_t>> rows;
   for (size_t i = 0; i < pixels.points.size(); ++i) {
-    const size_t row = pixels.points[i].pixel / width;
-    if (row % stride == stride / 2 && pixels.observed.valid[i]) {
-      out.push_back(i);
+    if (pixels.observed.valid[i]) {
+      rows[pixels.points[i].pixel / width].push_back(i);
+    }
+  }
+  const size_t stride = std::clamp<size_t>(
+      rows.size() / kLeastRows, 1, pixels.points.size() / kSomePixels + 1);
+  const size_t thin = pixels.points.size() / (stride * kSomePixels) + 1;
+  std::vector<size_t> out;
+  size_t row = 0;
+  for (const auto& [y, of_row] : rows) {
+    if (row++ % stride != stride / 2) continue;
+    for (size_t k = 0; k < of_row.size(); ++k) {
+      if (k / 2 % thin == 0) out.push_back(of_row[k]);
     }
   }
   return out;

@@ -69,7 +69,12 @@ StatusOr<Solution> SolveUnderKnownLight(const SolveSetup& setup,
   if (left.misfit > kWorthTurning) turns = FindMapTurns(setup);
   if (may_be_painted && left.MayBePaint() && !IsFarBetter(turns)) {
     StatusOr<Solution> painted = SolvePaintedUnderAnyFrame(setup, context);
-    if (!painted.ok() || left.IsExplainedBy(painted->misfit)) return painted;
+    if (painted.ok() && left.IsExplainedBy(painted->misfit)) return painted;
+    if (!painted.ok()) {
+      LOG(WARNING) << "the object is taken for one of one material, as no "
+                      "paint could be estimated: "
+                   << painted.status().message();
+    }
   }
   Solution solution = Summarise(of_model, std::move(found->estimate), context);
   solution.models = std::move(found->models);

@@ -88,12 +88,10 @@ void RenderViews(const SolveSetup& setup, const Estimate& estimate,
 void TurnDown(Estimate* estimate) {
   estimate->iterate.state = estimate->reference.state;
   estimate->iterate.ambient = estimate->reference.ambient;
-  estimate->reflectance.covariance.resize(0, 0);
-  estimate->reflectance.light.log_std = Image();
-  estimate->reflectance.light.variance_left = Image();
-  estimate->reflectance.light.variance_left_by_degree.clear();
-  estimate->reflectance.candidates.clear();
-  estimate->reflectance.ranking = MaterialRanking();
+  ReflectanceEstimate turned_down = std::move(estimate->reflectance);
+  estimate->reflectance = ReflectanceEstimate();
+  estimate->reflectance.initial_guess = std::move(turned_down.initial_guess);
+  estimate->reflectance.initial_lobes = std::move(turned_down.initial_lobes);
 }
 
 // A guess that leaves nothing but rounding is an answer: a constant map
@@ -111,20 +109,23 @@ Image RenderOf(const View& view, const SolveSetup& setup) {
   return AtPixels(setup, radiance);
 }
 
-// Other candidates, with their distances from the estimate.
+// The candidates, the best first, with their distances from the estimate.
 std::vector<Alternative> AlternativesOf(
     const std::vector<MaterialCandidate>& candidates,
     const LobeDistance& distance, const std::vector<double>& lobes) {
   std::vector<Alternative> alternatives;
   if (candidates.empty()) return alternatives;
   const std::vector<double> found = distance.LogValues(lobes);
+  const std::vector<double> best =
+      distance.LogValues(candidates.front().parameters);
   for (const MaterialCandidate& candidate : candidates) {
     Alternative a;
     a.start = candidate.name;
     a.lobe_parameters = candidate.parameters;
     a.cost = candidate.cost - candidates.front().cost;
-    a.brdf_log_difference =
-        distance.Aligned(distance.LogValues(candidate.parameters), found);
+    const std::vector<double> values = distance.LogValues(candidate.parameters);
+    a.brdf_log_difference = distance.Aligned(values, found);
+    a.difference_from_best = distance.Aligned(values, best);
     if (std::isfinite(a.brdf_log_difference)) alternatives.push_back(a);
   }
   return alternatives;

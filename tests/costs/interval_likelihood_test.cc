@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "tests/support/non_finite.h"
 
 namespace ibrdf {
@@ -84,7 +85,7 @@ TEST(IntervalLikelihood, OfNoWidthIsTheDensity) {
     const IntervalLikelihood of =
         EvaluateInterval(-0.5 * kWidth, 0.5 * kWidth, mean, s);
     const double cost = 0.5 * mean * mean / (s * s) +
-                        std::log(s * std::sqrt(2.0 * M_PI) / kWidth);
+                        std::log(s * std::sqrt(2.0 * kPi) / kWidth);
     EXPECT_NEAR(cost, of.cost, 1e-9 * std::abs(cost) + 1e-9);
     EXPECT_NEAR(-mean / (s * s), of.slope, 1e-6);
     EXPECT_NEAR(1.0 / (s * s), of.curvature, 1e-6 / (s * s));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -94,6 +95,18 @@ TEST_F(AverageOptimaTest, OneOptimumStaysAsItIs) {
       AverageOptima({Search(*setup_, {best, At(*setup_, 1, 1000.0)})});
   EXPECT_EQ(best.parameters, average.estimate.lobes);
   EXPECT_EQ(0.0, average.estimate.between_optima);
+  EXPECT_EQ((std::vector<double>{1.0}), average.model_weights);
+}
+
+TEST_F(AverageOptimaTest, OptimaOfNoFiniteCostDoNotCount) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const MaterialCandidate best = At(*setup_, 0, -800.0);
+  const MaterialCandidate lost = At(*setup_, 1, infinity);
+  EXPECT_EQ(best.parameters,
+            AverageOptima({Search(*setup_, {best, lost})}).estimate.lobes);
+  const ModelOptima none = Search(*setup_, {lost});
+  const OptimumAverage average = AverageOptima({none});
+  EXPECT_EQ(none.estimate.lobes, average.estimate.lobes);
   EXPECT_EQ((std::vector<double>{1.0}), average.model_weights);
 }
 

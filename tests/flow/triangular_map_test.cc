@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/merl_columns.h"
 #include "ibrdf/flow/triangular_flow.h"
 #include "ibrdf/flow/triangular_reference.h"
@@ -261,7 +262,7 @@ TEST(MerlColumns, AreTheTablesBins) {
   EXPECT_EQ(x.x_d[0], x.x_d[179]);
   EXPECT_LT(x.x_d[179], x.x_d[180]);
   EXPECT_LT(x.x_p[0], x.x_p[1]);
-  EXPECT_NEAR(std::cos(2 * M_PI * x.x_p[30]), x.features[3 * x.columns + 30],
+  EXPECT_NEAR(std::cos(2 * kPi * x.x_p[30]), x.features[3 * x.columns + 30],
               1e-6);
 }
 

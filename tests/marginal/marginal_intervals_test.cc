@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/solvers/costs/interval_likelihood.h"
 #include "tests/marginal/small_light.h"
 
@@ -107,7 +108,7 @@ TEST(MarginalIntervals, OfNoWidthAreValues) {
   // A density times the width is a probability; the constants of the normal
   // density are not in the cost of values.
   const double constant = static_cast<double>(y.size()) *
-                          (0.5 * std::log(2.0 * M_PI) - std::log(kWidth));
+                          (0.5 * std::log(2.0 * kPi) - std::log(kWidth));
   EXPECT_NEAR(cost + constant, Cost(data, T, Rough(), &narrow), 1e-5);
   for (int c = 0; c < 3; ++c) {
     const double size = exact.matrices[c].norm();

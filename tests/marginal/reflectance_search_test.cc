@@ -248,6 +248,8 @@ TEST_F(ReflectanceSearchTest, WiderMarginsNeverEndAtAHigherCost) {
   ReflectanceSearchOptions options = Options();
   options.covariance = false;
   options.coarse_margin = 1e9;
+  // Coarse steps leave something to do.
+  options.coarse_stages = {{4, 1}};
   options.margin = 0.0;
   const StatusOr<ReflectanceSearchResult> one =
       SearchReflectance({FlowLobes::Factory(model_, 2, 1), &prior}, points_,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/solvers/observation/mean_by_normal.h"
 #include "tests/support/solver_testing.h"
 
@@ -99,7 +100,7 @@ Observation GreatCircle() {
   std::vector<double> radiance;
   for (int k = -80; k <= 80; ++k) {
     ShadingPoint p;
-    const double theta = k * M_PI / 180;
+    const double theta = k * kPi / 180;
     p.normal =
         Eigen::Vector3d(std::sin(theta), 0, std::cos(theta)).cast<float>();
     p.wo = Eigen::Vector3f::UnitZ();
@@ -114,7 +115,7 @@ Observation GreatCircle() {
 
 TEST(Highlights, MirrorALight) {
   const Observation all = GreatCircle();
-  const double degree = M_PI / 180;
+  const double degree = kPi / 180;
   const Eigen::Vector3d light(std::sin(60 * degree), 0, std::cos(60 * degree));
   const Observation found = Highlights(all, {light}, 3.5 * degree);
   ASSERT_EQ(size_t{7}, found.points.size());  // 27 to 33 degrees
@@ -126,7 +127,7 @@ TEST(Highlights, MirrorALight) {
 TEST(Union, TakesEachPixelOnce) {
   const Observation all = GreatCircle();
   const Observation some =
-      Highlights(all, {Eigen::Vector3d::UnitZ()}, 2.5 * M_PI / 180);
+      Highlights(all, {Eigen::Vector3d::UnitZ()}, 2.5 * kPi / 180);
   ASSERT_EQ(size_t{5}, some.points.size());
   const Observation both = Union(some, all);
   EXPECT_EQ(all.points.size(), both.points.size());

@@ -28,13 +28,22 @@ bool Contains(const std::vector<std::string>& lines, const std::string& part) {
   return false;
 }
 
+std::vector<std::string> LinesOf(const PhotographCheck& check) {
+  std::vector<std::string> lines;
+  for (const CheckFinding& finding : CheckFindings(check)) {
+    EXPECT_EQ(finding.text.npos, finding.text.find('\n'));
+    lines.push_back(finding.subject + ": " + finding.text);
+  }
+  return lines;
+}
+
 TEST(PhotographCheck, AGoodPhotographHasNoWarning) {
   const Image normals = SphereNormals(96);
   const PhotographCheck check = CheckOf(Shaded(normals), normals, Mask());
   EXPECT_EQ(check.counts.object, check.counts.used);
   EXPECT_EQ(nullptr, check.BetterNormals());
   EXPECT_TRUE(CheckWarnings(check, "i.exr", "n.npy").empty());
-  const std::vector<std::string> lines = CheckLines(check);
+  const std::vector<std::string> lines = LinesOf(check);
   EXPECT_TRUE(Contains(lines, "96x96 pixels"));
   EXPECT_TRUE(Contains(lines, "as given: most plausible"));
   EXPECT_TRUE(Contains(lines, "cannot be told"));
@@ -71,7 +80,7 @@ TEST(PhotographCheck, AnObjectWithoutAUsablePixelIsNoFailure) {
   const PhotographCheck check = CheckOf(Image(32, 32), normals, Mask());
   EXPECT_EQ(0u, check.counts.used);
   EXPECT_EQ(check.counts.object, check.counts.zero);
-  EXPECT_FALSE(CheckLines(check).empty());
+  EXPECT_FALSE(CheckFindings(check).empty());
 }
 
 TEST(PhotographCheck, OtherGeometryHasNoRanking) {
@@ -82,7 +91,7 @@ TEST(PhotographCheck, OtherGeometryHasNoRanking) {
       {image, mask, PointsOf(normals), Image(), true, "srgb", 2.0, 3, 0.97});
   EXPECT_TRUE(check.normals.empty());
   EXPECT_EQ("", NormalsVerdict(check));
-  const std::vector<std::string> lines = CheckLines(check);
+  const std::vector<std::string> lines = LinesOf(check);
   EXPECT_TRUE(Contains(lines, "overlap of mask and shape 0.97"));
   EXPECT_TRUE(Contains(lines, "3 missing"));
   EXPECT_TRUE(Contains(lines, "exposure 2"));

@@ -124,27 +124,18 @@ TEST(ReportPage, ShowsWhatTheResultHolds) {
   EXPECT_EQ("", MarkupError(page));
   const ErrorToExpect error = ExpectError(kSpread);
   for (const std::string& part : std::vector<std::string>{
-           "<h1>red &amp; &lt;plastic&gt;.yaml</h1>",
-           "a &lt;b&gt; &amp; &quot;c&quot;.exr",
-           "Image &amp; map",
-           "Input &quot;x&quot; &lt;raw&gt;",
-           "least prior cost",
+           "<h1>a &lt;b&gt; &amp; &quot;c&quot;.exr</h1>", "Image &amp; map",
+           "Input &quot;x&quot; &lt;raw&gt;", "least prior cost",
            "&lt;chrome&gt;",
            "0.018",  // exp(-4)
-           "1.25",
-           "0.375",
-           "0.3125",
-           "solver.seconds",
+           "1.25", "0.375", "0.3125", "solver.seconds",
            "30, within a factor of 3",  // exp(1.1)
            "by 0.22 in the logarithm",
            Format("%.2g at such a spread (a factor of 1.5", error.median),
-           Format("%.2g", error.most),
-           "<section class=\"verdict\">",
+           Format("%.2g", error.most), "<section class=\"verdict\">",
            "Trust, with care, the light&#39;s directions, the object&#39;s hue "
            "and the object&#39;s gloss",
-           "the sphere is convex",
-           "time (s)",
-           "</svg>"}) {
+           "the sphere is convex", "time (s)", "</svg>"}) {
     EXPECT_TRUE(Contains(page, part)) << part;
   }
   EXPECT_FALSE(Contains(page, "<script"));
@@ -233,7 +224,7 @@ TEST(ReportPage, UnderAKnownLightItSaysWhatWasSearchedAndExpected) {
   EXPECT_TRUE(Contains(one, "The model default alone was searched."));
   EXPECT_TRUE(Contains(one, "the median of samples"));
   const double expected = std::hypot(0.055, 0.12);
-  EXPECT_NEAR(expected, ExpectError(example.solution).median, 1e-9);
+  EXPECT_NEAR(expected, ExpectError(example.solution, false).median, 1e-9);
   EXPECT_TRUE(Contains(one, "half were off by more than 0.13"));
   example.solution.models.push_back({"broad", nullptr});
   example.solution.model_weights = {0.75, 0.25};
@@ -320,6 +311,13 @@ TEST(TracePlots, SeriesHoldWhatCompares) {
   EXPECT_TRUE(TracePlots({}).empty());
 }
 
+// As a look that saw edges of colour of that strength (ColourSteps).
+void LookAtEdges(double colour_steps, Example* example) {
+  const auto look = std::make_shared<ObjectLook>();
+  look->check.colour_steps = colour_steps;
+  example->inverse.look = look;
+}
+
 TEST(ResultWarnings, AreSilentWithoutCause) {
   EXPECT_TRUE(ResultWarnings(Example().Solved()).empty());
 }
@@ -364,13 +362,39 @@ TEST(ResultWarnings, NameEachCause) {
       },
       "0.5, 0.25, 0.125 was estimated for all pixels (illumination.ambient). "
       "7 lit pixels");
-  warned([](Example* e) { e->solution.alternatives[1].cost = 1.0; },
-         "<chrome>");
+  warned(
+      [](Example* e) {
+        e->solution.alternatives[1].cost = 1.0;
+        e->solution.alternatives[1].difference_from_best = 0.5;
+      },
+      "<chrome>");
+  warned(
+      [](Example* e) {
+        e->inverse.variation = ReflectanceVariation::kAuto;
+        LookAtEdges(1.5, e);
+      },
+      "if it is painted, set reflectance.variation: albedo");
   // An expected error of 0.9.
   warned([](Example* e) { e->solution.spread = 0.9 / ExpectError(1.0).median; },
          "a factor of 2.5");
   warned([](Example* e) { e->inverse.warnings = {"a.png: clipped"}; },
          "a.png: clipped");
+}
+
+// The estimate may be a mean of optima, which is far from each of them.
+TEST(ResultWarnings, TheBestOptimumIsNoRivalOfItself) {
+  Example example;
+  example.solution.alternatives[0].brdf_log_difference = 2.0;
+  EXPECT_TRUE(ResultWarnings(example.Solved()).empty());
+}
+
+// Under a known light paint is asked of the image where the look saw no edges.
+TEST(ResultWarnings, EdgesAreNamedWhereTheyWereSeenAlone) {
+  Example example;
+  example.inverse.variation = ReflectanceVariation::kAuto;
+  EXPECT_TRUE(ResultWarnings(example.Solved()).empty());
+  LookAtEdges(0.5, &example);
+  EXPECT_TRUE(ResultWarnings(example.Solved()).empty());
 }
 
 TEST(ResultWarnings, GlossCanHideAnotherCurve) {

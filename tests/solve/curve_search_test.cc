@@ -59,6 +59,11 @@ TEST(MinimiseOnLine, EndsAreAllowed) {
   const LineMinimum line = Minimise([](double x) { return -x; }, 2);
   EXPECT_EQ(2.0, line.at);
   EXPECT_EQ(0.0, line.curvature);
+  // No Laplace approximation holds at an end, whatever the parabola there.
+  const LineMinimum beyond =
+      Minimise([](double x) { return (x - 3.0) * (x - 3.0); }, 2);
+  EXPECT_EQ(2.0, beyond.at);
+  EXPECT_EQ(0.0, beyond.curvature);
 }
 
 TEST(MinimiseOnLine, LeavesItsStartsWhereTheFunctionFalls) {

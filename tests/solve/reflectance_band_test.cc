@@ -8,6 +8,7 @@
 #include <random>
 
 #include "ibrdf/base/pi.h"
+#include "ibrdf/base/quantile.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/geometry/half_diff.h"
 #include "ibrdf/solvers/solve/reflectance_samples.h"
@@ -47,13 +48,6 @@ class ReflectanceBandTest : public ::testing::Test {
   std::unique_ptr<const LobeModel> lobes_;
   std::vector<double> parameters_;
 };
-
-TEST(Quantile, InterpolatesBetweenOrderStatistics) {
-  EXPECT_EQ(3.0, Quantile({3.0}, 0.05));
-  EXPECT_EQ(2.0, Quantile({3.0, 1.0, 2.0}, 0.5));
-  EXPECT_NEAR(1.1, Quantile({3.0, 1.0, 2.0}, 0.05), 1e-12);
-  EXPECT_EQ(3.0, Quantile({3.0, 1.0, 2.0}, 1.0));
-}
 
 // The slow reference: many samples by another root of the covariance, each
 // evaluated through tables of its own at the slice's angles.

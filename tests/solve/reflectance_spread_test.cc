@@ -123,18 +123,24 @@ TEST(ExpectError, PosteriorsAreTooSure) {
   EXPECT_EQ(0.0, ExpectError(0.0).most);
 }
 
-// What two models disagree in is in the spread already.
-TEST(ExpectError, AMeanOverTwoModelsIsNotAsFarOff) {
+// What two models disagree in is in the spread already, and what neither
+// explains of the image counts.
+TEST(ExpectError, AMeanOverTwoModelsIsAsFarOffAsItsResidualsSay) {
   Solution solution;
   solution.spread = 0.5;
+  solution.structured_misfit = 0.02;
+  const auto expected = [&] { return ExpectError(solution, true); };
   solution.models = {{"a", nullptr}};
-  EXPECT_EQ(ExpectError(0.5).median, ExpectError(solution).median);
+  EXPECT_EQ(ExpectError(0.5).median, expected().median);
   solution.models.push_back({"b", nullptr});
-  EXPECT_LT(ExpectError(solution).median, ExpectError(0.5).median);
-  EXPECT_LT(ExpectError(solution).median, ExpectError(solution).most);
-  // A small one says little.
-  solution.spread = 0.05;
-  EXPECT_GT(ExpectError(solution).median, ExpectError(0.05).median);
+  EXPECT_NEAR(std::sqrt(0.01 + 0.09 + 0.24 * 0.24), expected().median, 1e-12);
+  EXPECT_NEAR(std::sqrt(0.0225 + 0.2025 + 0.72 * 0.72), expected().most, 1e-12);
+  solution.structured_misfit = 0.0;
+  EXPECT_LT(expected().median, ExpectError(0.5).median);
+  EXPECT_LT(expected().median, expected().most);
+  // A small spread says little.
+  solution.spread = 0.01;
+  EXPECT_GT(expected().median, ExpectError(0.01).median);
 }
 
 // What the model cannot explain of the image is off in the BRDF too, however
@@ -143,15 +149,16 @@ TEST(ExpectError, UnderAKnownLightWhatIsNotExplainedCounts) {
   Solution solution;
   solution.spread = 0.1;
   solution.structured_misfit = 0.0;
-  const double explained = ExpectError(solution).median;
+  const double explained = ExpectError(solution, false).median;
   EXPECT_LT(explained, ExpectError(0.1).median);
   solution.structured_misfit = 0.04;
-  EXPECT_GT(ExpectError(solution).median, 2.0 * explained);
-  EXPECT_GT(ExpectError(solution).most, ExpectError(solution).median);
+  EXPECT_GT(ExpectError(solution, false).median, 2.0 * explained);
+  EXPECT_GT(ExpectError(solution, false).most,
+            ExpectError(solution, false).median);
   // It does not matter how many models were searched.
-  const double unexplained = ExpectError(solution).median;
+  const double unexplained = ExpectError(solution, false).median;
   solution.models = {{"a", nullptr}, {"b", nullptr}};
-  EXPECT_EQ(unexplained, ExpectError(solution).median);
+  EXPECT_EQ(unexplained, ExpectError(solution, false).median);
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <set>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 #include "tests/solve/ball_problem.h"
 #include "tests/support/render_testing.h"
@@ -48,7 +50,7 @@ TEST_F(ResidualStatisticsTest, OfNoise) {
   std::normal_distribution<double> noise(0.0, 0.05);
   const ResidualStatistics left = Of([&](int) { return noise(rng); });
   // E |x| of a normal variable; 3700 values.
-  EXPECT_NEAR(0.05 * std::sqrt(2.0 / M_PI), left.misfit, 2e-3);
+  EXPECT_NEAR(0.05 * std::sqrt(2.0 / kPi), left.misfit, 2e-3);
   EXPECT_NEAR(0.0, left.correlation, 0.08);
 }
 
@@ -96,6 +98,28 @@ TEST_F(ResidualStatisticsTest, StrayLightIsPartOfTheEstimate) {
   for (double& v : L_o_) v += estimate_.iterate.ambient[0];
   const ResidualStatistics left = Of([](int) { return 0.0; });
   EXPECT_LT(left.misfit, 1e-4);
+}
+
+// Three rows of 4000 pixels: a few thousand of them, neighbours in each row.
+TEST_F(ResidualStatisticsTest, ALongObjectIsSampledInEachRow) {
+  const std::vector<ShadingPoint> ball = problem_.points;
+  problem_.image = Image(4000, 3);
+  problem_.image.rgb.assign(problem_.image.rgb.size(), 1.0f);
+  problem_.points.clear();
+  for (int pixel = 0; pixel < 12000; ++pixel) {
+    problem_.points.push_back(ball[pixel % ball.size()]);
+    problem_.points.back().pixel = pixel;
+  }
+  const SolveSetup setup = *ibrdf::SetUp(problem_);
+  const ResidualRows rows = ResidualRowsOf(setup, estimate_);
+  EXPECT_LT(1000u, rows.indices.size());
+  EXPECT_GT(4000u, rows.indices.size());
+  std::set<int> of;
+  for (const auto& [first, second] :
+       PairsInRows(setup.pixels.points, rows.indices)) {
+    of.insert(setup.pixels.points[rows.indices[first]].pixel / 4000);
+  }
+  EXPECT_EQ((std::set<int>{0, 1, 2}), of);
 }
 
 TEST_F(ResidualStatisticsTest, NoPixelsLeaveNothing) {

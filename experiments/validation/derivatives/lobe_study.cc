@@ -9,6 +9,7 @@
 #include "experiments/validation/derivatives/reference_scene.h"
 #include "experiments/validation/derivatives/studies.h"
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/brdf/merl_columns.h"
 #include "ibrdf/solvers/costs/log_radiance_cost.h"
 #include "tests/support/render_testing.h"
 #include "tests/support/tiny_model.h"
@@ -92,7 +93,7 @@ class LobeStudy {
         // What underflows has no digits.
         if (exact[begin + i] < kLeastShape) continue;
         const Eigen::Vector3d x =
-            lobes_.grid_shape().NodePoint(static_cast<int>(i));
+            WithinMerlBins(lobes_.grid_shape().NodePoint(static_cast<int>(i)));
         table_->Add(name_ + ": lobe field by code, a node", kind,
                     where + ", x " + Coordinates({x[0], x[1], x[2]}), found,
                     right);

@@ -5,6 +5,7 @@
 
 #include "ibrdf/base/parallel_for.h"
 #include "ibrdf/brdf/lobe_model.h"
+#include "ibrdf/brdf/merl_columns.h"
 
 namespace ibrdf {
 namespace derivatives {
@@ -87,9 +88,9 @@ std::vector<Real> ReferenceFields(const NeuralBrdfModel& model, int num_lobes,
     // LobeModel gives its flow codes in float.
     std::vector<Real> code, x_h;
     for (int k = 0; k < codes; ++k) code.push_back(static_cast<float>(z[k]));
-    Eigen::Vector3d p = grid.NodePoint(column);
+    Eigen::Vector3d p = WithinMerlBins(grid.NodePoint(column));
     for (int h = 0; h < grid.h; ++h) {
-      p = grid.NodePoint(h * columns + column);
+      p = WithinMerlBins(grid.NodePoint(h * columns + column));
       x_h.push_back(static_cast<float>(p[0]));
     }
     const std::vector<FlowDerivatives> at = flow.OnColumn(

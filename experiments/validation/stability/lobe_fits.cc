@@ -9,6 +9,7 @@
 
 #include "experiments/validation/stability/naive_flow.h"
 #include "ibrdf/brdf/flow_lobes.h"
+#include "ibrdf/brdf/merl_columns.h"
 #include "ibrdf/flow/triangular_reference.h"
 #include "ibrdf/solvers/joint/reflectance_solver.h"
 #include "ibrdf/solvers/solve/exposure.h"
@@ -68,11 +69,13 @@ class NaiveImage {
     std::vector<CodeJet> code(kCodeSize), field(nodes);
     for (int k = 0; k < kCodeSize; ++k) code[k] = CodeJet(lobe[k], k);
     std::vector<float> x_h(grid_.h);
-    for (int i = 0; i < grid_.h; ++i) {
-      x_h[i] = static_cast<float>(grid_.NodePoint(i * columns)[0]);
-    }
     for (int c = 0; c < columns; ++c) {
-      const Eigen::Vector3f x = grid_.NodePoint(c).cast<float>();
+      for (int i = 0; i < grid_.h; ++i) {
+        x_h[i] = static_cast<float>(
+            WithinMerlBins(grid_.NodePoint(i * columns + c))[0]);
+      }
+      const Eigen::Vector3f x =
+          WithinMerlBins(grid_.NodePoint(c)).cast<float>();
       flow_.DensityOnColumn(x[1], x[2], x_h, code.data(),
                             [&](size_t i, const CodeJet& q) {
                               field[i * columns + c] = pow(q, exponent_);
@@ -160,7 +163,7 @@ std::vector<Real> PreciseField(const NeuralBrdfModel& model,
   const std::vector<Real> code(lobe.begin(), lobe.end() - 3);
   std::vector<Real> field(grid.num_nodes());
   for (int i = 0; i < grid.num_nodes(); ++i) {
-    const Eigen::Vector3d x = grid.NodePoint(i);
+    const Eigen::Vector3d x = WithinMerlBins(grid.NodePoint(i));
     const Real p[3] = {x[0], x[1], x[2]};
     field[i] = std::exp(Real(model.exponent) * flow.LogDensity(p, code.data()));
   }
@@ -174,7 +177,7 @@ std::vector<float> NaiveField(const NeuralBrdfModel& model,
   const std::vector<float> code(lobe.begin(), lobe.end() - 3);
   std::vector<float> field(grid.num_nodes());
   for (int i = 0; i < grid.num_nodes(); ++i) {
-    const Eigen::Vector3f x = grid.NodePoint(i).cast<float>();
+    const Eigen::Vector3f x = WithinMerlBins(grid.NodePoint(i)).cast<float>();
     field[i] = std::pow(flow.Density(x.data(), code.data()),
                         static_cast<float>(model.exponent));
   }
@@ -306,7 +309,7 @@ double BrdfError(const NeuralBrdfModel& model, const BrdfGridShape& grid,
     const Eigen::Vector3d a = grid.NodeAngles(i);
     FromHalfDiff({a[0], a[1], a[2]}, &wi, &wo);
     if (wi.z() < least || wo.z() < least) continue;
-    const Eigen::Vector3d x = grid.NodePoint(i);
+    const Eigen::Vector3d x = WithinMerlBins(grid.NodePoint(i));
     const double shape =
         model.exponent * (flow.LogDensity(x.data(), estimate.data()) -
                           flow.LogDensity(x.data(), truth.data()));

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ibrdf/brdf/lobe_mixture.h"
+#include "ibrdf/brdf/merl_columns.h"
 
 namespace ibrdf {
 
@@ -23,7 +24,8 @@ struct FlowBrdf::State {
     std::vector<float> x(3 * n), log_density(n);
     for (size_t i = 0; i < n; ++i) {
       const HalfDiff& a = angles[i];
-      const Eigen::Vector3d p = ToUnitCube(a.theta_h, a.theta_d, a.phi_d);
+      const Eigen::Vector3d p =
+          WithinMerlBins(ToUnitCube(a.theta_h, a.theta_d, a.phi_d));
       for (int k = 0; k < 3; ++k) x[k * n + i] = static_cast<float>(p[k]);
     }
     std::vector<Eigen::Array3d> f(n, Eigen::Array3d::Zero());

@@ -38,7 +38,8 @@ FlowLobes::FlowLobes(const NeuralBrdfModel& model, const LobeLayout& layout,
   nodes_ = FlowColumns(grid.d * grid.p, grid.h);
   for (int i = 0; i < grid.h; ++i) {
     for (int c = 0; c < nodes_.columns; ++c) {
-      const Eigen::Vector3d x = grid.NodePoint(i * nodes_.columns + c);
+      const Eigen::Vector3d x =
+          WithinMerlBins(grid.NodePoint(i * nodes_.columns + c));
       if (i == 0) nodes_.SetColumn(c, x[1], x[2]);
       nodes_.x_h[static_cast<size_t>(i) * nodes_.columns + c] =
           static_cast<float>(x[0]);

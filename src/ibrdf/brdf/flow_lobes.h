@@ -11,7 +11,8 @@ namespace ibrdf {
 
 // Shapes s_k = q(x | z_k)^exponent of the flow's density q (Chen et al. 2020,
 // Eq. 5; the exponent is ours, see neural_brdf_model.h), and a Lambertian lobe
-// beside them where the layout has one.
+// beside them where the layout has one. Beyond a table's bins q is what it is
+// at the nearest one (WithinMerlBins).
 class FlowLobes final : public LobeModel {
  public:
   // layout: with codes of the model's size.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/brdf_grid.h"
 #include "ibrdf/brdf/merl_table.h"
 
@@ -22,6 +23,13 @@ FlowColumns MerlColumns() {
     }
   }
   return columns;
+}
+
+Eigen::Vector3d WithinMerlBins(const Eigen::Vector3d& x) {
+  const double theta_d =
+      std::min(x[1] * (kPi / 2), MerlThetaD(kMerlThetaD - 1));
+  const Eigen::Vector3d first = ToUnitCube(MerlThetaH(0), theta_d, x[2] * kPi);
+  return {std::max(x[0], first[0]), first[1], x[2]};
 }
 
 }  // namespace ibrdf
