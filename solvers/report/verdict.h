@@ -59,9 +59,11 @@ struct VerdictNumbers {
   // Errors to expect, natural logarithm: of the reflectance after the best
   // scale; of its hue (ratios of channels) and of its level, given the gauge.
   double reflectance_error = kNone, hue_error = kNone, level_error = kNone;
-  // The difference from the estimate of another reflectance with a like
+  // The difference from the best reflectance of another one with a like
   // evidence; 0: there is none.
   double rival_difference = 0.0;
+  double structured_misfit = kNone;  // as MaterialSolution has it
+  bool may_search_wider = false;  // solver.search: thorough was not asked for
   // Standard deviation of log radiance that half of the light stays below.
   double light_error = kNone;
 };

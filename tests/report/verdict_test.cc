@@ -283,6 +283,26 @@ TEST(Verdict, AnotherReflectanceIsAReason) {
   EXPECT_EQ(Trust::kFair, v.ratings.gloss);
 }
 
+TEST(Verdict, WhatIsLeftUnexplainedAsksForAWiderSearch) {
+  VerdictNumbers n = Good();
+  n.misfit = 0.04;
+  const Verdict before = MakeVerdict(n);
+  n.structured_misfit = 0.019;
+  n.may_search_wider = true;
+  EXPECT_EQ(before.Sentences(), MakeVerdict(n).Sentences());
+  n.structured_misfit = 0.021;
+  Verdict v = MakeVerdict(n);
+  EXPECT_TRUE(Contains(v.doubt, "is not noise")) << v.doubt;
+  EXPECT_TRUE(Contains(v.next, "solver.search=thorough")) << v.next;
+  n.may_search_wider = false;
+  v = MakeVerdict(n);
+  EXPECT_TRUE(Contains(v.doubt, "is not noise")) << v.doubt;
+  EXPECT_TRUE(Contains(v.next, "--known-light")) << v.next;
+  // Like normals that differ say more.
+  n.floor = n.misfit;
+  EXPECT_FALSE(Contains(MakeVerdict(n).doubt, "is not noise"));
+}
+
 TEST(Verdict, WhatIsNotKnownHasNoNumbers) {
   VerdictNumbers n = Good();
   n.reflectance_error = std::log(58.87);
