@@ -199,14 +199,19 @@ std::string PaintWarning(const SolvedProblem& solved) {
   if (solved.inverse.variation != ReflectanceVariation::kAuto) return "";
   const bool edges = solved.inverse.look != nullptr &&
                      solved.inverse.look->check.MayBePainted();
+  const std::string one_material =
+      " Its albedo was taken to vary; for one material set "
+      "reflectance.variation: none.";
   if (solved.solution.has_paint()) {
-    return std::string("The object looks painted: ") +
-           (edges ? "its colour has sharp edges, and paint explains the image "
-                    "better than mirrored light does."
-                  : "under the known light paint explains what one material "
-                    "does not.") +
-           " Its albedo was taken to vary; for one material set "
-           "reflectance.variation: none.";
+    return edges ? "The object looks painted: its colour has sharp edges, and "
+                   "paint explains the image better than mirrored light "
+                   "does." +
+                       one_material
+                 : "One material does not explain the image under the known "
+                   "light, and paint does." +
+                       one_material +
+                       " Then check the light's frame, the shape and the "
+                       "curve of the image's values.";
   }
   return edges ? "The object's colour has sharp edges. They were taken for "
                  "what one material mirrors; if it is painted, set "

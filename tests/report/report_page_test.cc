@@ -395,6 +395,14 @@ TEST(ResultWarnings, EdgesAreNamedWhereTheyWereSeenAlone) {
   EXPECT_TRUE(ResultWarnings(example.Solved()).empty());
   LookAtEdges(0.5, &example);
   EXPECT_TRUE(ResultWarnings(example.Solved()).empty());
+  // Paint was found all the same.
+  example.solution.albedo = Image(1, 1);
+  const std::vector<std::string> warnings = ResultWarnings(example.Solved());
+  ASSERT_EQ(1u, warnings.size());
+  EXPECT_TRUE(Contains(warnings[0], "One material does not explain the image"))
+      << warnings[0];
+  LookAtEdges(1.5, &example);
+  EXPECT_TRUE(Contains(ResultWarnings(example.Solved())[0], "has sharp edges"));
 }
 
 TEST(ResultWarnings, GlossCanHideAnotherCurve) {
