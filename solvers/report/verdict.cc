@@ -66,6 +66,11 @@ bool FloorExplains(const VerdictNumbers& n) {
   return n.floor >= kFloorShare * n.misfit;
 }
 
+// And like normals do not say why.
+bool LeavesMoreThanNoise(const VerdictNumbers& n) {
+  return n.structured_misfit > kUnexplained && !FloorExplains(n);
+}
+
 Trust Lower(Trust trust, int levels) {
   if (trust == Trust::kKnown) return trust;
   const int lowest = static_cast<int>(Trust::kNotDetermined);
@@ -264,7 +269,7 @@ std::vector<std::string> Reasons(const VerdictNumbers& n) {
   }
   if (n.rival_difference > kRivalDifference) {
     reasons.emplace_back("another reflectance explains the image as well");
-  } else if (n.structured_misfit > kUnexplained && !FloorExplains(n)) {
+  } else if (LeavesMoreThanNoise(n)) {
     reasons.emplace_back("what the estimate leaves of the image is not noise");
   } else if (n.reflectance_error > kUncertain) {
     reasons.emplace_back("many reflectances explain this image");
@@ -342,7 +347,7 @@ std::string NextSentence(const VerdictNumbers& n) {
     return "Next, check the shape, the mask, the camera and the curve of the "
            "image's values (--response).";
   }
-  if (n.may_search_wider && n.structured_misfit > kUnexplained) {
+  if (n.may_search_wider && LeavesMoreThanNoise(n)) {
     return "Next, search wider for the gloss: --set solver.search=thorough "
            "--set solver.seconds=300.";
   }

@@ -300,7 +300,10 @@ TEST(Verdict, WhatIsLeftUnexplainedAsksForAWiderSearch) {
   EXPECT_TRUE(Contains(v.next, "--known-light")) << v.next;
   // Like normals that differ say more.
   n.floor = n.misfit;
-  EXPECT_FALSE(Contains(MakeVerdict(n).doubt, "is not noise"));
+  n.may_search_wider = true;
+  v = MakeVerdict(n);
+  EXPECT_FALSE(Contains(v.doubt, "is not noise")) << v.doubt;
+  EXPECT_FALSE(Contains(v.next, "solver.search")) << v.next;
 }
 
 TEST(Verdict, WhatIsNotKnownHasNoNumbers) {
