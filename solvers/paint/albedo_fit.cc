@@ -74,8 +74,8 @@ PaintSteps StepsOf(const std::vector<ApparentPaint>& images,
   return steps;
 }
 
-// Chroma where it is seen, filled in from around where it is not; or, where it
-// drifts, what its steps make.
+// Chroma where it is seen, filled in from around where it is not; or, where
+// what drifts is not paint's, what its steps make.
 std::vector<Eigen::Array2d> FittedChroma(
     const ApparentPaint& apparent, const PaintSteps& steps,
     const std::vector<NeighbourPair>& neighbours, bool drifts) {
@@ -101,6 +101,53 @@ std::vector<Eigen::Array2d> FittedChroma(
     }
   }
   return fitted;
+}
+
+// Standard deviation, per axis, of chroma that is not what its steps make.
+double ChromaDrift(const ApparentPaint& apparent, const PaintSteps& steps,
+                   const std::vector<NeighbourPair>& neighbours) {
+  const std::vector<Eigen::Array2d> stepped =
+      FittedChroma(apparent, steps, neighbours, true);
+  Eigen::Array2d sum = Eigen::Array2d::Zero(), squares = sum;
+  double count = 0.0;
+  for (size_t i = 0; i < stepped.size(); ++i) {
+    if (apparent.seen[i] == 0.0) continue;
+    const Eigen::Array2d drift = apparent.chroma[i] - stepped[i];
+    sum += drift;
+    squares += drift.square();
+    count += 1.0;
+  }
+  if (count == 0.0) return 0.0;
+  return std::sqrt(
+      std::max(0.5 * (squares / count - (sum / count).square()).sum(), 0.0));
+}
+
+// How much of what the image says beyond its colours' luminance, and says
+// smoothly, is paint: its variance over that of paint and shading. Paint that
+// drifts in chroma drifts in luminance as well, by more as the prior has it.
+double PaintShareOfDrift(const ApparentPaint& apparent, const PaintSteps& steps,
+                         const std::vector<NeighbourPair>& neighbours,
+                         const AlbedoFitOptions& options) {
+  const AlbedoPrior prior;
+  const double of_paint = Square(prior.luminance_std / prior.chroma_std *
+                                 ChromaDrift(apparent, steps, neighbours));
+  return of_paint / (of_paint + Square(options.shading_std));
+}
+
+// That drift of luminance.
+std::vector<double> SmoothDrift(const ApparentPaint& apparent,
+                                const std::vector<double>& luminance,
+                                const PaintSteps& steps,
+                                const std::vector<NeighbourPair>& neighbours,
+                                const AlbedoFitOptions& options) {
+  std::vector<double> beyond(luminance.size());
+  for (size_t i = 0; i < beyond.size(); ++i) {
+    beyond[i] = apparent.seen[i] * (apparent.luminance[i] - luminance[i]);
+  }
+  return FieldOfReach(options.drift_reach,
+                      RobustWeights(apparent, luminance, options.shading_std))
+      .Solve(neighbours, steps.weights,
+             std::vector<double>(neighbours.size(), 0.0), beyond, beyond);
 }
 
 // Luminance by its steps, drawn to what its colour has.
@@ -141,6 +188,7 @@ AlbedoFitOptions UnderKnownShading() {
   options.edge = 0.03;
   options.edge_by_turn = 1.0;
   options.reach = 0.3;
+  options.luminance_drifts = false;
   return options;
 }
 
@@ -149,6 +197,7 @@ AlbedoFitOptions OfPaintThatFades() {
   options.edge = options.chroma_edge = kAnyStep;
   options.edge_by_turn = 0.0;
   options.reach = 1.0;
+  options.luminance_drifts = false;
   return options;
 }
 
@@ -158,6 +207,8 @@ AlbedoFitOptions InViews(AlbedoFitOptions options,
   options.reach /= views;
   options.parting_reach /= views;
   options.error_reach /= views;
+  options.chroma_reach /= views;
+  options.drift_reach /= views;
   return options;
 }
 
@@ -167,10 +218,21 @@ std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
   const std::vector<ApparentPaint> of_images = ApparentPaintsOf(images);
   ApparentPaint apparent = Together(of_images);
   const PaintSteps steps = StepsOf(of_images, neighbours, options);
+  const double share_of_drift =
+      options.luminance_drifts && !options.chroma_drifts
+          ? PaintShareOfDrift(apparent, steps, neighbours, options)
+          : 0.0;
   apparent.chroma =
       FittedChroma(apparent, steps, neighbours, options.chroma_drifts);
-  const std::vector<double> luminance =
+  std::vector<double> luminance =
       FittedLuminance(apparent, steps, neighbours, options);
+  if (share_of_drift > 0.0) {
+    const std::vector<double> drift =
+        SmoothDrift(apparent, luminance, steps, neighbours, options);
+    for (size_t i = 0; i < drift.size(); ++i) {
+      luminance[i] += share_of_drift * drift[i];
+    }
+  }
   std::vector<double> out(3 * luminance.size());
   for (size_t i = 0; i < luminance.size(); ++i) {
     const Eigen::Array3d log_colour = FromChromaPlane(apparent.chroma[i]);

@@ -34,6 +34,12 @@ struct AlbedoFitOptions {
   // Over this share of the object's size, the square root of its pixels, paint
   // may leave the albedo of its colour.
   double reach = 0.15;
+  // Whether luminance that drifts beyond its colour's is paint's in part: as
+  // far as the chroma of this object drifts, too. One image does not tell it
+  // from an error of the shading. It drifts over `drift_reach` of the object's
+  // size.
+  bool luminance_drifts = true;
+  double drift_reach = 0.035;
   // Over this share the error of shading is about as large (AlbedoLogStd). It
   // was chosen on the apple, the turtle and the squirrel of
   // experiments/painted; 0.02 to 0.05 do as well.
@@ -41,6 +47,11 @@ struct AlbedoFitOptions {
   // Relative error of the gloss's radiance (AlbedoLogStd). Its energy came out
   // between 0.4 and 3.3 times the true one on these three.
   double gloss_error = 1.0;
+  // Over this share paint has about one chroma (SeparateGloss).
+  double chroma_reach = 0.035;
+  // Standard deviation of the log of gloss between image and render, beside
+  // their error of shading (SeparateGloss).
+  double gloss_std = 0.5;
 };
 
 // The options where little of what changes over the object is shading's that

@@ -137,11 +137,13 @@ double DeviationAtLikeNormals(const std::vector<ShadingPoint>& points,
              : kDeviationOverMad * UpperMedian(std::move(deviations));
 }
 
-// FitAlbedo of a matte object in these images, its mean 0 in each channel.
+// FitAlbedo of a matte object in these images, its mean 0 in each channel. What
+// drifts is left to the search, which weighs it against the light.
 std::vector<double> PaintOf(const std::vector<ShadingPoint>& points,
                             const std::vector<PaintedImage>& images,
                             const std::vector<NeighbourPair>& neighbours,
-                            const AlbedoFitOptions& options) {
+                            AlbedoFitOptions options) {
+  options.luminance_drifts = false;
   std::vector<Observations> matte;
   for (const auto& [unpainted, observed] : images) {
     matte.push_back(WithoutHighlights(points, *observed, unpainted->matte));

@@ -10,6 +10,7 @@
 #include "ibrdf/solvers/paint/albedo_deviation.h"
 #include "ibrdf/solvers/paint/albedo_fit.h"
 #include "ibrdf/solvers/paint/first_paint.h"
+#include "ibrdf/solvers/paint/gloss_separation.h"
 #include "ibrdf/solvers/solve/other_photographs.h"
 #include "ibrdf/solvers/solve/summary.h"
 #include "ibrdf/solvers/solve/turns.h"
@@ -42,6 +43,9 @@ class PaintedObject {
  private:
   std::vector<double> GainOf(const LitPhotograph& other) const;
   std::vector<PaintedImage> Images() const;
+  std::vector<double> GlossOf(const PaintedImage& image) const;
+  // The images with the gloss that FitPaint found in each.
+  std::vector<PaintedImage> SeparatedImages() const;
   void FitPaint();
 
   const SolveSetup& setup_;
@@ -49,7 +53,8 @@ class PaintedObject {
   const std::vector<NeighbourPair> neighbours_;
   const AlbedoFitOptions options_;
   UnpaintedReflectance reflectance_;
-  UnpaintedRadiance unpainted_;  // in the first photograph
+  UnpaintedRadiance unpainted_;               // in the first photograph
+  std::vector<UnpaintedRadiance> separated_;  // of each photograph, by FitPaint
   std::vector<double> log_albedo_;
 };
 
@@ -69,6 +74,14 @@ std::vector<double> PaintedObject::GainOf(const LitPhotograph& other) const {
              : PaintGain(other.unpainted, log_albedo_);
 }
 
+std::vector<PaintedImage> PaintedObject::SeparatedImages() const {
+  std::vector<PaintedImage> images = Images();
+  for (size_t k = 0; k < images.size(); ++k) {
+    images[k].unpainted = &separated_[k];
+  }
+  return images;
+}
+
 std::vector<PaintedImage> PaintedObject::Images() const {
   std::vector<PaintedImage> images = {{&unpainted_, &setup_.pixels.observed}};
   for (const LitPhotograph& other : others_) {
@@ -77,8 +90,20 @@ std::vector<PaintedImage> PaintedObject::Images() const {
   return images;
 }
 
+// Where chroma that drifts is the light's it tells no gloss.
+std::vector<double> PaintedObject::GlossOf(const PaintedImage& image) const {
+  return options_.chroma_drifts
+             ? image.unpainted->gloss
+             : SeparateGloss(image, log_albedo_, reflectance_.albedo,
+                             neighbours_, options_);
+}
+
 void PaintedObject::FitPaint() {
-  log_albedo_ = FitAlbedo(Images(), neighbours_, options_);
+  separated_.clear();
+  for (const PaintedImage& image : Images()) {
+    separated_.push_back({image.unpainted->matte, GlossOf(image)});
+  }
+  log_albedo_ = FitAlbedo(SeparatedImages(), neighbours_, options_);
 }
 
 StatusOr<Solution> PaintedObject::TakeTurn(const ReflectanceEstimate& found,
@@ -103,8 +128,8 @@ StatusOr<Solution> PaintedObject::TakeTurn(const ReflectanceEstimate& found,
     solution.other_lights.push_back(other.light);
     ScalePixels(GainOf(other), points, &solution.other_lights.back().render);
   }
-  SetPaint(setup_, reflectance_, unpainted_, log_albedo_,
-           AlbedoLogStd(Images(), neighbours_, log_albedo_, options_),
+  SetPaint(setup_, reflectance_, separated_.front(), log_albedo_,
+           AlbedoLogStd(SeparatedImages(), neighbours_, log_albedo_, options_),
            &solution);
   return solution;
 }

@@ -124,6 +124,35 @@ TEST(FitAlbedo, KeepsLargeFieldsOfOneChromaApart) {
   EXPECT_LT(with, 0.6 * without);
 }
 
+// Log albedo that fades over the ball: luminance with chroma, or alone.
+Painted MakeFading(double chroma, double luminance) {
+  Painted p = MakePainted(0.0);
+  const Eigen::Array3d axis(0.7, 0.0, -0.7);
+  for (size_t i = 0; i < p.radiance.size(); ++i) {
+    const double x = static_cast<double>(i) / p.radiance.size() - 0.5;
+    p.log_albedo[i] = chroma * std::sin(9.0 * x) * axis[i % 3] +
+                      luminance * std::sin(7.0 * x);
+    p.radiance[i] =
+        std::exp(p.log_albedo[i]) * p.unpainted.matte[i] + p.unpainted.gloss[i];
+  }
+  return p;
+}
+
+// An apple's red fades in luminance as it does in chroma. A drift of luminance
+// alone may be the shading's.
+TEST(FitAlbedo, LuminanceDriftsAsFarAsChromaDoes) {
+  AlbedoFitOptions by_colour;
+  by_colour.luminance_drifts = false;
+  const auto gain = [&](double chroma) {
+    const Painted p = MakeFading(chroma, 0.4);
+    return AlignedRmse(Fit(p), p.log_albedo) /
+           AlignedRmse(Fit(p, by_colour), p.log_albedo);
+  };
+  EXPECT_LT(gain(0.5), 0.5);
+  EXPECT_GT(gain(0.0), 0.95);
+  EXPECT_LT(gain(0.0), 1.05);
+}
+
 // In each image a field is in a shadow that the render has not, another field
 // in each: in one image it is a dark paint, in three the light's.
 TEST(FitAlbedo, TakesNoShadowThatMovesForPaint) {
