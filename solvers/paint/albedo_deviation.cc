@@ -164,14 +164,19 @@ std::vector<double> AlbedoLogStd(const std::vector<PaintedImage>& images,
   const Values of_median = mean.Of(SquaredErrorOfMedian(of_images, apparent));
   const Values E = RelativeIrradiance(images, apparent.seen);
   const double missing = MissingIrradiance(r, E, apparent.seen);
+  // What is left of paint's variance, and of shading's, once their sum is
+  // known.
+  const double of_drift = PaintShareOfDrift(images, neighbours, options) *
+                          options.shading_std * options.shading_std /
+                          static_cast<double>(images.size());
   Values variance(fitted.size());
   for (size_t i = 0; i < variance.size(); ++i) {
     if (apparent.seen[i] == 0.0) continue;
     const double of_light = std::log1p(missing / E[i]);
     const double of_gloss =
         ChangeByGloss(images, log_albedo, options.gloss_error, i);
-    variance[i] = of_shading[i] + of_median[i] + of_light * of_light +
-                  of_gloss * of_gloss;
+    variance[i] = of_shading[i] + of_median[i] + of_drift +
+                  of_light * of_light + of_gloss * of_gloss;
     if (!(variance[i] < kMostVariance)) variance[i] = kMostVariance;
   }
   const UnseenPoints unseen(neighbours, apparent.seen);

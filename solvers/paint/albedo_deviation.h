@@ -16,6 +16,8 @@ namespace ibrdf {
 //   <r^2>                 the mean over the points about it (error_reach);
 //   s^2 / n               where n images see it: their mean square deviation
 //                         from their median;
+//   w shading_std^2 / n   where a share w of what drifts was taken for paint
+//                         (PaintShareOfDrift);
 //   log(1 + d / E)^2      light that the estimate has not, as much everywhere:
 //                         d, the median of |r| E. E is the point's irradiance
 //                         over the object's mean, root mean square of the

@@ -125,9 +125,10 @@ double ChromaDrift(const ApparentPaint& apparent, const PaintSteps& steps,
 // How much of what the image says beyond its colours' luminance, and says
 // smoothly, is paint: its variance over that of paint and shading. Paint that
 // drifts in chroma drifts in luminance as well, by more as the prior has it.
-double PaintShareOfDrift(const ApparentPaint& apparent, const PaintSteps& steps,
-                         const std::vector<NeighbourPair>& neighbours,
-                         const AlbedoFitOptions& options) {
+double ShareOfDrift(const ApparentPaint& apparent, const PaintSteps& steps,
+                    const std::vector<NeighbourPair>& neighbours,
+                    const AlbedoFitOptions& options) {
+  if (!options.luminance_drifts || options.chroma_drifts) return 0.0;
   const AlbedoPrior prior;
   const double of_paint = Square(prior.luminance_std / prior.chroma_std *
                                  ChromaDrift(apparent, steps, neighbours));
@@ -219,9 +220,7 @@ std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
   ApparentPaint apparent = Together(of_images);
   const PaintSteps steps = StepsOf(of_images, neighbours, options);
   const double share_of_drift =
-      options.luminance_drifts && !options.chroma_drifts
-          ? PaintShareOfDrift(apparent, steps, neighbours, options)
-          : 0.0;
+      ShareOfDrift(apparent, steps, neighbours, options);
   apparent.chroma =
       FittedChroma(apparent, steps, neighbours, options.chroma_drifts);
   std::vector<double> luminance =
@@ -239,6 +238,15 @@ std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
     for (int c = 0; c < 3; ++c) out[3 * i + c] = luminance[i] + log_colour[c];
   }
   return out;
+}
+
+double PaintShareOfDrift(const std::vector<PaintedImage>& images,
+                         const std::vector<NeighbourPair>& neighbours,
+                         const AlbedoFitOptions& options) {
+  const std::vector<ApparentPaint> of_images = ApparentPaintsOf(images);
+  return ShareOfDrift(Together(of_images),
+                      StepsOf(of_images, neighbours, options), neighbours,
+                      options);
 }
 
 std::vector<double> MatteGain(std::vector<double> log_albedo) {

@@ -86,6 +86,12 @@ std::vector<double> FitAlbedo(const std::vector<PaintedImage>& images,
                               const std::vector<NeighbourPair>& neighbours,
                               const AlbedoFitOptions& options);
 
+// The share in [0, 1) of a smooth drift of luminance that FitAlbedo takes for
+// paint; 0 where the options have none.
+double PaintShareOfDrift(const std::vector<PaintedImage>& images,
+                         const std::vector<NeighbourPair>& neighbours,
+                         const AlbedoFitOptions& options);
+
 // e^a [points * 3]: PaintGain where nothing is gloss.
 std::vector<double> MatteGain(std::vector<double> log_albedo);
 

@@ -216,6 +216,7 @@ SharedPaint FindSharedPaint(const std::vector<ShadingPoint>& points,
   SharedPaint out;
   // Shading that no light's model has is mostly gone from the median.
   out.options = UnderKnownShading();
+  out.options.luminance_drifts = true;
   out.options.chroma_drifts = true;
   std::vector<PaintedImage> images;
   for (size_t k = 0; k < observed.size(); ++k) {

@@ -12,13 +12,12 @@ namespace ibrdf {
 // Radiance [points * 3] of the gloss in an image: at each point the e^t g of
 // the most probable t, I = e^m e^p E + e^t g (the dichromatic model, Shafer
 // 1985). g is the render's gloss with two corrections. A coat reflects all
-// colours alike, so g has the light's colour, and of the channels' gloss the
-// least: what one channel has beyond another is paint's. And g shares the
-// point's error of shading, as image over render: what shadows the paint
-// shadows the gloss. p is the paint's chroma, as around the point; what pixels
-// differ by from theirs around says how well it is known. So a vivid paint
-// tells its gloss by what the gloss takes from its saturation, and of a grey
-// one g is returned.
+// colours alike, so g has the light's colour; a channel of the render's gloss
+// counts the more the less paint is in it. And g shares the point's error of
+// shading, as image over render: what shadows the paint shadows the gloss. p is
+// the paint's chroma, as around the point; what pixels differ by from theirs
+// around says how well it is known. So a vivid paint tells its gloss by what
+// the gloss takes from its saturation, and of a grey one g is returned.
 //
 // log_albedo [points * 3]: of the paint, as found so far. matte_albedo: what
 // image.unpainted->matte has of the irradiance, > 0.

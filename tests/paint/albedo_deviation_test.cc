@@ -253,5 +253,30 @@ TEST(AlbedoLogStd, SaysWhereTheFitIsWrong) {
   EXPECT_LT(error[1], stated[1]);
 }
 
+// A sheet whose red fades: a drift of luminance may be paint's, or shading's.
+TEST(AlbedoLogStd, CountsWhatMayHaveDrifted) {
+  Sheet sheet = MakeSheet(0.0);
+  for (size_t k = 0; k < sheet.log_albedo.size(); ++k) {
+    const double x = static_cast<double>(k / 3 % kSide) / kSide;
+    sheet.log_albedo[k] += k % 3 == 0 ? 0.6 * x : -0.3 * x;
+  }
+  sheet.Observe(0.1);
+  AlbedoFitOptions options, without;
+  without.luminance_drifts = false;
+  const std::vector<PaintedImage> image = {{&sheet.unpainted, &sheet.observed}};
+  const double share = PaintShareOfDrift(image, sheet.neighbours, options);
+  EXPECT_GT(share, 0.3);
+  EXPECT_LT(share, 1.0);
+  EXPECT_EQ(0.0, PaintShareOfDrift(image, sheet.neighbours, without));
+  const std::vector<double> before =
+      AlbedoLogStd(image, sheet.neighbours, sheet.log_albedo, without);
+  const std::vector<double> now = sheet.LogStd();
+  const double shading = options.shading_std * options.shading_std;
+  for (size_t i = 0; i < now.size(); ++i) {
+    EXPECT_NEAR(before[i] * before[i] + share * shading, now[i] * now[i],
+                kTolerance * now[i]);
+  }
+}
+
 }  // namespace
 }  // namespace ibrdf
