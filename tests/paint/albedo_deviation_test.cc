@@ -260,7 +260,7 @@ TEST(AlbedoLogStd, CountsWhatMayHaveDrifted) {
     const double x = static_cast<double>(k / 3 % kSide) / kSide;
     sheet.log_albedo[k] += k % 3 == 0 ? 0.6 * x : -0.3 * x;
   }
-  sheet.Observe(0.1);
+  sheet.Observe(0.02);
   AlbedoFitOptions options, without;
   without.luminance_drifts = false;
   const std::vector<PaintedImage> image = {{&sheet.unpainted, &sheet.observed}};
