@@ -13,9 +13,6 @@
 namespace ibrdf {
 namespace {
 
-// A pixel tells its albedo where at least this share of its radiance is matte.
-constexpr double kLeastMatteShare = 0.05;
-
 // The apparent paint of one point.
 struct Apparent {
   Eigen::Array3d log_albedo = Eigen::Array3d::Zero();

@@ -8,6 +8,9 @@
 
 namespace ibrdf {
 
+// A pixel tells its albedo where at least this share of its radiance is matte.
+inline constexpr double kLeastMatteShare = 0.05;
+
 // What the unpainted object would show [points * 3]: the radiance of the part
 // that paint scales, and the rest.
 struct UnpaintedRadiance {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "ibrdf/solvers/paint/chroma_plane.h"
 #include "ibrdf/solvers/paint/stepped_field.h"
@@ -16,8 +16,6 @@ constexpr int kRounds = 3;  // of the paint's chroma and the gloss
 // Between these the log of gloss over its render is sought.
 constexpr double kLeastLogFactor = -4.0, kMostLogFactor = 3.0;
 constexpr int kFactors = 41;
-// Paint keeps this share of every channel.
-constexpr double kLeastPaintShare = 0.05;
 // Standard deviation of what makes pixels' chroma differ beside paint: noise.
 constexpr double kLeastChromaStd = 0.02;
 
@@ -42,28 +40,6 @@ Eigen::Array3d TrustInChannels(const Colours& log_albedo,
   return trust / trust.sum();
 }
 
-// The render's gloss as the coat of a dielectric has it, under the image's
-// shading.
-Colours RenderedGloss(const PaintedImage& image, const Colours& I,
-                      const std::vector<double>& log_albedo,
-                      const Eigen::Array3d& matte_albedo) {
-  const Colours matte = ToColours(image.unpainted->matte);
-  const Colours gloss = ToColours(image.unpainted->gloss);
-  const Colours a = ToColours(log_albedo);
-  const Eigen::Array3d trust = TrustInChannels(a, matte_albedo);
-  Colours out(I.size(), Eigen::Array3d::Zero());
-  for (size_t i = 0; i < I.size(); ++i) {
-    const Eigen::Array3d E = matte[i] / matte_albedo;
-    const Eigen::Array3d render = a[i].exp() * matte[i] + gloss[i];
-    if (!(E.minCoeff() > 0.0) || !(render.minCoeff() > 0.0)) continue;
-    const double shading =
-        image.observed->valid[i] ? I[i].mean() / render.mean() : 1.0;
-    const Eigen::Array3d g = shading * (trust * gloss[i] / E).sum() * E;
-    if (g.isFinite().all()) out[i] = g;
-  }
-  return out;
-}
-
 // One point: I, and what it would show were its paint grey.
 struct PointModel {
   Eigen::Array3d I, matte, gloss;
@@ -73,7 +49,7 @@ struct PointModel {
            gloss.minCoeff() > 0.0;
   }
   Eigen::Array3d Paint(double factor) const {
-    return (I - factor * gloss).max(kLeastPaintShare * I);
+    return (I - factor * gloss).max(kLeastMatteShare * I);
   }
   // -log posterior of log factor t, doubled, the paint of this log chroma.
   double Cost(double t, const Eigen::Array3d& log_chroma,
@@ -86,12 +62,37 @@ struct PointModel {
   }
 };
 
+// The points with the render's gloss as the coat of a dielectric has it, under
+// the image's shading.
+std::vector<PointModel> PointsOf(const PaintedImage& image,
+                                 const std::vector<double>& log_albedo,
+                                 const Eigen::Array3d& matte_albedo) {
+  const Colours I = ToColours(image.observed->radiance);
+  const Colours matte = ToColours(image.unpainted->matte);
+  const Colours gloss = ToColours(image.unpainted->gloss);
+  const Colours a = ToColours(log_albedo);
+  const Eigen::Array3d trust = TrustInChannels(a, matte_albedo);
+  std::vector<PointModel> out(I.size());
+  for (size_t i = 0; i < I.size(); ++i) {
+    const bool valid = image.observed->valid[i];
+    out[i] = {valid ? I[i] : Eigen::Array3d::Zero(), matte[i],
+              Eigen::Array3d::Zero()};
+    const Eigen::Array3d E = matte[i] / matte_albedo;
+    const Eigen::Array3d render = a[i].exp() * matte[i] + gloss[i];
+    if (!(E.minCoeff() > 0.0) || !(render.minCoeff() > 0.0)) continue;
+    const double shading = valid ? I[i].mean() / render.mean() : 1.0;
+    const Eigen::Array3d g = shading * (trust * gloss[i] / E).sum() * E;
+    if (g.isFinite().all()) out[i].gloss = g;
+  }
+  return out;
+}
+
 // The most probable log factor: the least on a grid, its parabola refined.
 double BestLogFactor(const PointModel& point, const Eigen::Array3d& log_chroma,
                      double chroma_variance, double gloss_variance) {
   const double most = std::min(
       kMostLogFactor,
-      std::log((1.0 - kLeastPaintShare) * (point.I / point.gloss).minCoeff()));
+      std::log((1.0 - kLeastMatteShare) * (point.I / point.gloss).minCoeff()));
   const double step = (std::max(most - kLeastLogFactor, 1.0)) / (kFactors - 1);
   std::vector<double> costs(kFactors);
   for (int k = 0; k < kFactors; ++k) {
@@ -157,6 +158,28 @@ double ChromaVariance(const MatteChroma& matte,
          kLeastChromaStd * kLeastChromaStd;
 }
 
+// What the gloss is over the render's, at each point.
+std::vector<double> GlossFactors(const std::vector<PointModel>& points,
+                                 const std::vector<NeighbourPair>& neighbours,
+                                 const AlbedoFitOptions& options) {
+  std::vector<double> factors(points.size(), 1.0);
+  const double gloss_variance = options.gloss_std * options.gloss_std;
+  const MatteChroma at_first = ChromaBeside(factors, points);
+  MatteChroma matte = at_first;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<Eigen::Array2d> around =
+        SmoothChroma(matte, neighbours, options.chroma_reach);
+    const double chroma_variance = ChromaVariance(at_first, around);
+    for (size_t i = 0; i < points.size(); ++i) {
+      if (!points[i].tells()) continue;
+      factors[i] = std::exp(BestLogFactor(points[i], FromChromaPlane(around[i]),
+                                          chroma_variance, gloss_variance));
+    }
+    matte = ChromaBeside(factors, points);
+  }
+  return factors;
+}
+
 }  // namespace
 
 std::vector<double> SeparateGloss(const PaintedImage& image,
@@ -164,33 +187,15 @@ std::vector<double> SeparateGloss(const PaintedImage& image,
                                   const Eigen::Array3d& matte_albedo,
                                   const std::vector<NeighbourPair>& neighbours,
                                   const AlbedoFitOptions& options) {
-  const Colours I = ToColours(image.observed->radiance);
-  CHECK_EQ(I.size(), image.observed->valid.size());
-  CHECK_EQ(log_albedo.size(), 3 * I.size());
+  const size_t count = image.observed->valid.size();
+  CHECK_EQ(log_albedo.size(), 3 * count);
   CHECK(matte_albedo.minCoeff() > 0.0);
-  const Colours matte = ToColours(image.unpainted->matte);
-  const Colours gloss = RenderedGloss(image, I, log_albedo, matte_albedo);
-  std::vector<PointModel> points;
-  for (size_t i = 0; i < I.size(); ++i) {
-    points.push_back({image.observed->valid[i] ? I[i] : Eigen::Array3d::Zero(),
-                      matte[i], gloss[i]});
-  }
-  std::vector<double> factors(I.size(), 1.0);
-  const double gloss_variance = options.gloss_std * options.gloss_std;
-  const MatteChroma at_first = ChromaBeside(factors, points);
-  for (int round = 0; round < kRounds; ++round) {
-    const std::vector<Eigen::Array2d> around = SmoothChroma(
-        ChromaBeside(factors, points), neighbours, options.chroma_reach);
-    const double chroma_variance = ChromaVariance(at_first, around);
-    for (size_t i = 0; i < points.size(); ++i) {
-      if (!points[i].tells()) continue;
-      factors[i] = std::exp(BestLogFactor(points[i], FromChromaPlane(around[i]),
-                                          chroma_variance, gloss_variance));
-    }
-  }
+  const std::vector<PointModel> points =
+      PointsOf(image, log_albedo, matte_albedo);
+  const std::vector<double> factors = GlossFactors(points, neighbours, options);
   std::vector<double> out;
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Array3d g = factors[i] * gloss[i];
+  for (size_t i = 0; i < count; ++i) {
+    const Eigen::Array3d g = factors[i] * points[i].gloss;
     out.insert(out.end(), {g[0], g[1], g[2]});
   }
   return out;

@@ -91,7 +91,6 @@ TEST(SeparateGloss, VividPaintTellsItsGloss) {
 // under the shading that the image has.
 TEST(SeparateGloss, GreyPaintKeepsTheRender) {
   GlossyBall ball = MakeGlossyBall(-kMatteAlbedo.log());
-  for (double& g : ball.unpainted.gloss) g = 0.0;
   for (size_t i = 0; i < ball.gloss.size(); ++i) {
     ball.log_albedo[i] = -std::log(kMatteAlbedo[static_cast<int>(i % 3)]);
     ball.unpainted.gloss[i] =
