@@ -256,11 +256,17 @@ std::vector<double> MatteGain(std::vector<double> log_albedo) {
 
 std::vector<double> PaintGain(const UnpaintedRadiance& unpainted,
                               const std::vector<double>& log_albedo) {
+  return PaintGain(unpainted, log_albedo, unpainted.gloss);
+}
+
+std::vector<double> PaintGain(const UnpaintedRadiance& unpainted,
+                              const std::vector<double>& log_albedo,
+                              const std::vector<double>& gloss) {
   std::vector<double> gain(log_albedo.size(), 1.0);
   for (size_t i = 0; i < gain.size(); ++i) {
-    const double matte = unpainted.matte[i], gloss = unpainted.gloss[i];
-    const double g =
-        (std::exp(log_albedo[i]) * matte + gloss) / (matte + gloss);
+    const double matte = unpainted.matte[i];
+    const double g = (std::exp(log_albedo[i]) * matte + gloss[i]) /
+                     (matte + unpainted.gloss[i]);
     if (std::isfinite(g) && g > 0.0) gain[i] = g;
   }
   return gain;

@@ -99,4 +99,9 @@ std::vector<double> MatteGain(std::vector<double> log_albedo);
 std::vector<double> PaintGain(const UnpaintedRadiance& unpainted,
                               const std::vector<double>& log_albedo);
 
+// The same where the painted object shows another gloss [points * 3].
+std::vector<double> PaintGain(const UnpaintedRadiance& unpainted,
+                              const std::vector<double>& log_albedo,
+                              const std::vector<double>& gloss);
+
 }  // namespace ibrdf

@@ -123,10 +123,14 @@ StatusOr<Solution> PaintedObject::TakeTurn(const ReflectanceEstimate& found,
         FindOtherLight(reflectance_, GainOf(other), *context, &other));
   }
   FitPaint();
-  ScalePixels(PaintGain(unpainted_, log_albedo_), points, &solution.render);
-  for (const LitPhotograph& other : others_) {
-    solution.other_lights.push_back(other.light);
-    ScalePixels(GainOf(other), points, &solution.other_lights.back().render);
+  // Renders are the matte part in its paint and the gloss that is written.
+  ScalePixels(PaintGain(unpainted_, log_albedo_, separated_.front().gloss),
+              points, &solution.render);
+  for (size_t k = 0; k < others_.size(); ++k) {
+    solution.other_lights.push_back(others_[k].light);
+    ScalePixels(
+        PaintGain(others_[k].unpainted, log_albedo_, separated_[k + 1].gloss),
+        points, &solution.other_lights.back().render);
   }
   SetPaint(setup_, reflectance_, separated_.front(), log_albedo_,
            AlbedoLogStd(SeparatedImages(), neighbours_, log_albedo_, options_),

@@ -62,6 +62,16 @@ TEST(FitAlbedo, FindsPaintUnderGloss) {
   }
 }
 
+TEST(PaintGain, ShowsAnotherGloss) {
+  const UnpaintedRadiance unpainted = {{2.0, 1.0}, {0.5, 0.25}};
+  const std::vector<double> log_albedo = {std::log(0.5), std::log(3.0)};
+  const std::vector<double> gain = PaintGain(unpainted, log_albedo, {0.1, 0.0});
+  EXPECT_DOUBLE_EQ(1.1 / 2.5, gain[0]);
+  EXPECT_DOUBLE_EQ(3.0 / 1.25, gain[1]);
+  EXPECT_EQ(PaintGain(unpainted, log_albedo),
+            PaintGain(unpainted, log_albedo, unpainted.gloss));
+}
+
 // What the shading lacks is not paint: it drifts, and like colours tell.
 TEST(FitAlbedo, LeavesMostOfAnErrorOfShading) {
   const Painted p = MakePainted(0.2);
