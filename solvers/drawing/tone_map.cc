@@ -6,7 +6,18 @@
 #include <cmath>
 #include <utility>
 
+#include "ibrdf/image/response_curve.h"
+
 namespace ibrdf {
+namespace {
+
+const ResponseCurve& Srgb() {
+  static const ResponseCurve curve({ResponseKind::kSrgb, {}, {}});
+  return curve;
+}
+
+}  // namespace
+
 double Percentile(std::vector<double> values, double percentile) {
   const size_t rank =
       std::min(values.size() - 1,
@@ -18,10 +29,7 @@ double Percentile(std::vector<double> values, double percentile) {
   return values[rank];
 }
 
-double DecodeSrgb(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92
-                            : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
+double DecodeSrgb(double encoded) { return Srgb().Decode(encoded); }
 
 double ExposureOf(const Image& reference, const Mask& mask, double percentile) {
   std::vector<double> values;
@@ -36,9 +44,7 @@ double ExposureOf(const Image& reference, const Mask& mask, double percentile) {
 }
 
 uint8_t EncodeSrgb(double linear) {
-  const double x = std::clamp(linear, 0.0, 1.0);
-  const double encoded =
-      x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+  const double encoded = Srgb().Encode(std::clamp(linear, 0.0, 1.0));
   return static_cast<uint8_t>(std::lround(255.0 * encoded));
 }
 

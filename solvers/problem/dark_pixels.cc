@@ -27,6 +27,8 @@ constexpr size_t kLeastPoints = 8;
 constexpr double kLeastDeviation = 0.1;
 constexpr double kLeastOfOthers = 0.01;  // of the other channels' deviation
 constexpr double kFloorSpreads = 3.0;
+// Of the lit pixels' radiance: what no camera tells from black.
+constexpr double kBlack = 1e-6;
 
 // The texels of a map that light anything, the strongest first.
 class Lights {
@@ -104,6 +106,19 @@ double Lights::Irradiance(const ShadingPoint& point, double enough) const {
   return sum;
 }
 
+// A channel's values at the points of this lighting, less what is no number.
+std::vector<double> ValuesOf(const Image& image,
+                             const std::vector<ShadingPoint>& points,
+                             const std::vector<Lighting>& lighting, Lighting of,
+                             int channel) {
+  std::vector<double> values;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double v = image.rgb[size_t{3} * points[i].pixel + channel];
+    if (lighting[i] == of && std::isfinite(v)) values.push_back(v);
+  }
+  return values;
+}
+
 }  // namespace
 
 std::vector<Lighting> FindLighting(const std::vector<ShadingPoint>& points,
@@ -136,15 +151,14 @@ StrayLight MeasureStrayLight(const Image& image,
                              const std::vector<Lighting>& lighting) {
   StrayLight stray;
   for (int c = 0; c < 3; ++c) {
-    std::vector<double> values;
-    for (size_t i = 0; i < points.size(); ++i) {
-      const double v = image.rgb[size_t{3} * points[i].pixel + c];
-      if (lighting[i] == Lighting::kNone && std::isfinite(v)) {
-        values.push_back(v);
-      }
-    }
+    std::vector<double> values =
+        ValuesOf(image, points, lighting, Lighting::kNone, c);
     if (values.size() < kLeastPoints) return {};
-    stray.ambient[c] = std::max(UpperMedian(values), 0.0);
+    const std::vector<double> lit =
+        ValuesOf(image, points, lighting, Lighting::kLit, c);
+    const double black = lit.empty() ? 0.0 : kBlack * UpperMedian(lit);
+    const double median = UpperMedian(values);
+    stray.ambient[c] = median > black ? median : 0.0;
     for (double& v : values) v = std::abs(v - stray.ambient[c]);
     stray.spread[c] = kDeviationOverMad * UpperMedian(std::move(values));
   }

@@ -38,7 +38,8 @@ std::vector<Lighting> FindLighting(const std::vector<ShadingPoint>& points,
 
 // The stray light of an image by its points of Lighting::kNone: their median,
 // and its prior's deviation, the larger of their spread and a tenth of it. 0 in
-// all channels where such points are few or black.
+// all channels where such points are few or black, to a millionth of the lit
+// ones' median.
 struct StrayLight {
   Eigen::Array3d ambient = Eigen::Array3d::Zero();
   Eigen::Array3d deviation = Eigen::Array3d::Zero();

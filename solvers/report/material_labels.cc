@@ -1,6 +1,9 @@
 #include "ibrdf/solvers/report/material_labels.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <regex>
+#include <system_error>
 
 #include "ibrdf/solvers/drawing/tone_map.h"
 #include "ibrdf/solvers/solve/summary.h"
@@ -43,6 +46,26 @@ Image LabelImage(const InverseProblem& inverse) {
 
 std::string MaterialFile(const MaterialLabel& label) {
   return "brdf_" + label.value;
+}
+
+std::vector<std::string> FilesOfOtherLabels(
+    const std::string& folder, const std::vector<MaterialLabel>& labels) {
+  static const std::regex of_label(
+      R"((brdf_\d{1,3}(_\d{1,3}_\d{1,3})?)\.(binary|json))");
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    std::smatch match;
+    if (!std::regex_match(name, match, of_label)) continue;
+    const std::string stem = match[1];
+    const bool other = std::none_of(labels.begin(), labels.end(),
+                                    [&](const MaterialLabel& label) {
+                                      return MaterialFile(label) == stem;
+                                    });
+    if (other) names.push_back(name);
+  }
+  return names;
 }
 
 Solution OfMaterial(const Solution& solution, int material) {

@@ -1,6 +1,7 @@
 // Labelled materials in a result: their colours, files and pictures.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "ibrdf/image/image.h"
 #include "ibrdf/image/rgb8_image.h"
@@ -24,6 +25,11 @@ Image LabelImage(const InverseProblem& inverse);
 
 // "brdf_128", the name of a label's files without their ends.
 std::string MaterialFile(const MaterialLabel& label);
+
+// Names of the files in a folder that are called as those of labels are, but of
+// none of these.
+std::vector<std::string> FilesOfOtherLabels(
+    const std::string& folder, const std::vector<MaterialLabel>& labels);
 
 // The solution as if the object were of one of its materials.
 Solution OfMaterial(const Solution& solution, int material);

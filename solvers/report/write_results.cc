@@ -26,7 +26,8 @@ constexpr double kWriteSecondsPerMegapixel = 2.0;
 
 // Left by an earlier run, the first would speak for what a run that is cut off
 // leaves, and the others be taken for results of this one.
-std::vector<std::string> EarlierNames(const SolvedProblem& solved) {
+std::vector<std::string> EarlierNames(const SolvedProblem& solved,
+                                      const std::string& folder) {
   const Solution& solution = solved.solution;
   std::vector<std::string> names = {"result.json", "report.html", "brdf.png"};
   if (solution.brdf.raw.empty()) {
@@ -41,7 +42,12 @@ std::vector<std::string> EarlierNames(const SolvedProblem& solved) {
   if (!solution.has_paint()) {
     names.insert(names.end(), PaintFiles().begin(), PaintFiles().end());
   }
-  if (solution.materials.empty()) names.emplace_back("labels.png");
+  const bool labelled = !solution.materials.empty();
+  if (!labelled) names.emplace_back("labels.png");
+  const std::vector<std::string> of_labels =
+      FilesOfOtherLabels(folder, labelled ? solved.inverse.materials
+                                          : std::vector<MaterialLabel>());
+  names.insert(names.end(), of_labels.begin(), of_labels.end());
   const std::vector<std::string> of_lights =
       OtherLightPaths(solution.other_lights.size(), kMaxOtherLights, "");
   names.insert(names.end(), of_lights.begin(), of_lights.end());
@@ -153,7 +159,7 @@ std::vector<std::string> ResultPaths(const Problem& problem,
 
 Status WriteResults(const SolvedProblem& solved, const std::string& folder) {
   IBRDF_RETURN_IF_ERROR(PrepareFolder(folder));
-  RemoveEarlier(solved.problem, folder, EarlierNames(solved));
+  RemoveEarlier(solved.problem, folder, EarlierNames(solved, folder));
   IBRDF_RETURN_IF_ERROR(WriteReflectance(solved, folder));
   IBRDF_RETURN_IF_ERROR(WriteMaterials(solved, folder));
   IBRDF_RETURN_IF_ERROR(WriteRadiance(solved, folder));

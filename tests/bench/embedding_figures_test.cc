@@ -7,6 +7,7 @@
 #include <random>
 #include <sstream>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/io/model_file.h"
 #include "ibrdf/solvers/bench/embedding_map.h"
 #include "tests/support/small_embedding.h"
@@ -22,7 +23,7 @@ TEST(PrincipalAxes, FindsThePlaneOfPoints) {
   const Eigen::RowVector4d a(0.6, 0.8, 0, 0), b(0, 0, -0.6, 0.8);
   Eigen::MatrixXd points(16, 4);
   for (int i = 0; i < 16; ++i) {
-    const double t = 2 * M_PI * i / 16;
+    const double t = 2 * kPi * i / 16;
     points.row(i) = Eigen::RowVector4d(1, 2, 3, 4) + 5 * std::cos(t) * a +
                     2 * std::sin(t) * b;
   }
@@ -31,7 +32,7 @@ TEST(PrincipalAxes, FindsThePlaneOfPoints) {
   EXPECT_NEAR(map.variance[1], 4.0 / 29, kRounding);
   EXPECT_NEAR(map.variance[2], 0.0, kRounding);
   for (int i = 0; i < 16; ++i) {
-    const double t = 2 * M_PI * i / 16;
+    const double t = 2 * kPi * i / 16;
     EXPECT_NEAR(map.scores(i, 0), 5 * std::cos(t), kRounding * 10);
     EXPECT_NEAR(map.scores(i, 1), 2 * std::sin(t), kRounding * 10);
   }

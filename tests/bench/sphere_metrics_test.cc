@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/sample_merl.h"
 #include "tests/support/render_testing.h"
 
@@ -87,9 +88,8 @@ TEST(SphereMetrics, RelitReflectanceHasOneFreeScale) {
   EXPECT_NEAR(0.0, same.dssim, 1e-5);
   EXPECT_LT(0.05, CompareRelit(red, truth, map, 1).value().log_rmse);
   // Closed form where all that is seen is white: (1, 1, 1) for (2, 1, 1).
-  const MerlTable matte = SampleMerl([](double, double, double) {
-    return Eigen::Array3d::Constant(1 / M_PI);
-  });
+  const MerlTable matte = SampleMerl(
+      [](double, double, double) { return Eigen::Array3d::Constant(1 / kPi); });
   MerlTable pink = matte;
   for (int i = 0; i < kMerlBins; ++i) pink.raw[i] *= 2.0;
   const SphereMetrics furnace =

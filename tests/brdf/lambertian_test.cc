@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "ibrdf/base/pi.h"
+
 namespace ibrdf {
 namespace {
 
@@ -12,7 +14,7 @@ TEST(Lambertian, IsAlbedoOverPiEverywhere) {
   brdf.albedo = {0.1, 0.5, 0.9};
   for (const double theta : {0.0, 0.7, 1.57}) {
     const Eigen::Array3d f = brdf.Function()(theta, 1.57 - theta, 3.0 * theta);
-    for (int c = 0; c < 3; ++c) EXPECT_DOUBLE_EQ(brdf.albedo[c] / M_PI, f[c]);
+    for (int c = 0; c < 3; ++c) EXPECT_DOUBLE_EQ(brdf.albedo[c] / kPi, f[c]);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ibrdf/base/eigen_vectors.h"
+#include "ibrdf/base/pi.h"
 #include "ibrdf/brdf/cook_torrance_lobes.h"
 #include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/brdf/table_lobes.h"
@@ -127,7 +128,7 @@ TEST_F(ReflectanceSearchTest, UnderAKnownReflectanceFindsTheLight) {
   }
   ASSERT_FALSE(found->directional_lights.empty());
   EXPECT_GT(found->directional_lights[0].dot(directional_light),
-            std::cos(5.0 * M_PI / 180.0));
+            std::cos(5.0 * kDegree));
   // All resolutions are one: costs compare.
   EXPECT_LT(found->cost, found->candidates[0].first_cost);
   EXPECT_LT(found->misfit, found->candidates[0].first_misfit);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "ibrdf/base/pi.h"
 #include "ibrdf/light/environment_map.h"
 
 namespace ibrdf {
@@ -53,7 +54,7 @@ TEST(FindLighting, FollowsTheCosineOfALamp) {
   const Image map = LampMap(20, 20, 0.0f);
   const Eigen::Vector3d lamp = MapDirection(20.5, 20.5, 64, 128);
   const std::vector<Lighting> lighting = FindLighting(points, map, {});
-  const double texel = M_PI / 64;
+  const double texel = kPi / 64;
   for (size_t i = 0; i < points.size(); ++i) {
     const double cosine = points[i].normal.cast<double>().dot(lamp);
     if (cosine > 1.1 * texel) {
@@ -140,6 +141,16 @@ TEST_F(StrayLightTest, IsNoneOfFewOrBlackOrNegativePoints) {
     image_.rgb.assign(image_.rgb.size(), v);
     EXPECT_FALSE((Measure().deviation > 0.0).any());
     EXPECT_TRUE((Measure().ambient == 0.0).all());
+  }
+}
+
+TEST_F(StrayLightTest, IsNoneWhereNoCameraTellsItFromBlack) {
+  Darken(50);
+  for (const float radiance : {1e-27f, 0.9e-6f, 1.1e-6f}) {
+    for (size_t i = 0; i < 150; ++i) {
+      image_.rgb[3 * points_[i / 3].pixel + i % 3] = radiance;
+    }
+    EXPECT_EQ(radiance > 1e-6f, (Measure().ambient > 0.0).all()) << radiance;
   }
 }
 

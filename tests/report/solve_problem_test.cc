@@ -382,12 +382,16 @@ TEST_F(SolveProblemTest, ResultsOfAKnownReflectanceHoldNoBrdf) {
   const std::string out = dir_.File("out");
   std::filesystem::create_directories(out);
   for (const char* name :
-       {"brdf.binary", "brdf.json", "illumination_log_std.exr", "notes.txt"}) {
+       {"brdf.binary", "brdf.json", "brdf_128.binary", "brdf_0_255_7.json",
+        "illumination_log_std.exr", "notes.txt", "brdf_old.binary"}) {
     WriteBytes(out + "/" + name, "of an earlier run");
   }
   ASSERT_TRUE(Write(inverse, *e, out).ok());
   EXPECT_TRUE(std::filesystem::exists(out + "/result.json"));
   EXPECT_TRUE(std::filesystem::exists(out + "/notes.txt"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/brdf_old.binary"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/brdf_128.binary"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/brdf_0_255_7.json"));
   EXPECT_FALSE(std::filesystem::exists(out + "/brdf.binary"));
   EXPECT_FALSE(std::filesystem::exists(out + "/brdf.json"));
   EXPECT_FALSE(std::filesystem::exists(out + "/illumination_log_std.exr"));
