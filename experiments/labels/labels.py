@@ -34,6 +34,7 @@ OBJECTS = {
 # Which of the four share a sphere, and how they lie on it.
 SPHERES = [((0, 1), "patches"), ((1, 2), "stripes"), ((2, 3), "patches"), ((0, 2, 3), "patches")]
 COLUMNS = ["case", "map", "where", "material", "together", "alone", "map_error", "best_map", "misfit", "seconds"]
+FRAME = "ibrdf_0_1"  # in which ibrdf_bench renders with the maps
 NO_IMPROVEMENT = 3  # exit status
 PROBLEM = """problem: joint
 image: {{file: input.exr, mask: mask.png}}
@@ -78,7 +79,7 @@ class Labels:
 
     def map_error(self, folder, light):
         return self.metric("illumination_relative_log_rmse_aligned", "illumination", folder / "out" / "illumination.exr",
-                           self.arguments.maps / f"{light}.hdr")
+                           self.arguments.maps / f"{light}.hdr", "--frame-b", FRAME)
 
     def alone(self, material, light, fold):
         """Errors of the BRDF and of the map from the image of one material."""
