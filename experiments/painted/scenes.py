@@ -90,6 +90,7 @@ class Solved:
 
     def table(self, material, paint, name):
         """The table of a material whose paint is of an albedo [3]."""
+        name = f"table_{name}"  # beside gloss.exr and others of the solve
         scene, path = self.folder / f"{name}.yaml", self.folder / f"{name}.binary"
         write_pfm(self.folder / f"{name}.pfm", np.broadcast_to(paint, (8, 8, 3)))
         scene.write_text(TABLE_SCENE.format(material=material, paint=f"{name}.pfm"))
@@ -139,7 +140,7 @@ class Solved:
         whole = metric(self.arguments, "brdf_log_rmse_aligned", "brdf", estimate, truth)
         of_gloss = gloss_error(read_merl(gloss), (read_merl(truth), read_merl(truth_gloss)))
         for name in ("truth", "truth_gloss", "gloss", "estimate"):
-            (self.folder / f"{name}.binary").unlink(missing_ok=True)
+            (self.folder / f"table_{name}.binary").unlink(missing_ok=True)
         return f"{whole:.3f}", f"{of_gloss:.3f}"
 
     def row(self):
