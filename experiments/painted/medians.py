@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Medians of the table that scenes.py writes, for all cases and by kind, and the worst.
 
-    experiments/painted/medians.py RESULTS.csv
+    experiments/painted/medians.py RESULTS.csv [SETTING]
+
+SETTING: `auto`, `albedo` (without it) or `none`.
 """
 import csv
 import statistics
@@ -20,12 +22,11 @@ def ratios(cases, column, setting):
     return [float(c[setting][column]) / float(c["unpainted"][column]) for c in cases if {setting, "unpainted"} <= c.keys()]
 
 
-def line(name, cases):
-    painted = [c["auto"] for c in cases if "auto" in c]
+def line(name, cases, setting):
+    painted = [c[setting] for c in cases if setting in c]
     words = [f"{name:14s} {len(painted):3d}"]
     words += [f"{median(row[column] for row in painted):7.3f}" for column in ("albedo", "constant", "brdf", "gloss", "map_error")]
-    for setting in ("auto", "none"):
-        words += [f"{median(ratios(cases, column, setting)):7.2f}" for column in ("brdf", "gloss", "map_error")]
+    words += [f"{median(ratios(cases, column, setting)):7.2f}" for column in ("brdf", "gloss", "map_error")]
     words.append(f"{median(row['cpu_seconds'] for row in painted):5.0f}")
     print(" ".join(words))
 
@@ -33,16 +34,17 @@ def line(name, cases):
 def main():
     with open(sys.argv[1]) as file:
         rows = list(csv.DictReader(file))
+    setting = sys.argv[2] if len(sys.argv) > 2 else "albedo"
     cases = {}
     for row in rows:
         cases.setdefault(row["case"], {})[row["setting"]] = row
-    print(f"{'':14s}   n  albedo  const.    brdf   gloss     map | over unpainted: auto's brdf, gloss, map; none's | s")
-    line("all", list(cases.values()))
+    print(f"{'':14s}   n  albedo  const.    brdf   gloss     map | over unpainted: brdf, gloss, map |  s")
+    line("all", list(cases.values()), setting)
     for kind in KINDS:
         for value in sorted({row[kind] for row in rows}):
-            line(value, [c for c in cases.values() if next(iter(c.values()))[kind] == value])
-    auto = [row["variation"] for row in rows if row["setting"] == "auto"]
-    print("auto took:", {word: auto.count(word) for word in sorted(set(auto))})
+            line(value, [c for c in cases.values() if next(iter(c.values()))[kind] == value], setting)
+    took = [row["variation"] for row in rows if row["setting"] == setting]
+    print(f"{setting} took:", {word: took.count(word) for word in sorted(set(took))})
     worst = sorted((row for row in rows if row["albedo"] != ""), key=lambda row: -float(row["albedo"]))
     for row in worst[:10]:
         print(f"{row['case']} albedo {row['albedo']} misfit {row['misfit']}")
