@@ -182,13 +182,15 @@ struct ReflectanceSpec {
   int lobes = 2;             // [1, 8]
   double prior_sigma = 0.5;  // of the codes, > 0
   ReflectanceVariation variation = ReflectanceVariation::kAuto;
-  std::string labels;  // image of the materials, of kLabels alone
+  // Image of the materials, of kLabels alone; "auto": they are to be found.
+  std::string labels;
   // Known reflectance: at most one is set.
   std::string known_file;                // MERL .binary
   std::optional<CookTorrance> analytic;  // `lambertian` too: specular 0
   std::optional<PrincipledSpec> principled;
   std::optional<PaintSpec> paint;  // over any of these
 
+  bool finds_labels() const { return labels == "auto"; }
   bool known() const {
     return !known_file.empty() || analytic.has_value() ||
            principled.has_value();

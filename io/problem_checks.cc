@@ -41,7 +41,8 @@ Status CheckViewImages(const Problem& problem) {
 
 // Labelled materials have labels, of all views where there are several.
 Status CheckLabels(const Problem& problem) {
-  if (problem.reflectance.variation != ReflectanceVariation::kLabels) {
+  if (problem.reflectance.variation != ReflectanceVariation::kLabels ||
+      problem.reflectance.finds_labels()) {
     return OkStatus();
   }
   if (!problem.SeveralViews()) {
@@ -51,8 +52,9 @@ Status CheckLabels(const Problem& problem) {
         "expected this key with variation: labels, found nothing");
   }
   if (!problem.reflectance.labels.empty() || problem.views.list.empty()) {
-    return KeyFailure(problem, "reflectance.labels",
-                      "expected labels of each view in a list of views");
+    return KeyFailure(
+        problem, "reflectance.labels",
+        "expected auto, or labels of each view in a list of views");
   }
   for (size_t i = 0; i < problem.views.list.size(); ++i) {
     if (!problem.views.list[i].labels.empty()) continue;

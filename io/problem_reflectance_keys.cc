@@ -62,7 +62,10 @@ Keys UnknownReflectanceKeys() {
           "Image of the materials, of the image's size: pixels of one value "
           "are of one material. At most 16 values on the object, without "
           "smoothed edges. Implies `variation: labels`.")
-          .Path(".png")
+          .Path(".png", "",
+                {{"auto",
+                  "The photograph tells how many materials there are, up to "
+                  "five, and where; `labels.png` shows them."}})
           .UsedBy(kUnknownReflectance)};
 }
 

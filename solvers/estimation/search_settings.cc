@@ -159,8 +159,9 @@ Observations SearchedPixels(const SolveSetup& setup) {
   }
   if (lit.empty()) return observed;
   const double darkest = kDarkest * UpperMedian(std::move(lit));
-  for (double& e : radiance) {
-    if (e < darkest) e = 0.0;
+  const std::vector<ShadingPoint>& points = setup.pixels.points;
+  for (size_t i = 0; i < radiance.size(); ++i) {
+    if (radiance[i] < darkest || points[i / 3].mixed) radiance[i] = 0.0;
   }
   return MakeObservations(std::move(radiance), observed.low, observed.high);
 }

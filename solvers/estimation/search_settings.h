@@ -35,7 +35,7 @@ ReflectanceSearchOptions CoarseSearchOptions(double share,
                                              SolveContext* context);
 
 // The pixels with radiance 0, which a search leaves out, where it is far below
-// any measurement.
+// any measurement or they may show several materials.
 Observations SearchedPixels(const SolveSetup& setup);
 
 // What a search says of the light, whose log radiance is to fall by `level`.

@@ -68,6 +68,16 @@ struct OtherLight {
   double misfit = 0.0;
 };
 
+// Labels that nobody gave (FindLabels), and by how many nats the image is more
+// probable of them than of one material fewer; 0: one material. gain_of_more:
+// what the best labels of one material more gain; NaN: there were none.
+struct FoundLabels {
+  std::vector<int> labels;  // of the problem's points; empty: none were sought
+  double gain = 0.0;
+  double gain_of_more = std::numeric_limits<double>::quiet_NaN();
+  bool cut_short = false;  // time or the user ended it
+};
+
 // What a solution says of a material's reflectance.
 struct MaterialSolution {
   std::vector<double> lobe_parameters;  // as LobeModel; empty if known
@@ -113,6 +123,7 @@ struct Solution : MaterialSolution {
   bool map_turn_of_paint = false;
   // Where the curve was unknown: the best of each family, the best first.
   std::vector<CurveEstimate> curves;
+  FoundLabels found_labels;
   // Labelled materials, by ShadingPoint::material. Empty: no labels.
   std::vector<MaterialSolution> materials;
   // What the search found of the light's prior, and its directional lights,

@@ -68,13 +68,13 @@ NormalBins BinByNormal(const std::vector<ShadingPoint>& points,
     return std::clamp(static_cast<int>((0.5 * x + 0.5) * options.bins_across),
                       0, options.bins_across - 1);
   };
-  std::map<std::array<int, 4>, std::vector<size_t>> members;
+  std::map<std::array<int, 5>, std::vector<size_t>> members;
   for (size_t i = 0; i < points.size(); ++i) {
     const std::optional<Eigen::Vector2d> normal =
         NormalInView(points[i], options.min_cosine);
     if (!observed.valid[i] || !normal.has_value()) continue;
-    members[{points[i].material, points[i].view, bin_of(normal->y()),
-             bin_of(normal->x())}]
+    members[{points[i].material, points[i].part, points[i].view,
+             bin_of(normal->y()), bin_of(normal->x())}]
         .push_back(i);
   }
   NormalBins bins;

@@ -11,9 +11,9 @@
 namespace ibrdf {
 
 struct NormalBins {
-  // Up to some pixels of each bin, all of one material and view, bin by bin;
-  // bin i has [first[i], first[i + 1]). Bins of a material come one after the
-  // other, by ShadingPoint::material.
+  // Up to some pixels of each bin, all of one material, part and view, bin by
+  // bin; bin i has [first[i], first[i + 1]). Bins of a material come one after
+  // the other, by ShadingPoint::material.
   std::vector<ShadingPoint> points;
   std::vector<int> first;
   // Log of the mean radiance of a bin's points [3 * bins], by channel.

@@ -69,7 +69,8 @@ struct InverseProblem {
   // kAuto: as the solve finds (IsProbablyPainted).
   ReflectanceVariation variation = ReflectanceVariation::kNone;
   std::optional<BrdfGrid> known_brdf;
-  // The labels of the points' materials; empty: they are not labelled.
+  // The labels of the points' materials; empty: they are not labelled, or, with
+  // kLabels, to be found (FindLabels).
   std::vector<MaterialLabel> materials;
   // Beside known_brdf, which is then not read: the estimated reflectance of
   // each material, while the light is sought. Empty: there is none.

@@ -91,7 +91,8 @@ StatusOr<MaterialLabels> LoadLabelsOf(const Problem& problem,
 // Sets the points' materials; those of labels that are left out go.
 Status TakeLabels(const Problem& problem, const Image& radiance,
                   PhotographedObject* object) {
-  if (problem.reflectance.variation != ReflectanceVariation::kLabels) {
+  if (problem.reflectance.variation != ReflectanceVariation::kLabels ||
+      problem.reflectance.finds_labels()) {
     return OkStatus();
   }
   StatusOr<MaterialLabels> labels = LoadLabelsOf(problem, radiance, object);

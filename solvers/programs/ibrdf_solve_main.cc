@@ -22,6 +22,7 @@
 #include "ibrdf/solvers/photograph_check/check_words.h"
 #include "ibrdf/solvers/problem/load_object.h"
 #include "ibrdf/solvers/problem/load_problem.h"
+#include "ibrdf/solvers/problem/with_labels.h"
 #include "ibrdf/solvers/programs/common_flags.h"
 #include "ibrdf/solvers/programs/problem_from_flags.h"
 #include "ibrdf/solvers/report/report_warnings.h"
@@ -192,6 +193,9 @@ Status SolveAndWrite(const Problem& problem, const Truth& truth,
   if (!estimate.ok()) return estimate.status();
   if (!estimate->curves.empty()) {
     inverse = WithCurve(inverse, estimate->curves.front().curve);
+  }
+  if (!estimate->found_labels.labels.empty()) {
+    inverse = WithLabels(std::move(inverse), estimate->found_labels.labels);
   }
   inverse = WithModelOf(*estimate, std::move(inverse));
   const StatusOr<std::optional<InformativeViews>> next =

@@ -48,22 +48,13 @@ std::string MaterialFile(const MaterialLabel& label) {
   return "brdf_" + label.value;
 }
 
-std::vector<std::string> FilesOfOtherLabels(
-    const std::string& folder, const std::vector<MaterialLabel>& labels) {
-  static const std::regex of_label(
-      R"((brdf_\d{1,3}(_\d{1,3}_\d{1,3})?)\.(binary|json))");
+std::vector<std::string> FilesOfLabels(const std::string& folder) {
+  static const std::regex of_label(R"(brdf_\d+(_\d+_\d+)?\.(binary|json))");
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();
-    std::smatch match;
-    if (!std::regex_match(name, match, of_label)) continue;
-    const std::string stem = match[1];
-    const bool other = std::none_of(labels.begin(), labels.end(),
-                                    [&](const MaterialLabel& label) {
-                                      return MaterialFile(label) == stem;
-                                    });
-    if (other) names.push_back(name);
+    if (std::regex_match(name, of_label)) names.push_back(name);
   }
   return names;
 }

@@ -26,10 +26,8 @@ Image LabelImage(const InverseProblem& inverse);
 // "brdf_128", the name of a label's files without their ends.
 std::string MaterialFile(const MaterialLabel& label);
 
-// Names of the files in a folder that are called as those of labels are, but of
-// none of these.
-std::vector<std::string> FilesOfOtherLabels(
-    const std::string& folder, const std::vector<MaterialLabel>& labels);
+// Names of the files in a folder that are called as those of labels are.
+std::vector<std::string> FilesOfLabels(const std::string& folder);
 
 // The solution as if the object were of one of its materials.
 Solution OfMaterial(const Solution& solution, int material);

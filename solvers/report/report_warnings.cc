@@ -219,6 +219,26 @@ std::string PaintWarning(const SolvedProblem& solved) {
                : "";
 }
 
+// Labels that were found are a guess: one picture shows what is alike, not what
+// is one material.
+std::string FoundLabelsWarning(const SolvedProblem& solved) {
+  const FoundLabels& found = solved.solution.found_labels;
+  if (found.labels.empty()) return "";
+  const std::string early =
+      found.cut_short ? " The search for labels was cut short." : "";
+  const size_t count = solved.inverse.materials.size();
+  if (count < 2) {
+    return "No labels were found: the object is taken to be of one material." +
+           early;
+  }
+  return "The labels were found in the photograph: " + std::to_string(count) +
+         " materials, more probable than " + std::to_string(count - 1) +
+         " by " + Format("%.0f", found.gain) +
+         " nats. Look at labels.png; where it is wrong, draw "
+         "reflectance.labels." +
+         early;
+}
+
 }  // namespace
 
 std::string EffectsNote(const SolvedProblem& solved) {
@@ -239,7 +259,8 @@ std::vector<std::string> ResultWarnings(const SolvedProblem& solved) {
         MisfitWarning(solved), MapFrameWarning(solved), ViewWarning(solved),
         PhotographWarning(solved), PixelWarning(solved), UnlitWarning(solved),
         StrayLightWarning(solved), PaintWarning(solved),
-        FewPixelsWarning(solved), CurveWarning(solved),
+        FoundLabelsWarning(solved), FewPixelsWarning(solved),
+        CurveWarning(solved),
         UncertainWarning(solved.solution,
                          !solved.inverse.known_map.has_value()),
         RivalWarning(solved.solution.alternatives)}) {

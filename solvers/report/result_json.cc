@@ -279,6 +279,7 @@ Json MaterialsJson(const InverseProblem& inverse, const Solution& solution) {
         {"label", label.value},
         {"pixels", label.pixels},
         {"colour_in_labels_png", ColourOfMaterial(static_cast<int>(m)).name},
+        {"srgb_in_labels_png", ColourOfMaterial(static_cast<int>(m)).srgb},
         {"files",
          {MaterialFile(label) + ".binary", MaterialFile(label) + ".json"}},
         {"start", one.start},
@@ -287,6 +288,14 @@ Json MaterialsJson(const InverseProblem& inverse, const Solution& solution) {
     out.push_back(std::move(material));
   }
   return out;
+}
+
+// Empty where no labels were sought.
+Json FoundLabelsJson(const FoundLabels& found) {
+  if (found.labels.empty()) return Json::object();
+  return {{"gain_nats", Finite(found.gain)},
+          {"gain_of_more_nats", Finite(found.gain_of_more)},
+          {"cut_short", found.cut_short}};
 }
 
 // How the reflectance that was found varies.
@@ -369,6 +378,7 @@ std::string ResultJson(const SolvedProblem& solved,
                {"material", MaterialJson(material)},
                {"posterior", PosteriorJson(inverse, solution)},
                {"materials", MaterialsJson(inverse, solution)},
+               {"labels_found", FoundLabelsJson(solution.found_labels)},
                {"curves", CurvesJson(solution.curves)},
                {"seed", inverse.seed},
                {"pixels_used", solution.pixels_used},

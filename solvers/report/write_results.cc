@@ -7,6 +7,7 @@
 #include "ibrdf/io/output_paths.h"
 #include "ibrdf/io/png.h"
 #include "ibrdf/solvers/next_view/candidate_views.h"
+#include "ibrdf/solvers/problem/with_labels.h"
 #include "ibrdf/solvers/report/light_results.h"
 #include "ibrdf/solvers/report/material_labels.h"
 #include "ibrdf/solvers/report/material_summary.h"
@@ -42,11 +43,8 @@ std::vector<std::string> EarlierNames(const SolvedProblem& solved,
   if (!solution.has_paint()) {
     names.insert(names.end(), PaintFiles().begin(), PaintFiles().end());
   }
-  const bool labelled = !solution.materials.empty();
-  if (!labelled) names.emplace_back("labels.png");
-  const std::vector<std::string> of_labels =
-      FilesOfOtherLabels(folder, labelled ? solved.inverse.materials
-                                          : std::vector<MaterialLabel>());
+  if (solution.materials.empty()) names.emplace_back("labels.png");
+  const std::vector<std::string> of_labels = FilesOfLabels(folder);
   names.insert(names.end(), of_labels.begin(), of_labels.end());
   const std::vector<std::string> of_lights =
       OtherLightPaths(solution.other_lights.size(), kMaxOtherLights, "");
@@ -142,12 +140,14 @@ std::vector<std::string> ResultPaths(const Problem& problem,
       problem.reflectance.variation == ReflectanceVariation::kAlbedo) {
     paths.insert(paths.end(), PaintFiles().begin(), PaintFiles().end());
   }
-  for (const MaterialLabel& label : object.materials) {
+  const std::vector<MaterialLabel> labels =
+      problem.reflectance.finds_labels() ? LabelsToBeFound() : object.materials;
+  for (const MaterialLabel& label : labels) {
     for (const char* end : {".binary", ".json"}) {
       paths.push_back(MaterialFile(label) + end);
     }
   }
-  if (!object.materials.empty()) paths.emplace_back("labels.png");
+  if (!labels.empty()) paths.emplace_back("labels.png");
   for (std::string& path : paths) path.insert(0, folder + "/");
   const std::vector<std::string> of_views = ViewPaths(object.sheet, folder);
   paths.insert(paths.end(), of_views.begin(), of_views.end());

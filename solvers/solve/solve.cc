@@ -11,9 +11,11 @@
 #include "ibrdf/solvers/estimation/scale_ambiguity.h"
 #include "ibrdf/solvers/estimation/solve_setup.h"
 #include "ibrdf/solvers/problem/of_material.h"
+#include "ibrdf/solvers/problem/with_labels.h"
 #include "ibrdf/solvers/published/joint_maximum.h"
 #include "ibrdf/solvers/solve/curve_search.h"
 #include "ibrdf/solvers/solve/exposure.h"
+#include "ibrdf/solvers/solve/found_labels.h"
 #include "ibrdf/solvers/solve/joint.h"
 #include "ibrdf/solvers/solve/known_light.h"
 #include "ibrdf/solvers/solve/labelled.h"
@@ -128,12 +130,25 @@ StatusOr<Solution> Solve(const InverseProblem& problem, SolveContext* context) {
   return solution;
 }
 
+StatusOr<Solution> FindLabelsAndSolve(const InverseProblem& problem,
+                                      SolveContext* context) {
+  FoundLabels found = FindLabels(problem, context);
+  StatusOr<Solution> solution =
+      Solve(WithLabels(problem, found.labels), context);
+  if (solution.ok()) solution->found_labels = std::move(found);
+  return solution;
+}
+
 // Solves an image whose radiance, or its bounds, are known.
 StatusOr<Solution> SolveDeveloped(const InverseProblem& problem,
                                   SolveContext* context) {
   const double exposure = ExposureOf(problem);
   const InverseProblem scaled = InUnitsOf(exposure, problem);
-  StatusOr<Solution> solution = Solve(scaled, context);
+  const bool find_labels = problem.variation == ReflectanceVariation::kLabels &&
+                           problem.materials.empty();
+  StatusOr<Solution> solution = find_labels
+                                    ? FindLabelsAndSolve(scaled, context)
+                                    : Solve(scaled, context);
   if (!solution.ok()) return solution;
   RestoreUnits(exposure, &*solution);
   if (problem.solver.gauge != SolverGauge::kPrior &&

@@ -39,6 +39,8 @@ bool MayBeMissing(const std::string& where) {
       where == "result.json/posterior/condition_number") {
     return true;
   }
+  // No labels of more materials were proposed.
+  if (where == "result.json/labels_found/gain_of_more_nats") return true;
   // A curve whose evidence has no peak that was found.
   static const std::regex kNoWidth(
       "result\\.json/curves/[0-9]+/log_parameter_std");

@@ -170,10 +170,10 @@ TEST(ProblemText, SolvesTakeViewsInPlaceOfTheImage) {
       {"views: [{name: a, file: f, labels: l}, {name: b, file: f}]",
        "views[1].labels: expected labels as of the other views"},
       {"reflectance: {labels: l}\nviews: {colmap: c}",
-       "reflectance.labels: expected labels of each view"},
+       "reflectance.labels: expected auto, or labels of each view"},
       {"reflectance: {labels: l}\nviews: [{name: a, file: f}, {name: b, file: "
        "f}]",
-       "reflectance.labels: expected labels of each view"}};
+       "reflectance.labels: expected auto, or labels of each view"}};
   for (const auto& c : refused) {
     EXPECT_EQ(0u, check(c.text).message().find("p.yaml: " + c.error))
         << check(c.text).message();

@@ -67,6 +67,24 @@ TEST_F(ProblemFile, LabelsNeedNoWordOfTheVariation) {
             CheckSolvable(*without).message());
 }
 
+TEST_F(ProblemFile, LabelsMayBeFound) {
+  const std::string of_views =
+      "views: [{name: a, file: f}, {name: b, file: f}]\n";
+  for (const std::string& views : {std::string(), of_views}) {
+    const StatusOr<Problem> problem =
+        Read((views.empty() ? kLeast : "geometry: {sphere: {}}\n" + views) +
+             std::string("reflectance: {labels: auto}"));
+    ASSERT_TRUE(problem.ok()) << problem.status().message();
+    EXPECT_EQ(ReflectanceVariation::kLabels, problem->reflectance.variation);
+    EXPECT_TRUE(problem->reflectance.finds_labels());
+  }
+  // A file of that name.
+  const StatusOr<Problem> file =
+      Read(kLeast + std::string("reflectance: {labels: ./auto}"));
+  ASSERT_TRUE(file.ok());
+  EXPECT_FALSE(file->reflectance.finds_labels());
+}
+
 TEST_F(ProblemFile, ImagesAreOfOneViewUnderSeveralLights) {
   const StatusOr<Problem> problem = Read(
       "images: [a.png, b.png, c.png]\nimage: {mask: m.png}\n"

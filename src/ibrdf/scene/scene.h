@@ -28,6 +28,10 @@ struct ShadingPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   // Which of the object's materials it is of, >= 0.
   int material = 0;
+  // Which part of the surface it is of, >= 0: bins of like normals have one.
+  int part = 0;
+  // May show several materials: no search for reflectances rests on it.
+  bool mixed = false;
   // Which of several views sees it, >= 0.
   int view = 0;
   // Texture coordinates (SurfaceHit).
