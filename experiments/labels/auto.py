@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Does the program find materials that nobody labelled, and leave one material one?
 
-    experiments/labels/auto.py LABELS CASES TABLES MODELS OUT [--bin DIR] [--only I/N]
+    experiments/labels/auto.py LABELS CASES TABLES MODELS OUT [--bin DIR] [--only I/N] [--labels-only]
 
 LABELS: OUT of labels.py, spheres of several materials, solved with their labels given. CASES: the folder `cases` of
 `ibrdf_bench render-inputs`, spheres of one. The others as in labels.py. Both are solved with `labels: auto`; a row of
 OUT/auto_I.csv for each, as it finishes; the same command goes on where it was stopped. --only: each N-th, from the I-th
-(0 of 1). Needs Debian's python3-opencv.
+(0 of 1). --labels-only: every solve ends once its labels are found. Needs Debian's python3-opencv.
 
 right: the share of the sphere's pixels that have their label, by the best naming. gain: nats by which the image is more
 probable than of one material fewer. gain_of_more: of one more. auto, given: aligned log-RMSE of the BRDFs, in the mean
@@ -73,21 +73,24 @@ class Auto(Labels):
 
     def several(self, case, fold, materials):
         given, folder = self.arguments.labels / case, self.arguments.out / case
-        result = self.find(given, folder, fold, whole=True)
+        whole = not self.arguments.labels_only
+        result = self.find(given, folder, fold, whole)
         truth = cv2.imread(str(given / "labels.png"), cv2.IMREAD_GRAYSCALE)
         picture = cv2.imread(str(folder / "out" / "labels.png"))[..., ::-1]
         found = np.full(truth.shape, -1)
         for k, material in enumerate(result["materials"]):
             found[(picture == material["srgb_in_labels_png"]).all(-1)] = k
         table = overlap(found, truth)
+        right = f"{share_right(table):.3f}"
+        if not whole:
+            return self.row(case, len(materials), result, right)
         errors = []
         for k, material in enumerate(materials):
             # Of the label that has most of the material's pixels.
             label = result["materials"][table[:, k].argmax()]["label"]
             errors.append([self.brdf_error(folder / "out" / f"brdf_{label}.binary", material),
                            self.brdf_error(given / "out" / f"brdf_{40 * (k + 1)}.binary", material)])
-        return self.row(case, len(materials), result, f"{share_right(table):.3f}",
-                        [f"{e:.3f}" for e in np.mean(errors, 0)])
+        return self.row(case, len(materials), result, right, [f"{e:.3f}" for e in np.mean(errors, 0)])
 
     def one(self, case):
         fold = 0 if case.rsplit("_", 1)[0] in FIRST_FOLD else 1
@@ -101,6 +104,7 @@ def main():
     parser.add_argument("--bin", type=pathlib.Path,
                         default=pathlib.Path(__file__).resolve().parents[2] / "build/release/bin")
     parser.add_argument("--only", default="0/1")
+    parser.add_argument("--labels-only", action="store_true")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     index, count = map(int, arguments.only.split("/"))
