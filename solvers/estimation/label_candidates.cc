@@ -35,6 +35,7 @@ ReflectanceSearchOptions OptionsFor(const LabelSearch& search,
   o.coarse_stages = search.stages;
   o.ranked_anew = search.ranked_anew;
   LimitIterations(alone.solver.max_iterations, &o);
+  if (search.should_stop) o.should_stop = search.should_stop;
   if (search.quiet) {
     o.report = {};
     return o;

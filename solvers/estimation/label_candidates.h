@@ -1,6 +1,7 @@
 // What a search for the reflectances of labelled materials begins from.
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,8 +36,9 @@ struct LabelCombination {
 struct LabelSearch {
   std::vector<SearchStage> stages = {{6, 2}, {3, 4}};
   int ranked_anew = ReflectanceSearchOptions().ranked_anew;
-  double share = 1.0;  // of the time that remains, at most
-  bool quiet = false;  // no line of the trace
+  double share = 1.0;                      // of the time that remains, at most
+  bool quiet = false;                      // no line of the trace
+  std::function<bool()> should_stop = {};  // in place of the share
 };
 
 // The best three materials of a label by itself, under a light of its own, at

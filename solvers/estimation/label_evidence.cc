@@ -109,8 +109,11 @@ double LogVolume(const Eigen::MatrixXd& covariance,
 }  // namespace
 
 LabelEvidence::LabelEvidence(const InverseProblem& problem,
+                             std::function<bool()> should_stop,
                              SolveContext* context)
-    : problem_(problem), context_(context) {}
+    : problem_(problem),
+      should_stop_(std::move(should_stop)),
+      context_(context) {}
 
 std::vector<LabelCandidate> LabelEvidence::CandidatesOf(const SolveSetup& setup,
                                                         int material) {
@@ -120,8 +123,8 @@ std::vector<LabelCandidate> LabelEvidence::CandidatesOf(const SolveSetup& setup,
   }
   std::vector<LabelCandidate>& known = candidates_[pixels];
   if (known.empty()) {
-    known = FindLabelCandidates(setup, material, {kAloneStages, 0, 1.0, true},
-                                context_);
+    known = FindLabelCandidates(
+        setup, material, {kAloneStages, 0, 1.0, true, should_stop_}, context_);
   }
   return known;
 }
@@ -146,7 +149,7 @@ void LabelEvidence::Explain(const InverseProblem& labelled,
                             const std::vector<Eigen::VectorXd>& starts,
                             ComparedLabelling* labelling) {
   const StatusOr<SolveSetup> setup = SetUp(labelled);
-  if (!setup.ok() || starts.empty() || context_->Interrupted()) return;
+  if (!setup.ok() || starts.empty() || should_stop_()) return;
   MaterialPrior prior = RepeatPrior(setup->materials, labelling->count);
   for (const Eigen::VectorXd& start : starts) {
     prior.materials.push_back({std::to_string(prior.materials.size()), start});
@@ -160,6 +163,7 @@ void LabelEvidence::Explain(const InverseProblem& labelled,
   LimitIterations(labelled.solver.max_iterations, &o);
   o.num_materials = labelling->count;
   o.covariance = true;
+  o.should_stop = should_stop_;
   o.report = {};
   const StatusOr<ReflectanceSearchResult> found = SearchReflectance(
       {FlowLobes::Factory(*labelled.model, setup->lobes->layout(),
@@ -184,26 +188,26 @@ void LabelEvidence::Compare(std::vector<ComparedLabelling>* labellings) {
   LeaveSeamsOut(problem_, &part);
   LeaveSmallOut(&part);
   ComparedLabelling& first = labellings->front();
+  const bool begun = first.lobes.size() > 0;
   for (ComparedLabelling& labelling : *labellings) {
+    labelling.cost = std::numeric_limits<double>::infinity();
+    if (should_stop_()) continue;
     std::vector<Eigen::VectorXd> starts;
-    if (&labelling == &first && first.lobes.size() > 0) {
+    if (&labelling == &first && begun) {
       starts = {first.lobes};
     } else {
       starts = StartsOf(labelling);
-      if (&labelling != &first && first.lobes.size() > 0) {
-        starts.push_back(Inherit(first, labelling));
-      }
+      if (begun) starts.push_back(Inherit(first, labelling));
     }
-    labelling.cost = std::numeric_limits<double>::infinity();
     Explain(InParts(problem_, labelling, part), starts, &labelling);
   }
   // More materials must not win by a better search alone.
-  std::vector<Eigen::VectorXd> starts;
+  std::vector<Eigen::VectorXd> of_others;
   for (const ComparedLabelling& other : *labellings) {
     if (&other == &first || !(other.cost < first.cost)) continue;
-    starts.push_back(Inherit(other, first));
+    of_others.push_back(Inherit(other, first));
   }
-  if (!starts.empty()) Explain(InParts(problem_, first, part), starts, &first);
+  Explain(InParts(problem_, first, part), of_others, &first);
 }
 
 }  // namespace ibrdf

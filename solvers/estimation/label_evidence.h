@@ -2,6 +2,7 @@
 // probable.
 #pragma once
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 #include <map>
 #include <vector>
@@ -28,13 +29,15 @@ struct ComparedLabelling {
 // labellings that have it.
 class LabelEvidence {
  public:
-  // problem: without labels; both must outlive this.
-  LabelEvidence(const InverseProblem& problem, SolveContext* context);
+  // problem: without labels; it and the context must outlive this. should_stop:
+  // as ReflectanceSearchOptions has it.
+  LabelEvidence(const InverseProblem& problem,
+                std::function<bool()> should_stop, SolveContext* context);
 
   // Sets the costs and lobes of all. Bins do not mix what one of them parts, so
   // that all explain the same numbers. The first, where it has lobes, begins
   // from those alone; from what they say of its labels the others begin as
-  // well. Ends early, with infinite costs, where the context stops.
+  // well. Ends early, with infinite costs, once it should stop.
   void Compare(std::vector<ComparedLabelling>* labellings);
 
  private:
@@ -46,6 +49,7 @@ class LabelEvidence {
                ComparedLabelling* labelling);
 
   const InverseProblem& problem_;
+  const std::function<bool()> should_stop_;
   SolveContext* const context_;
   // By the pixels of a label.
   std::map<std::vector<int>, std::vector<LabelCandidate>> candidates_;

@@ -56,7 +56,7 @@ FoundLabels FindLabels(const InverseProblem& problem, SolveContext* context) {
   best.labels.assign(problem.points.size(), 0);
   const std::vector<LabelProposal> proposals = Proposals(problem);
   FoundLabels found;
-  LabelEvidence evidence(problem, context);
+  LabelEvidence evidence(problem, stop, context);
   for (size_t next = 0; next < proposals.size();) {
     const int count = proposals[next].count;
     while (next < proposals.size() && proposals[next].count == count) ++next;
