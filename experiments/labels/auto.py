@@ -13,20 +13,17 @@ probable than of one material fewer. gain_of_more: of one more. auto, given: ali
 over the materials, with labels that were found and with true ones. Of one material the solve ends once its labels are
 found.
 """
-import argparse
-import csv
 import itertools
 import json
-import pathlib
-import shutil
 import signal
 import subprocess
 
 import cv2
 import numpy as np
 
-from labels import OBJECTS, PROBLEM, SPHERES, Labels
+from labels import NO_IMPROVEMENT, OBJECTS, SPHERES, Labels, Table, copy_image, parser_of
 
+INTERRUPTED = 130  # exit status
 COLUMNS = ["case", "materials", "found", "right", "gain", "gain_of_more", "auto", "given", "seconds"]
 # Of the images of one material: those that the model of fold 0 has not seen; that of fold 1 has not seen the others.
 FIRST_FOLD = {"pink-jasper", "green-plastic", "aluminium", "white-marble", "black-oxidized-steel", "red-plastic",
@@ -49,20 +46,17 @@ def share_right(table):
 
 class Auto(Labels):
     def find(self, source, folder, fold, whole):
-        """Solves an image with `labels: auto`, once; not whole: until the labels are found."""
-        folder.mkdir(parents=True, exist_ok=True)
-        for name in ("input.exr", "mask.png"):
-            shutil.copy(source / name, folder)
-        model = (self.arguments.models / f"fold{fold}.ibrdf").resolve()
-        problem = folder / "problem.yaml"
-        problem.write_text(PROBLEM.format(model=model, reflectance="labels: auto"))
-        program = subprocess.Popen([self.arguments.bin / "ibrdf_solve", "--problem", problem, "--out", folder / "out",
-                                    "--threads", "1"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        """The result of an image with `labels: auto`; not whole: the solve ends once its labels are found."""
+        copy_image(source, folder)
+        program = subprocess.Popen(self.command(folder, fold, "labels: auto"), stdout=subprocess.PIPE,
+                                   stderr=subprocess.DEVNULL, text=True)
         for line in program.stdout:
             # A stage after those that look for labels.
             if " % " in line and "misfit" in line and "labels:" not in line and not whole:
                 program.send_signal(signal.SIGINT)
-        program.wait()
+                whole = True
+        if program.wait() not in (0, NO_IMPROVEMENT, INTERRUPTED):
+            raise RuntimeError(f"{folder}: exit status {program.returncode}")
         return json.loads((folder / "out" / "result.json").read_text())
 
     @staticmethod
@@ -98,30 +92,23 @@ class Auto(Labels):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name in ("labels", "cases", "tables", "models", "out"):
-        parser.add_argument(name, type=pathlib.Path)
-    parser.add_argument("--bin", type=pathlib.Path,
-                        default=pathlib.Path(__file__).resolve().parents[2] / "build/release/bin")
+    parser = parser_of(__doc__, ("labels", "cases", "tables", "models", "out"))
     parser.add_argument("--only", default="0/1")
     parser.add_argument("--labels-only", action="store_true")
     arguments = parser.parse_args()
-    arguments.out.mkdir(parents=True, exist_ok=True)
     index, count = map(int, arguments.only.split("/"))
     auto = Auto(arguments)
     jobs = [(f"{light}_{number}", lambda case, fold=fold, four=four, members=members:
              auto.several(case, fold, [four[m] for m in members]))
             for number, (members, _) in enumerate(SPHERES) for light, (fold, four) in OBJECTS.items()]
     jobs += [(folder.name, auto.one) for folder in sorted(arguments.cases.iterdir())]
-    table = arguments.out / f"auto_{index}.csv"
-    rows = list(csv.reader(table.open())) if table.exists() else [COLUMNS]
+    table = Table(arguments.out / f"auto_{index}.csv", COLUMNS)
     for case, job in jobs[index::count]:
-        if case in [row[0] for row in rows]:
+        if table.has(case):
             continue
-        rows.append(job(case))
-        with table.open("w", newline="") as file:
-            csv.writer(file, lineterminator="\n").writerows(rows)
-        print(",".join(map(str, rows[-1])), flush=True)
+        row = job(case)
+        table.add([row])
+        print(",".join(map(str, row)), flush=True)
 
 
 if __name__ == "__main__":

@@ -54,6 +54,39 @@ def places(where, count, shape):
     return x * count // shape[1] if where == "stripes" else (x // PATCH + y // PATCH) % count
 
 
+def parser_of(description, folders):
+    """With the folders as positional arguments, and --bin."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in folders:
+        parser.add_argument(name, type=pathlib.Path)
+    parser.add_argument("--bin", type=pathlib.Path,
+                        default=pathlib.Path(__file__).resolve().parents[2] / "build/release/bin")
+    return parser
+
+
+class Table:
+    """A CSV file of results, begun or gone on with."""
+
+    def __init__(self, path, columns):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self.path = path
+        self.rows = list(csv.reader(path.open())) if path.exists() else [columns]
+
+    def has(self, case):
+        return case in [row[0] for row in self.rows]
+
+    def add(self, rows):
+        self.rows += rows
+        with self.path.open("w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(self.rows)
+
+
+def copy_image(source, folder):
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in ("input.exr", "mask.png"):
+        shutil.copy(source / name, folder)
+
+
 class Labels:
     def __init__(self, arguments):
         self.arguments = arguments
@@ -62,15 +95,18 @@ class Labels:
         done = subprocess.run([self.arguments.bin / "ibrdf_eval", *command], capture_output=True, text=True, check=True)
         return json.loads(done.stdout)[name]
 
+    def command(self, folder, fold, reflectance):
+        """The solve of what is in the folder, whose problem is written."""
+        problem = folder / "problem.yaml"
+        model = (self.arguments.models / f"fold{fold}.ibrdf").resolve()
+        problem.write_text(PROBLEM.format(model=model, reflectance=reflectance))
+        return [self.arguments.bin / "ibrdf_solve", "--problem", problem, "--out", folder / "out", "--threads", "1"]
+
     def solve(self, folder, fold, reflectance):
         """Solves what is in the folder, once."""
         if (folder / "out" / "result.json").exists():
             return
-        problem = folder / "problem.yaml"
-        model = (self.arguments.models / f"fold{fold}.ibrdf").resolve()
-        problem.write_text(PROBLEM.format(model=model, reflectance=reflectance))
-        done = subprocess.run([self.arguments.bin / "ibrdf_solve", "--problem", problem, "--out", folder / "out", "--quiet",
-                               "--threads", "1"], capture_output=True, text=True)
+        done = subprocess.run([*self.command(folder, fold, reflectance), "--quiet"], capture_output=True, text=True)
         if done.returncode not in (0, NO_IMPROVEMENT):
             raise RuntimeError(done.stderr)
 
@@ -84,9 +120,7 @@ class Labels:
     def alone(self, material, light, fold):
         """Errors of the BRDF and of the map from the image of one material."""
         folder = self.arguments.out / "alone" / f"{material}_{light}"
-        folder.mkdir(parents=True, exist_ok=True)
-        for name in ("input.exr", "mask.png"):
-            shutil.copy(self.arguments.cases / f"{material}_{light}" / name, folder)
+        copy_image(self.arguments.cases / f"{material}_{light}", folder)
         self.solve(folder, fold, "variation: none")
         return self.brdf_error(folder / "out" / "brdf.binary", material), self.map_error(folder, light)
 
@@ -115,24 +149,15 @@ class Labels:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name in ("cases", "models", "tables", "maps", "out"):
-        parser.add_argument(name, type=pathlib.Path)
-    parser.add_argument("--bin", type=pathlib.Path,
-                        default=pathlib.Path(__file__).resolve().parents[2] / "build/release/bin")
-    arguments = parser.parse_args()
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    table = arguments.out / "results.csv"
-    rows = list(csv.reader(table.open())) if table.exists() else [COLUMNS]
+    arguments = parser_of(__doc__, ("cases", "models", "tables", "maps", "out")).parse_args()
+    table = Table(arguments.out / "results.csv", COLUMNS)
     for number, (members, where) in enumerate(SPHERES):
         for light, (fold, four) in OBJECTS.items():
             case = f"{light}_{number}"
-            if case in [row[0] for row in rows]:
+            if table.has(case):
                 continue
             materials = [four[m] for m in members]
-            rows += Labels(arguments).rows(case, light, where, fold, materials)
-            with table.open("w", newline="") as file:
-                csv.writer(file, lineterminator="\n").writerows(rows)
+            table.add(Labels(arguments).rows(case, light, where, fold, materials))
             print(case, flush=True)
 
 

@@ -30,8 +30,7 @@ ReflectanceSearchOptions OptionsFor(const LabelSearch& search,
                                     const SolveSetup& of_label,
                                     SolveContext* context) {
   const InverseProblem& alone = *of_label.problem;
-  ReflectanceSearchOptions o =
-      CoarseSearchOptions(search.share, of_label, context);
+  ReflectanceSearchOptions o = CoarseSearchOptions(1.0, of_label, context);
   o.coarse_stages = search.stages;
   o.ranked_anew = search.ranked_anew;
   LimitIterations(alone.solver.max_iterations, &o);

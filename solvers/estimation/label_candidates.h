@@ -36,9 +36,9 @@ struct LabelCombination {
 struct LabelSearch {
   std::vector<SearchStage> stages = {{6, 2}, {3, 4}};
   int ranked_anew = ReflectanceSearchOptions().ranked_anew;
-  double share = 1.0;                      // of the time that remains, at most
-  bool quiet = false;                      // no line of the trace
-  std::function<bool()> should_stop = {};  // in place of the share
+  bool quiet = false;  // no line of the trace
+  // As ReflectanceSearchOptions has it; empty: once time is up.
+  std::function<bool()> should_stop = {};
 };
 
 // The best three materials of a label by itself, under a light of its own, at

@@ -30,7 +30,7 @@ constexpr double kSigma = 0.06;
 const std::vector<SearchStage> kAloneStages = {{4, 2}, {2, 4}};
 const std::vector<SearchStage> kTogetherStages = {{4, 2}, {2, 8}};
 
-// Of each point which labels it has in all labellings, from 0.
+// Which labels each point has in all labellings, as a number from 0.
 std::vector<int> IntersectionOf(
     const std::vector<ComparedLabelling>& labellings) {
   const size_t num_points = labellings.front().labels.size();
@@ -65,19 +65,16 @@ void LeaveSmallOut(std::vector<int>* part) {
   }
 }
 
-// The problem with one of the labellings, and its points in parts.
-InverseProblem InParts(const InverseProblem& problem,
-                       const ComparedLabelling& labelling,
-                       const std::vector<int>& part) {
-  InverseProblem out = WithLabels(problem, labelling.labels);
+// The problem of the points that have a part.
+InverseProblem InParts(InverseProblem problem, const std::vector<int>& part) {
   std::vector<ShadingPoint> kept;
   for (size_t i = 0; i < part.size(); ++i) {
     if (part[i] < 0) continue;
-    kept.push_back(out.points[i]);
+    kept.push_back(problem.points[i]);
     kept.back().part = part[i];
   }
-  out.points = std::move(kept);
-  return out;
+  problem.points = std::move(kept);
+  return problem;
 }
 
 // For each label of one labelling, the lobes of the other's label that it
@@ -124,19 +121,18 @@ std::vector<LabelCandidate> LabelEvidence::CandidatesOf(const SolveSetup& setup,
   std::vector<LabelCandidate>& known = candidates_[pixels];
   if (known.empty()) {
     known = FindLabelCandidates(
-        setup, material, {kAloneStages, 0, 1.0, true, should_stop_}, context_);
+        setup, material, {kAloneStages, 0, true, should_stop_}, context_);
   }
   return known;
 }
 
 std::vector<Eigen::VectorXd> LabelEvidence::StartsOf(
-    const ComparedLabelling& labelling) {
-  const InverseProblem labelled = WithLabels(problem_, labelling.labels);
+    const InverseProblem& labelled) {
   const StatusOr<SolveSetup> setup = SetUp(labelled);
   if (!setup.ok()) return {};
   std::vector<std::vector<LabelCandidate>> candidates;
-  for (int m = 0; m < labelling.count; ++m) {
-    candidates.push_back(CandidatesOf(*setup, m));
+  for (size_t m = 0; m < labelled.materials.size(); ++m) {
+    candidates.push_back(CandidatesOf(*setup, static_cast<int>(m)));
   }
   std::vector<Eigen::VectorXd> starts;
   for (const LabelCombination& c : Combine(candidates, kMostStarts)) {
@@ -192,14 +188,15 @@ void LabelEvidence::Compare(std::vector<ComparedLabelling>* labellings) {
   for (ComparedLabelling& labelling : *labellings) {
     labelling.cost = std::numeric_limits<double>::infinity();
     if (should_stop_()) continue;
+    InverseProblem labelled = WithLabels(problem_, labelling.labels);
     std::vector<Eigen::VectorXd> starts;
     if (&labelling == &first && begun) {
       starts = {first.lobes};
     } else {
-      starts = StartsOf(labelling);
+      starts = StartsOf(labelled);
       if (begun) starts.push_back(Inherit(first, labelling));
     }
-    Explain(InParts(problem_, labelling, part), starts, &labelling);
+    Explain(InParts(std::move(labelled), part), starts, &labelling);
   }
   // More materials must not win by a better search alone.
   std::vector<Eigen::VectorXd> of_others;
@@ -207,7 +204,8 @@ void LabelEvidence::Compare(std::vector<ComparedLabelling>* labellings) {
     if (&other == &first || !(other.cost < first.cost)) continue;
     of_others.push_back(Inherit(other, first));
   }
-  Explain(InParts(problem_, first, part), of_others, &first);
+  if (of_others.empty()) return;
+  Explain(InParts(WithLabels(problem_, first.labels), part), of_others, &first);
 }
 
 }  // namespace ibrdf

@@ -43,7 +43,7 @@ class LabelEvidence {
  private:
   std::vector<LabelCandidate> CandidatesOf(const SolveSetup& setup,
                                            int material);
-  std::vector<Eigen::VectorXd> StartsOf(const ComparedLabelling& labelling);
+  std::vector<Eigen::VectorXd> StartsOf(const InverseProblem& labelled);
   void Explain(const InverseProblem& labelled,
                const std::vector<Eigen::VectorXd>& starts,
                ComparedLabelling* labelling);

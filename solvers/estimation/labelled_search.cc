@@ -81,7 +81,7 @@ JointPrior PriorOfAll(const SolveSetup& setup, SolveContext* context) {
   std::vector<std::vector<LabelCandidate>> candidates;
   for (int m = 0; m < num_materials; ++m) {
     LabelSearch search;
-    search.share = kAloneShare / (num_materials - m);
+    search.should_stop = context->StopAfter(kAloneShare / (num_materials - m));
     candidates.push_back(FindLabelCandidates(setup, m, search, context));
   }
   JointPrior joint{RepeatPrior(setup.materials, num_materials), {}};

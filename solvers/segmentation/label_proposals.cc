@@ -166,16 +166,15 @@ std::vector<LabelProposal> ProposeLabels(
                              kLastRounds, options.num_threads),
                    options.most_of_count);
   if (block > 1) {
-    const MaterialPixels full = GatherPixels(points, observed, image_width, 1);
+    MaterialPixels full = GatherPixels(points, observed, image_width, 1);
     std::vector<Labelling> starts;
     for (const RefinedLabelling& refined : found) {
       starts.push_back(Moved(refined.labelling, pixels, full));
     }
-    // Memory: each has shares of all pixels.
     found =
         Distinct(RefineAll(full, starts, kFullSizeRounds, options.num_threads),
                  options.most_of_count);
-    pixels = full;
+    pixels = std::move(full);
   }
   std::vector<LabelProposal> proposals;
   for (const RefinedLabelling& refined : found) {

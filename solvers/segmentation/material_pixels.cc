@@ -4,20 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
+
+#include "ibrdf/solvers/observation/normal_bins.h"
 
 namespace ibrdf {
 namespace {
 
-constexpr double kLeastCosine = 0.2;  // of pixels that take part, to the viewer
 // Neighbours whose logs differ by less are drawn to one material.
 constexpr double kEdge = 0.25;
 constexpr double kNeighbour = 3.0;
 // The bilateral filter: pixels across, and deviations of logs and of pixels.
 constexpr int kFilterSize = 5;
 constexpr double kFilterLog = 0.15, kFilterPixels = 2.0;
-// Of pixels without the object: far from any radiance of it.
+// The log where the object is not: far from any radiance of it.
 constexpr float kNoLog = -1e4f;
 
 // The sums over a block's points.
@@ -59,21 +59,27 @@ class BlockGrid {
   std::vector<Block> blocks_;
 };
 
+// As in searches.
 bool TakesPart(const ShadingPoint& point) {
-  return point.normal.dot(point.wo) >= kLeastCosine;
+  return point.normal.dot(point.wo) >= NormalBinOptions().min_cosine;
 }
 
-// Numbers the blocks that take part, row by row; returns how many.
-int NumberBlocks(int block, BlockGrid* grid) {
+// Where the pixels are in the grid.
+using Places = std::vector<Eigen::Vector2i>;
+
+// Numbers the blocks that take part, row by row.
+Places NumberBlocks(int block, BlockGrid* grid) {
   const int least = (block * block + 1) / 2;
-  int count = 0;
+  Places places;
   for (int y = 0; y < grid->height(); ++y) {
     for (int x = 0; x < grid->width(); ++x) {
       Block& b = grid->At(x, y);
-      if (b.points >= least) b.pixel = count++;
+      if (b.points < least) continue;
+      b.pixel = static_cast<int>(places.size());
+      places.emplace_back(x, y);
     }
   }
-  return count;
+  return places;
 }
 
 // Axes of log colour in rows.
@@ -83,49 +89,40 @@ Eigen::Matrix3d ColourAxes() {
   return axes.rowwise().normalized();
 }
 
-Eigen::MatrixX3d SmoothLogs(const Eigen::MatrixX3d& logs, BlockGrid* grid) {
-  cv::Mat image(grid->height(), grid->width(), CV_32FC3,
+Eigen::MatrixX3d SmoothLogs(const Eigen::MatrixX3d& logs, const Places& places,
+                            const BlockGrid& grid) {
+  cv::Mat image(grid.height(), grid.width(), CV_32FC3,
                 cv::Scalar(kNoLog, kNoLog, kNoLog));
-  for (int y = 0; y < grid->height(); ++y) {
-    for (int x = 0; x < grid->width(); ++x) {
-      const int pixel = grid->PixelAt(x, y);
-      if (pixel < 0) continue;
-      for (int c = 0; c < 3; ++c) {
-        image.at<cv::Vec3f>(y, x)[c] = static_cast<float>(logs(pixel, c));
-      }
+  for (size_t i = 0; i < places.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      image.at<cv::Vec3f>(places[i].y(), places[i].x())[c] =
+          static_cast<float>(logs(i, c));
     }
   }
   cv::Mat filtered;
   cv::bilateralFilter(image, filtered, kFilterSize, kFilterLog, kFilterPixels);
   Eigen::MatrixX3d smooth(logs.rows(), 3);
-  for (int y = 0; y < grid->height(); ++y) {
-    for (int x = 0; x < grid->width(); ++x) {
-      const int pixel = grid->PixelAt(x, y);
-      if (pixel < 0) continue;
-      for (int c = 0; c < 3; ++c) {
-        smooth(pixel, c) = filtered.at<cv::Vec3f>(y, x)[c];
-      }
+  for (size_t i = 0; i < places.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      smooth(i, c) = filtered.at<cv::Vec3f>(places[i].y(), places[i].x())[c];
     }
   }
   return smooth;
 }
 
 std::vector<PixelPair> PairsOf(const Eigen::MatrixX3d& logs,
-                               const BlockGrid& grid) {
+                               const Places& places, const BlockGrid& grid) {
   constexpr int kBeside[4][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
   std::vector<PixelPair> pairs;
-  for (int y = 0; y < grid.height(); ++y) {
-    for (int x = 0; x < grid.width(); ++x) {
-      const int first = grid.PixelAt(x, y);
-      if (first < 0) continue;
-      for (const auto& [right, down] : kBeside) {
-        const int second = grid.PixelAt(x + right, y + down);
-        if (second < 0) continue;
-        const double step =
-            (logs.row(first) - logs.row(second)).cwiseAbs().maxCoeff() / kEdge;
-        pairs.push_back({first, second, right * down == 0,
-                         kNeighbour * std::exp(-step * step)});
-      }
+  for (size_t i = 0; i < places.size(); ++i) {
+    for (const auto& [right, down] : kBeside) {
+      const int second =
+          grid.PixelAt(places[i].x() + right, places[i].y() + down);
+      if (second < 0) continue;
+      const double step =
+          (logs.row(i) - logs.row(second)).cwiseAbs().maxCoeff() / kEdge;
+      pairs.push_back({static_cast<int>(i), second, right * down == 0,
+                       kNeighbour * std::exp(-step * step)});
     }
   }
   return pairs;
@@ -151,24 +148,22 @@ MaterialPixels GatherPixels(const std::vector<ShadingPoint>& points,
     b.normal += points[i].normal.cast<double>();
   }
   MaterialPixels out;
-  const int count = NumberBlocks(block, &grid);
+  const Places places = NumberBlocks(block, &grid);
+  const auto count = static_cast<Eigen::Index>(places.size());
   Eigen::MatrixX3d logs(count, 3);
   out.normals.resize(count, 3);
-  for (int y = 0; y < grid.height(); ++y) {
-    for (int x = 0; x < grid.width(); ++x) {
-      const Block& b = grid.At(x, y);
-      if (b.pixel < 0) continue;
-      logs.row(b.pixel) = b.log.transpose() / b.points;
-      out.normals.row(b.pixel) = b.normal.normalized().transpose();
-    }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Block& b = grid.At(places[i].x(), places[i].y());
+    logs.row(i) = b.log.transpose() / b.points;
+    out.normals.row(i) = b.normal.normalized().transpose();
   }
   for (size_t i = 0; i < points.size(); ++i) {
     const bool part = observed.valid[i] && TakesPart(points[i]);
     out.pixel_of_point.push_back(part ? grid.Of(points[i]).pixel : -1);
   }
   out.colours = logs * ColourAxes().transpose();
-  out.smooth = SmoothLogs(logs, &grid);
-  out.neighbours = PairsOf(logs, grid);
+  out.smooth = SmoothLogs(logs, places, grid);
+  out.neighbours = PairsOf(logs, places, grid);
   return out;
 }
 

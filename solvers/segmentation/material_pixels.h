@@ -19,7 +19,7 @@ struct PixelPair {
 };
 
 struct MaterialPixels {
-  // Of each point its pixel, -1: it takes no part.
+  // The pixel of each point; -1: it takes no part.
   std::vector<int> pixel_of_point;
   Eigen::MatrixX3d normals;  // [pixels], unit, world
   // Log radiance [pixels]: luminance, then chroma on two orthogonal axes.
@@ -33,7 +33,7 @@ struct MaterialPixels {
 };
 
 // Blocks of `block` times `block` pixels of the image, their points' means, as
-// one. Points take part that are valid and seen at a cosine of at least 0.2;
+// one. Points take part that are valid and away from the limb, as in searches;
 // blocks of which half of the pixels do. image_width, block: > 0.
 MaterialPixels GatherPixels(const std::vector<ShadingPoint>& points,
                             const Observations& observed, int image_width,

@@ -12,8 +12,8 @@ inline constexpr int kMostPolynomialDegree = 3;
 // harmonics of those degrees.
 Eigen::MatrixXd NormalPolynomials(const Eigen::MatrixX3d& normals, int degree);
 
-// Of their coefficients, over the variance of the noise: the inverses of the
-// prior variances.
+// The inverses of the prior variances of their coefficients, which are over the
+// variance of the noise.
 Eigen::VectorXd PolynomialPrecisions(int degree);
 
 }  // namespace ibrdf

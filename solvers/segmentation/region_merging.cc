@@ -28,7 +28,7 @@ double LogDeterminant(const Eigen::Matrix3d& matrix) {
   return std::log(matrix.determinant());
 }
 
-// Of three dimensions, less what is the same for all a.
+// The gamma function of three dimensions, less what is the same for all a.
 double LogGamma3(double a) {
   return std::lgamma(a) + std::lgamma(a - 0.5) + std::lgamma(a - 1.0);
 }
@@ -166,7 +166,7 @@ class Merging {
     return large;
   }
 
-  // Of region i with those from `begin` to `end`.
+  // Sets the gains of region i with those from `begin` to `end`.
   void SetGains(int i, int begin, int end) {
     for (int j = begin; j < end; ++j) {
       if (j == i || !regions_[j].alive) continue;

@@ -18,8 +18,8 @@ namespace {
 
 // Nats by which the image must be more probable of two materials than of one,
 // and of each further one. What one metal mirrors has sharp edges too, and the
-// coarse light does not hold all of it: of 46 balls of one material one gained
-// more, 111; of 20 of several all did, 87 to 540
+// coarse light does not hold all of it: of 45 balls of one material one gained
+// more, 111; five of several gained 87 to 403
 // (docs/notes/labels_from_the_image.md).
 constexpr double kGainOfSecond = 85.0, kGainOfFurther = 45.0;
 constexpr double kLabelsShare = 0.5;  // of the time that remains, at most
@@ -57,11 +57,10 @@ FoundLabels FindLabels(const InverseProblem& problem, SolveContext* context) {
   const std::vector<LabelProposal> proposals = Proposals(problem);
   FoundLabels found;
   LabelEvidence evidence(problem, stop, context);
-  for (size_t next = 0; next < proposals.size();) {
-    const int count = proposals[next].count;
-    while (next < proposals.size() && proposals[next].count == count) ++next;
+  for (int count = 2; count <= kMostFoundLabels; ++count) {
     std::vector<ComparedLabelling> compared =
         WithProposals(best, proposals, count);
+    if (compared.size() == 1) continue;
     evidence.Compare(&compared);
     found.cut_short = stop();
     if (found.cut_short) break;

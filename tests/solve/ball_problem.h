@@ -40,6 +40,25 @@ inline std::vector<double> BallRadiance(const InverseProblem& problem,
   return L_o;
 }
 
+// The parameters of two materials of TinyModel(3), two lobes each: the second
+// is darker, and of another hue.
+inline const std::vector<double> kTwoMaterials[2] = {
+    {0.3, -0.4, 0.2, 0.1, 5.0, 4.6, 4.2, -0.5, 0.1, 0.3, -0.2, 3.0, 3.5, 3.3},
+    {-0.2, 0.3, 0.1, -0.3, 3.0, 3.4, 3.9, 0.2, 0.4, -0.1, 0.2, 2.0, 2.2, 2.6}};
+
+// Radiance of these under a map [points * 3], by ShadingPoint::material.
+inline std::vector<double> RadianceOfTwo(
+    const InverseProblem& problem, const std::vector<ShadingPoint>& points,
+    const Image& map) {
+  const FlowLobes lobes(*problem.model, 2, problem.transport.grid, 1);
+  const BrdfGrid grids[2] = {lobes.Grid(kTwoMaterials[0].data()),
+                             lobes.Grid(kTwoMaterials[1].data())};
+  std::vector<double> L_o(3 * points.size());
+  Transport(points, map.height, map.width, problem.transport)
+      .Render({&grids[0], &grids[1]}, map.rgb.data(), L_o.data());
+  return L_o;
+}
+
 // Makes it the image, with log-normal noise of that deviation.
 inline void SetNoisyImage(const std::vector<double>& L_o, double deviation,
                           InverseProblem* problem) {

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
-#include "ibrdf/brdf/flow_lobes.h"
 #include "ibrdf/light/environment_map.h"
 #include "ibrdf/solvers/solve/solve.h"
 #include "tests/solve/ball_problem.h"
@@ -27,19 +25,11 @@ class FoundLabelsTest : public ::testing::Test {
     problem_.solver.max_iterations = 1;
   }
   void Show(bool two) {
-    const FlowLobes lobes(*problem_.model, 2, problem_.transport.grid, 1);
-    std::vector<BrdfGrid> grids;
-    for (const std::vector<double>& p : parameters_) {
-      grids.push_back(lobes.Grid(p.data()));
-    }
     std::vector<ShadingPoint> points = problem_.points;
     for (ShadingPoint& p : points) {
       p.material = two && p.pixel % kFoundSize >= kFoundSize / 2 ? 1 : 0;
     }
-    const Transport transport(points, 8, 16, problem_.transport);
-    std::vector<double> L_o(3 * points.size());
-    transport.Render({&grids[0], &grids[1]}, map_.rgb.data(), L_o.data());
-    SetNoisyImage(L_o, 0.005, &problem_);
+    SetNoisyImage(RadianceOfTwo(problem_, points, map_), 0.005, &problem_);
     truth_.clear();
     for (const ShadingPoint& p : points) truth_.push_back(p.material);
   }
@@ -55,11 +45,6 @@ class FoundLabelsTest : public ::testing::Test {
     return std::max(same, 1.0 - same);
   }
 
-  // The second is darker, and of another hue.
-  const std::vector<double> parameters_[2] = {
-      {0.3, -0.4, 0.2, 0.1, 5.0, 4.6, 4.2, -0.5, 0.1, 0.3, -0.2, 3.0, 3.5, 3.3},
-      {-0.2, 0.3, 0.1, -0.3, 3.0, 3.4, 3.9, 0.2, 0.4, -0.1, 0.2, 2.0, 2.2,
-       2.6}};
   const Image map_ = SmoothMap(8, 16);
   InverseProblem problem_ = BallProblem(kFoundSize);
   std::vector<int> truth_;

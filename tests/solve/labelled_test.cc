@@ -29,13 +29,8 @@ class LabelledTest : public ::testing::Test {
       p.material = (x < 5) != (y < 6) ? 1 : 0;
       ++problem_.materials[p.material].pixels;
     }
-    const FlowLobes lobes(*problem_.model, 2, problem_.transport.grid, 1);
-    for (const std::vector<double>& p : parameters_) {
-      truth_.push_back(lobes.Grid(p.data()));
-    }
-    const Transport transport(problem_.points, 8, 16, problem_.transport);
-    std::vector<double> L_o(3 * problem_.points.size());
-    transport.Render({&truth_[0], &truth_[1]}, map_.rgb.data(), L_o.data());
+    const std::vector<double> L_o =
+        RadianceOfTwo(problem_, problem_.points, map_);
     for (size_t i = 0; i < L_o.size(); ++i) {
       problem_.image.rgb[3 * problem_.points[i / 3].pixel + i % 3] =
           static_cast<float>(L_o[i] * std::exp(0.01 * std::sin(11.0 * i)));
@@ -77,17 +72,11 @@ class LabelledTest : public ::testing::Test {
   }
   double TrueLevel(int material) const {
     return Level(FlowLobes(*problem_.model, 2, problem_.transport.grid, 1)
-                     .ToMerl(parameters_[material].data()));
+                     .ToMerl(kTwoMaterials[material].data()));
   }
 
-  // The second is darker, and of another hue.
-  const std::vector<double> parameters_[2] = {
-      {0.3, -0.4, 0.2, 0.1, 5.0, 4.6, 4.2, -0.5, 0.1, 0.3, -0.2, 3.0, 3.5, 3.3},
-      {-0.2, 0.3, 0.1, -0.3, 3.0, 3.4, 3.9, 0.2, 0.4, -0.1, 0.2, 2.0, 2.2,
-       2.6}};
   const Image map_ = SmoothMap(8, 16);
   InverseProblem problem_ = BallProblem(kLabelledSize);
-  std::vector<BrdfGrid> truth_;
 };
 
 TEST_F(LabelledTest, MaterialsShareOneUnknownLight) {
